@@ -31,7 +31,7 @@ CPPFLAGS += -Isrc -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -ltcl8.6 -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -ltcl8.6 -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. Sanitized, the
 # simulator takes 0.55 of its time at -O2. These flags come last; provenance.json quotes them by the same variables.
@@ -79,7 +79,7 @@ setup: ## installs the Debian packages of scripts/packages.txt that are missing
 
 run: setup ## the README's first command: packages, build, self-test, quick study
 	@$(MAKE) --no-print-directory -j$(JOBS) all
-	./imtet selftest
+	./imtet check --self
 	./imtet optimize configs/quick.ini
 
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)

@@ -208,7 +208,6 @@ static const ArgOption PROMISE_OPTIONS[] = {
     {"--front", "FILE", NULL, 0, "designs to simulate under all of the first record, as `imtet export` writes them"},
     {"--out", "FILE", NULL, 0, "the table, as CSV"},
     OPTION_PGA,
-    OPTION_STRETCH,
     OPTION_UNIT,
     OPTION_SET,
     OPTION_END,

@@ -37,6 +37,11 @@ static Status run_command(int argc, char *argv[], Err *err)
     const char *option;
     Args args;
     TRY(command_find(argv[1], &command, &option, err));
+    for (int i = 2; option && i < argc; i++) /* `plot --out DIR` is `report --pictures DIR` */
+        if (strcmp(argv[i], "--out") == 0 && strcmp(option, "--pictures=pictures") == 0) {
+            argv[i] = "--pictures";
+            option = NULL;
+        }
     const int n_before = option ? 1 : 2; /* the option of an old name stands in the place of that name */
     if (option)
         argv[1] = (char *)(uintptr_t)option;
@@ -86,8 +91,7 @@ static Status manual(int argc, char *argv[], Err *err)
 {
     const Command *command;
     TRY(second_word(argc, argv, &command, err));
-    manual_write(command, stdout);
-    return STATUS_OK;
+    return manual_write(command, stdout, err);
 }
 
 static Status version(int argc, char *argv[], Err *err)

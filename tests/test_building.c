@@ -493,7 +493,8 @@ static void test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines
     for (int i = 0; i < 2; i++) {
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
-                 "builtin:sylmar-like --stretch 1 --duration 5 --set sim.accuracy=fine --engine %s --json",
+                 "builtin:sylmar-like --set motion.stretch=1 --set sim.duration_s=5 --set sim.accuracy=fine --set "
+                 "sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
     }
@@ -660,18 +661,18 @@ static void test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_eng
                "section,A_m2,I_m4,E_pa,mass_kg_per_m\nc,0.05,1e-4,2e11,6250\nb,0.05,1e-3,2e11,1666.7\n");
     write_file(&o, "far.csv", "gap_01_m,t_base_m,t_top_m\n1,0.01,0.01\n");
     write_file(&o, "near.csv", "gap_01_m,t_base_m,t_top_m\n0.003,0.01,0.01\n");
-    static const char *const CASES[] = {"far.csv --engine fast --set building.modes=0",
-                                        "far.csv --engine fast --set building.modes=100000", "near.csv --engine fast",
-                                        "near.csv --engine cvode"};
+    static const char *const CASES[] = {"far.csv --set sim.engine=fast --set building.modes=0",
+                                        "far.csv --set sim.engine=fast --set building.modes=100000",
+                                        "near.csv --set sim.engine=fast", "near.csv --set sim.engine=cvode"};
     static const char *const SAME[] = {"j1_m", "j3_g", "input_energy_j", "ed1_pct", "base_shear_n"};
     json_t *r[4];
     for (int i = 0; i < 4; i++) {
         char command[512];
-        snprintf(
-            command, sizeof command,
-            "simulate configs/quick.ini --set building.model=@/columns --duration 20 --set sim.accuracy=fine --json "
-            "--design @/columns/%s",
-            CASES[i]);
+        snprintf(command, sizeof command,
+                 "simulate configs/quick.ini --set building.model=@/columns --set sim.duration_s=20 --set "
+                 "sim.accuracy=fine --json "
+                 "--design @/columns/%s",
+                 CASES[i]);
         r[i] = json_of(command);
     }
     assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 0.02);
@@ -772,7 +773,7 @@ static void test_the_full_model_is_simulated_alike_by_two_engines(void **state)
         char command[512];
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                 "builtin:kobe-like --duration 30 --set sim.accuracy=fine --engine %s --json",
+                 "builtin:kobe-like --set sim.duration_s=30 --set sim.accuracy=fine --set sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
     }

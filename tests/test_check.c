@@ -248,7 +248,8 @@ static void test_a_core_beyond_the_motions_samples_is_noticed(void **state)
 {
     (void)state;
     write_building(1, 1, 0);
-    expect_warnings("motion.record", "--stretch 50 --set sim.duration_s=0.5"); /* a sample each second: 0.5 Hz */
+    expect_warnings("motion.record",
+                    "--set motion.stretch=50 --set sim.duration_s=0.5"); /* a sample each second: 0.5 Hz */
 }
 
 static void test_a_squat_core_without_shear_is_noticed(void **state)

@@ -157,7 +157,7 @@ static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows
     char *said = output_of("evaluate @/run --design knee");
     assert_non_null(strstr(said, "  estimated error"));
     free(said);
-    said = output_of("evaluate @/run --design knee --engine cvode --duration 3");
+    said = output_of("evaluate @/run --design knee --set sim.engine=cvode --set sim.duration_s=3");
     assert_null(strstr(said, "estimated error"));
     free(said);
     said = output_of("optimize configs/quick.ini --out @/knee --max-evals 8 --set search.initial=8 "
@@ -184,7 +184,7 @@ static void test_choose_names_the_extremes_and_writes_them(void **state)
         assert_same_number(j1_of(word), wanted);
     }
     json_decref(o);
-    expect(2, "give --csv a file", "choose @/run --json --csv -");
+    expect(2, "both want standard output", "choose @/run --json --csv -");
 }
 
 /* Half of the front by a result that is no objective; the ids chosen are those within. */

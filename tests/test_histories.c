@@ -86,7 +86,7 @@ static void test_histories_of_both_engines_agree_before_the_horizon(void **state
     (void)state;
     if (SANITIZED) /* long; test_forces and test_engines go through cvode */
         skip();
-    free(output_of("simulate " WINDOW "--engine cvode --history @/cvode.csv --every " EVERY));
+    free(output_of("simulate " WINDOW "--set sim.engine=cvode --history @/cvode.csv --every " EVERY));
     const Table a = table_of("fast.csv"), b = table_of("cvode.csv");
     assert_int_equal(a.n_rows, b.n_rows);
     assert_int_equal(a.n_cols, b.n_cols);
@@ -474,10 +474,11 @@ static long impacts_with(double gap, const char *law, const char *engine)
     char text[128], command[256];
     snprintf(text, sizeof text, "gap_01_m,t_base_m,t_top_m\n%.17g,0.02,0.02\n", gap);
     write_in_place("one/gap.csv", text);
-    snprintf(command, sizeof command,
-             "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --engine %s --set "
-             "contact.law=%s",
-             engine, law);
+    snprintf(
+        command, sizeof command,
+        "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.engine=%s --set "
+        "contact.law=%s",
+        engine, law);
     json_t *o = json_of(command);
     const long n = (long)number(o, "impacts");
     const Table t = table_of("one/contacts.csv");

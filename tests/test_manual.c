@@ -13,20 +13,18 @@ static void test_every_command_has_a_page_with_all_its_options(void **state)
         char arguments[64], option[64];
         snprintf(arguments, sizeof arguments, "--man %s", c->name);
         char *page = output_of(arguments);
-        assert_int_equal(strncmp(page, ".TH IMTET-", 10), 0);
+        assert_int_equal(strncmp(page, ".TH \"imtet-", 11), 0);
         for (const ArgOption *o = c->options; o->name; o++) {
-            snprintf(option, sizeof option, ".B \\-\\-%s", o->name + 2);
+            snprintf(option, sizeof option, "  \\-\\-%s", o->name + 2);
             if (!strstr(page, option) && !strchr(o->name + 2, '-'))
                 fail_msg("%s is not in the page of %s", o->name, c->name);
         }
-        assert_non_null(strstr(page, ".SH EXIT STATUS"));
         free(page);
     }
-    char *all = output_of("--man"), *settings = output_of("--man settings");
-    assert_non_null(strstr(all, "imtet\\-optimize"));
-    assert_non_null(strstr(settings, "\npolish = 3\n"));
+    char *all = output_of("--man");
+    assert_non_null(strstr(all, "  optimize  "));
+    assert_non_null(strstr(all, "\n.SH DESCRIPTION\n"));
     free(all);
-    free(settings);
 }
 
 static void test_help_of_a_command_is_the_same_both_ways(void **state)
@@ -81,7 +79,7 @@ static void test_the_nearest_is_suggested_everywhere(void **state)
     expect(65, "has no design 999; the nearest id is", "polish @/two --design 999 --improve f2");
     expect(2, "--rigid: a linear building is solved in closed form",
            "simulate configs/quick.ini --design no.csv --rigid "
-           "--engine cvode");
+           "--set sim.engine=cvode");
     expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
 }
 
@@ -122,10 +120,9 @@ static void test_bash_offers_commands_options_keys_and_words(void **state)
     expect_offer("opti", "optimize\n");
     expect_offer("help spec", "spectrum\n");
     expect_offer("simulate --des", "--design\n");
-    expect_offer("simulate x.ini --engine cv", "cvode\n");
     expect_offer("simulate x.ini --set motion.pg", "motion.pga_g=\n");
     expect_offer("simulate x.ini --set sim.accuracy = f", "fine\n");
-    expect_offer("simulate x.ini --engine = fa", "fast\n");
+    expect_offer("simulate x.ini --set sim.engine = cv", "cvode\n");
     expect_offer("simulate configs/qu", "configs/quick.ini\n");
     expect_offer("simulate x.ini --record LICEN", "LICENSE\n");
     expect_offer("simulate x.ini --pga 0", "\n");

@@ -432,10 +432,11 @@ static void test_what_if_under_another_motion_is_what_simulate_prints(void **sta
     json_t *answer = post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:o, s:f, s:f, s:f}", "page", 1, "turn", 2, "x",
                                                           numbers_of_row(&front, 0, 1, 22), "pga_g", 0.41, "stretch",
                                                           2.5, "restitution", 0.55));
-    snprintf(arguments, sizeof arguments,
-             "simulate @/runs/a/settings.ini --design @/runs/a/front.csv:%.0f --pga 0.41 --stretch 2.5 --set "
-             "contact.restitution=0.55 --json",
-             front.values[0]);
+    snprintf(
+        arguments, sizeof arguments,
+        "simulate @/runs/a/settings.ini --design @/runs/a/front.csv:%.0f --pga 0.41 --set motion.stretch=2.5 --set "
+        "contact.restitution=0.55 --json",
+        front.values[0]);
     json_t *other = json_of(arguments);
     for (size_t k = 0; k < 7; k++)
         assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)),

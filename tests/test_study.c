@@ -251,7 +251,7 @@ static void test_a_run_that_is_killed_leaves_its_last_finished_generation(void *
     assert_all_in(rescued, all);
     free(rescued);
     free(all);
-    free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --duration 4"));
+    free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --set sim.duration_s=4"));
 }
 
 /* ------------------------------------------------------------------------------------------- problems of others ---

@@ -31,10 +31,10 @@ static void test_both_models_are_what_simulate_gives(void **state)
 {
     (void)state;
     write_design("d.csv");
-    json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --duration 40 --json");
-    json_t *all = json_of("simulate configs/quick.ini --design @/d.csv --duration 40 --json");
-    json_t *full =
-        json_of("simulate configs/quick.ini --design @/d.csv:1 --duration 40 --set building.modes=100000 --json");
+    json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
+    json_t *all = json_of("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
+    json_t *full = json_of(
+        "simulate configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --set building.modes=100000 --json");
     json_t *reduced = json_object_get(v, "reduced"), *error = json_object_get(v, "error");
     expect_same(reduced, json_array_get(all, 0));
     expect_same(json_object_get(v, "full"), full);
@@ -52,9 +52,9 @@ static void test_designs_and_records_make_a_list_in_their_order(void **state)
 {
     (void)state;
     write_design("d.csv");
-    json_t *v = json_of(
-        "evaluate --full-model configs/quick.ini --design @/d.csv --duration 5 --record builtin:kobe-like --record "
-        "builtin:elcentro-like --json");
+    json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
+                        "builtin:kobe-like --record "
+                        "builtin:elcentro-like --json");
     assert_int_equal((int)json_array_size(v), 4);
     for (size_t i = 0; i < 4; i++) {
         const json_t *o = json_array_get(v, i);
@@ -68,8 +68,8 @@ static void test_designs_and_records_make_a_list_in_their_order(void **state)
 static void test_fixed_interface_modes_are_verified_as_the_reduced_model(void **state)
 {
     (void)state;
-    json_t *v =
-        json_of("evaluate --full-model configs/quick.ini --design none --duration 20 --set building.modes=30 --json");
+    json_t *v = json_of(
+        "evaluate --full-model configs/quick.ini --design none --set sim.duration_s=20 --set building.modes=30 --json");
     const json_t *error = json_object_get(v, "error");
     assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "reduced"), 51);
     assert_true(fabs(number(error, "j1_m")) < 1e-4 && fabs(number(error, "j3_g")) < 1e-3);
@@ -80,7 +80,8 @@ static void test_fixed_interface_modes_are_verified_as_the_reduced_model(void **
 static void test_peaks_over_the_height_are_listed_and_drawn(void **state)
 {
     (void)state;
-    char *text = output_of("evaluate --full-model configs/quick.ini --design none --duration 5 --svg @/peaks.svg");
+    char *text =
+        output_of("evaluate --full-model configs/quick.ini --design none --set sim.duration_s=5 --svg @/peaks.svg");
     assert_non_null(strstr(text, "no core, full (106)"));
     assert_non_null(strstr(text, "\n   20    80.77"));
     char *svg = read_in_place("peaks.svg");

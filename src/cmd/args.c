@@ -73,7 +73,7 @@ void args_suggest(const Args *args, Err *err)
     const int length = slash ? (int)(slash - path + 1) : 0;
     char folder[512];
     struct dirent **entries;
-    if (!path || access(path, F_OK) == 0 || strstr(err->text, "did you mean"))
+    if (!path || access(path, F_OK) == 0 || err->sub == SUB_SUGGESTS)
         return;
     snprintf(folder, sizeof folder, "%.*s", length ? length : 1, length ? path : ".");
     const int n = scandir(folder, &entries, is_visible, alphasort);
@@ -159,26 +159,6 @@ static Status take_operand(Args *args, const char *word, Err *err)
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
 
-/* The setting that it writes; --pga of a command may be read by that one itself. */
-static const char *key_of(const ArgOption *o)
-{
-    return o->setting || strcmp(o->name, "--pga") != 0 ? o->setting : "motion.pga_g";
-}
-
-/* An option and --set of its key would leave open which of them counts. */
-static Status check_keys(const Args *args, Err *err)
-{
-    for (int i = 0; i < args->n_given; i++)
-        for (int j = 0; j < args->n_given; j++) {
-            const Given *a = &args->given[i], *b = &args->given[j];
-            const char *key = key_of(a->option);
-            if (key && strcmp(b->option->name, "--set") == 0 && value_of(b->value, key))
-                return fail(err, STATUS_USAGE, "%s %.60s and --set %.60s are one setting; give one of them",
-                            a->option->name, a->value, b->value);
-        }
-    return STATUS_OK;
-}
-
 static int asks_for_help(const char *word)
 {
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
@@ -202,7 +182,6 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     if (command->operand && command->operand[0] != '[' && !args->operand)
         return fail(err, STATUS_USAGE, "%s %s needs a %s; for example: %s", program_of(command), command->name,
                     command->operand, command->example);
-    TRY(check_keys(args, err));
     return outputs_check(args, err);
 }
 

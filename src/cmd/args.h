@@ -52,12 +52,9 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_SET {"--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"}
 #define OPTION_RECORD {"--record", "FILE", "motion.record", 0, "ground motion file or builtin:NAME"}
 #define OPTION_PGA {"--pga", "G", "motion.pga_g", 0, "scale the motion to this peak [g]; 0: as recorded"}
-#define OPTION_STRETCH {"--stretch", "S", "motion.stretch", 0, "multiply its time by this"}
 #define OPTION_UNIT {"--unit", "UNIT", "motion.unit", 0, "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say"}
-#define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT
+#define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_UNIT
 #define OPTION_CHANNEL {"--channel", "NAME", "motion.channel", 0, "component by name or number, of a file with several"}
-#define OPTION_DURATION {"--duration", "T", "sim.duration_s", 0, "stop after T seconds; 0: at the motion's end"}
-#define OPTION_ENGINE {"--engine", "NAME", "sim.engine", 0, "as the setting sim.engine"}
 #define OPTION_JSON {"--json", NULL, NULL, 0, "everything, as JSON, on standard output"}
 #define OPTION_CSV {"--csv", "FILE", NULL, 0, "the table as CSV into FILE; -: standard output"}
 #define OPTION_END {NULL, NULL, NULL, 0, NULL}

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/selftest.h"
 #include "cmd/show.h"
 #include "cmd/warnings.h"
 #include "motion/motion_scale.h"
@@ -179,36 +180,6 @@ static int summarise(Check *c, CheckedScene *p)
     return 1;
 }
 
-static void print_scene(const CheckedScene *p)
-{
-    const SceneSummary *f = &p->summary;
-    const Settings *s = p->s;
-    printf("building  %s: %d floor%s, %.4g m, %.4g kg (floors of %.4g to %.4g kg)\n", s->building.model, f->n_floors,
-           f->n_floors == 1 ? "" : "s", f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg);
-    printf("          periods");
-    for (int i = 0; i < 3 && f->period_s[i] > 0; i++)
-        printf("%s %.4g s (damping %.3g %%)", i ? "," : "", f->period_s[i], 100 * f->damping[i]);
-    printf("\n          %.3g s per storey; the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
-           100 * f->first_mode_mass);
-    printf("core      %.4g kg ", f->core_mass_kg);
-    if (p->space.n_walls > 0)
-        printf("at %g to %g mm", 1e3 * p->design.t_base, 1e3 * p->design.t_top);
-    else
-        printf("(effective section)");
-    printf(", damping %g %%, %s\n", 100 * s->core.damping, core_theory_word(s->core.theory));
-    printf("          first mode %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
-           f->euler_bernoulli_hz, f->timoshenko_hz, 100 * (f->timoshenko_hz / f->euler_bernoulli_hz - 1));
-    printf("motion    %s: %zu samples, %.4g s, peak %.4g g (recorded %.4g g x %.4g, time x %g)\n", s->motion.record,
-           p->motion.n, duration(&p->motion), motion_peak(&p->motion) / GRAVITY, p->recorded_g, p->motion.scale,
-           s->motion.stretch);
-    if (p->motion.processed[0])
-        printf("          %s\n", p->motion.processed);
-    printf("          holds frequencies up to %.4g Hz: %d of %d modes of the core\n", f->content_hz,
-           f->core_modes_within, f->n_floors);
-    printf("forces    weight %.4g MN; base shear without a core about %.3g of it (response spectrum, SRSS)\n",
-           1e-6 * f->mass_kg * GRAVITY, f->base_shear);
-}
-
 static void scene_json(Check *c, const CheckedScene *p)
 {
     const SceneSummary *f = &p->summary;
@@ -230,10 +201,11 @@ static void scene_json(Check *c, const CheckedScene *p)
                                   "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz,
                                   "modes_within_motion", f->core_modes_within));
     json_object_set_new(c->out, "motion",
-                        json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "record", s->motion.record, "samples",
-                                  (json_int_t)p->motion.n, "duration_s", duration(&p->motion), "recorded_peak_g",
-                                  p->recorded_g, "peak_g", motion_peak(&p->motion) / GRAVITY, "scale", p->motion.scale,
-                                  "stretch", s->motion.stretch, "content_hz", f->content_hz));
+                        json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s}", "record", s->motion.record,
+                                  "samples", (json_int_t)p->motion.n, "duration_s", duration(&p->motion),
+                                  "recorded_peak_g", p->recorded_g, "peak_g", motion_peak(&p->motion) / GRAVITY,
+                                  "scale", p->motion.scale, "stretch", s->motion.stretch, "content_hz", f->content_hz,
+                                  "processed", p->motion.processed));
 }
 
 /* ---- the study ------------------------------------------------------------------------------------------------ */
@@ -277,22 +249,6 @@ static void describe_study(Check *c, const CheckedScene *p)
                                   s->design.thickness_min_m, s->design.thickness_max_m, "simulations",
                                   (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
                                   "impacts", (json_int_t)r.impacts, "seconds", seconds));
-    if (c->as_json)
-        return;
-    printf("search    %d variables: %d gaps of %g to %g mm", p->space.n_var, p->space.n_gaps, 1e3 * s->design.gap_min_m,
-           1e3 * s->design.gap_max_m);
-    if (p->space.n_walls > 0)
-        printf(", core thickness %g to %g mm at base and top", 1e3 * s->design.thickness_min_m,
-               1e3 * s->design.thickness_max_m);
-    putchar('\n');
-    if (p->space.n_bumpers > 0)
-        printf("          %d bumper%s of %.3g to %.3g N/m\n", p->space.n_bumpers, p->space.n_bumpers == 1 ? "" : "s",
-               s->design.bumper_min_n_m, s->design.bumper_max_n_m);
-    if (p->space.has_side)
-        printf("          side of the core's box %g to %g m\n", s->design.side_min_m, s->design.side_max_m);
-    printf("time      %ld simulations, %.2g s each (measured, %ld impacts), on %ld thread%s: about %.2g %s\n",
-           simulations, r.seconds, r.impacts, threads, threads == 1 ? "" : "s", seconds < 120 ? seconds : seconds / 60,
-           seconds < 120 ? "s" : "min");
 }
 
 static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
@@ -302,16 +258,12 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(names, json_words(schema_objective(schema, k)->name));
     json_object_set_new(c->out, "objectives", names);
-    for (size_t k = 0; k < schema->n_obj && !c->as_json; k++)
-        printf("%s%s", k ? ", " : "objectives ", schema_objective(schema, k)->name);
-    if (!c->as_json)
-        putchar('\n');
     if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
         warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
     if (missing && strcmp(objectives, "auto") != 0)
         warn("search.objectives", missing, c);
-    else if (missing && !c->as_json)
-        puts(missing);
+    else if (missing)
+        json_object_set_new(c->out, "missing", json_string(missing));
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */
@@ -330,8 +282,6 @@ static void open_study(Check *c, const Settings *s)
         json_object_set_new(
             c->out, "problem",
             json_pack("{s:I, s:I}", "variables", (json_int_t)schema->n_var, "objectives", (json_int_t)schema->n_obj));
-        if (!c->as_json)
-            printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
     }
     adapter_close(adapter);
 }
@@ -342,8 +292,6 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
     const int building = open_building(c, &p), motion = open_motion(c, &p);
     if (building && motion && choose_design(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
         scene_json(c, &p);
-        if (!c->as_json)
-            print_scene(&p);
         if (json_array_size(c->faults) == 0)
             open_study(c, s);
         if (json_array_size(c->faults) == 0)
@@ -355,6 +303,39 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
 
 /* ---- the command ---------------------------------------------------------------------------------------------- */
 
+static void print_value(const json_t *value)
+{
+    size_t i;
+    json_t *item;
+    if (json_is_string(value))
+        printf(" %s", json_string_value(value));
+    else if (json_is_number(value))
+        printf(" %.4g", json_number_value(value));
+    else
+        json_array_foreach(value, i, item) print_value(item);
+}
+
+/* What was found, a line for each figure: its unit is the end of its name. */
+static void print_figures(json_t *o)
+{
+    const char *section, *key;
+    json_t *figures, *value;
+    json_object_foreach(o, section, figures)
+    {
+        if (strcmp(section, "faults") == 0 || strcmp(section, "warnings") == 0)
+            continue;
+        printf("%s", section);
+        if (!json_is_object(figures))
+            print_value(figures);
+        json_object_foreach(figures, key, value)
+        {
+            printf("\n  %-24s", key);
+            print_value(value);
+        }
+        putchar('\n');
+    }
+}
+
 static Status verdict(const Args *args, const Check *c, Err *err)
 {
     const int faults = (int)json_array_size(c->faults), warnings = (int)json_array_size(c->warnings);
@@ -362,6 +343,8 @@ static Status verdict(const Args *args, const Check *c, Err *err)
         return fail(err, c->fatal, "%s: could not be checked", args->operand);
     if (c->as_json)
         TRY(show_json(json_incref(c->out), err));
+    else
+        print_figures(c->out);
     if (faults)
         return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
     if (!c->as_json && warnings)
@@ -373,6 +356,10 @@ static Status verdict(const Args *args, const Check *c, Err *err)
 
 static Status run(const Args *args, Err *err)
 {
+    if (args_has(args, "--self"))
+        return selftest(args_has(args, "--json"), err);
+    if (!args->operand)
+        return fail(err, STATUS_USAGE, "imtet check needs a CONFIG, or --self; for example: %s", CMD_CHECK.example);
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
     Settings s, defaults;
     c.faults = json_array();
@@ -395,15 +382,18 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    OPTIONS_MOTION, {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
-    OPTION_JSON,    OPTION_SET,
+    OPTIONS_MOTION,
+    {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
+    OPTION_JSON,
+    OPTION_SET,
+    {"--self", NULL, NULL, 0, "does this build give the stored answers? Exit status 70 where one differs"},
     OPTION_END,
 };
 
 const Command CMD_CHECK = {
     .name = "check",
     .group = GROUP_PREPARE,
-    .operand = "CONFIG",
+    .operand = "[CONFIG]",
     .summary = "what a configuration describes, what is wrong with it and what is implausible",
     .example = "imtet check configs/quick.ini",
     .details =
@@ -412,7 +402,10 @@ const Command CMD_CHECK = {
         "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
         "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"
         "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
-        "samples. --json: the same as an object, faults and warnings as arrays.",
+        "samples. --json: the same as an object, faults and warnings as arrays.\n"
+        "--self: five simulations of the built-in buildings and a search on a textbook problem are compared with "
+        "stored\n"
+        "answers, within tolerances that hold for every instruction set.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -234,6 +234,7 @@ static json_t *describe(const Run *run, const Picks *p)
 static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
 {
     const char *csv = args_value(args, "--csv");
+    const int as_json = args_has(args, "--json"), as_table = !csv && !as_json;
     if (csv)
         TRY(write_csv(run, p, csv, err));
     if (args_has(args, "--json"))
@@ -242,9 +243,8 @@ static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
         show_table(run, p);
     if (p->n_left == 0)
         return fail(err, STATUS_UNMET,
-                    "no design of the front is within the limits; `imtet optimize` with "
-                    "search.limits looks for some");
-    if (!csv && !args_has(args, "--json"))
+                    "no design of the front is within the limits; `imtet optimize` with search.limits looks for some");
+    if (as_table)
         show_variables(run, p);
     return STATUS_OK;
 }

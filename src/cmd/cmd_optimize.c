@@ -111,30 +111,20 @@ static void print_front(const Run *run, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
-/* The gaps that at least half of the front has on a bound; nothing where there are none. */
-static void print_gaps(const char *bound, const Schema *schema, const FrontReview *r, const size_t on_bound[])
+/* The gaps, or without a schema the floors, that at least `least` designs have so, behind a heading; nothing where there
+ * is none. */
+static void print_gaps(const char *heading, const Schema *schema, size_t n, const size_t count[], size_t least)
 {
-    size_t n = 0;
-    for (size_t j = 0; j < r->n_gaps; j++)
-        if (2 * on_bound[j] >= r->n_front) {
-            if (n++ == 0)
-                printf("on %s in half of the front or more: ", bound);
-            printf("%s%s", n > 1 ? ", " : "", schema_variable(schema, j)->name);
+    size_t n_named = 0;
+    for (size_t j = 0; j < n; j++)
+        if (count[j] >= least) {
+            printf("%s", n_named++ ? ", " : heading);
+            if (schema)
+                printf("%s", schema_variable(schema, j)->name);
+            else
+                printf("%zu", j + 1);
         }
-    if (n > 0)
-        putchar('\n');
-}
-
-static void print_never_closing(const FrontReview *r)
-{
-    size_t n = 0;
-    for (size_t j = 0; j < r->n_floors; j++)
-        if (r->closes[j] == 0) {
-            if (n++ == 0)
-                printf("gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
-            printf("%s%zu", n > 1 ? ", " : "", j + 1);
-        }
-    if (n > 0)
+    if (n_named > 0)
         putchar('\n');
 }
 
@@ -143,9 +133,16 @@ static void print_review(const Schema *schema, const FrontReview *r)
     if (r->n_gaps == 0)
         return;
     putchar('\n');
-    print_gaps("design.gap_min_m", schema, r, r->at_smallest);
-    print_gaps("design.gap_max_m", schema, r, r->at_largest);
-    print_never_closing(r);
+    const size_t half = (r->n_front + 1) / 2;
+    size_t never[FLOORS_MAX];
+    char heading[100];
+    for (size_t j = 0; j < r->n_floors; j++)
+        never[j] = r->n_simulated - r->closes[j];
+    print_gaps("on design.gap_min_m in half of the front or more: ", schema, r->n_gaps, r->at_smallest, half);
+    print_gaps("on design.gap_max_m in half of the front or more: ", schema, r->n_gaps, r->at_largest, half);
+    snprintf(heading, sizeof heading,
+             "gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
+    print_gaps(heading, NULL, r->n_floors, never, r->n_simulated);
     printf("%zu of %zu designs of the front are beyond the contact law (indentation_ratio above %g)\n", r->n_beyond,
            r->n_front, INDENTATION_RATIO_MAX);
 }
@@ -218,26 +215,10 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     return STATUS_OK;
 }
 
-/* The word as a shell takes it. */
-static void print_quoted(FILE *out, const char *word)
-{
-    if (!word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-")]) {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (; *word; word++)
-        fputs(*word == '\'' ? "'\\''" : (char[]){*word, 0}, out);
-    fputc('\'', out);
-}
-
 static void tell_how_to_resume(const StudySummary *summary)
 {
-    fputs("Resume it with:  ", stderr);
-    print_quoted(stderr, program_invocation_name);
-    fputs(" optimize ", stderr);
-    print_quoted(stderr, summary->folder);
-    fputc('\n', stderr);
+    const char *quote = strpbrk(summary->folder, " '\"$&;()*?<>|") ? "'" : "";
+    fprintf(stderr, "Resume it with:  %s optimize %s%s%s\n", program_invocation_name, quote, summary->folder, quote);
 }
 
 /* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */

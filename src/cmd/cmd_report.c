@@ -112,7 +112,6 @@ static const ArgOption OPTIONS[] = {
     OPTION_MOVED,
     OPTION_CHANNEL,
     OPTION_PGA,
-    OPTION_STRETCH,
     OPTION_UNIT,
     OPTION_END,
 };
@@ -131,7 +130,7 @@ const Command CMD_REPORT = {
                "as a table\n"
                "and as CSV; the growth of the hypervolume; of one design, simulated again, its gaps, peaks, forces, "
                "energies,\n"
-               "the displacement of a floor, and other earthquakes. --pga, --stretch, --unit and --channel are for "
+               "the displacement of a floor, and other earthquakes. --pga, --unit and --channel are for "
                "those; else\n"
                "they are scaled as the run's own. `imtet serve` shows the same page live.",
     .options = OPTIONS,

@@ -1,18 +1,29 @@
+#include <errno.h>
+#include <limits.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "cmd/commands.h"
 #include "settings/settings.h"
+#include "store/output.h"
 
 static Status run(const Args *args, Err *err)
 {
-    (void)args;
-    (void)err;
+    const int is_basic = args_has(args, "--basic");
     Settings s;
+    (void)err;
     settings_defaults(&s);
-    printf("; Every setting of imtet with its default. A setting that is left out of a file keeps this value.\n\n");
-    settings_write(&s, stdout, 1);
+    printf("; %s with its default. A setting that is left out of a file keeps this value.\n\n",
+           is_basic ? "What a first study touches, each" : "Every setting of imtet");
+    settings_write(&s, stdout, is_basic ? SETTINGS_BASIC : SETTINGS_DESCRIBED);
     return STATUS_OK;
 }
 
-static const ArgOption OPTIONS[] = {OPTION_END};
+static const ArgOption OPTIONS[] = {
+    {"--basic", NULL, NULL, 0, "only those that a first study touches"},
+    OPTION_END,
+};
 
 const Command CMD_SETTINGS = {
     .name = "settings",
@@ -22,5 +33,42 @@ const Command CMD_SETTINGS = {
     .details = "Prints every setting with its default, preceded by its meaning, unit and range: a valid configuration.",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
+};
+
+static Status begin(const Args *args, Err *err)
+{
+    static const char NAME[] = "study.ini";
+    char path[PATH_MAX];
+    Settings s;
+    Output o;
+    settings_defaults(&s);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    if (snprintf(path, sizeof path, "%s/%s", args->operand, NAME) >= (int)sizeof path)
+        return fail(err, STATUS_USAGE, "%.60s...: the path is too long", args->operand);
+    if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
+        return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
+    if (access(path, F_OK) == 0)
+        return fail(err, STATUS_USAGE, "%s: is there already; name another folder", path);
+    TRY(output_open(&o, path, err));
+    fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
+    settings_write(&s, o.stream, SETTINGS_BASIC);
+    TRY(output_close(&o, err));
+    printf("%s: edit it, then `imtet check %s` and `imtet optimize %s`\n", path, path, path);
+    return STATUS_OK;
+}
+
+static const ArgOption NEW_OPTIONS[] = {OPTION_RECORD, OPTION_PGA, OPTION_SET, OPTION_END};
+
+const Command CMD_NEW = {
+    .name = "new",
+    .group = GROUP_PREPARE,
+    .operand = "FOLDER",
+    .summary = "begin a study: a folder with the fifteen settings that a first one touches",
+    .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
+    .details = "Writes FOLDER/study.ini, each setting after its meaning, unit and range.",
+    .options = NEW_OPTIONS,
+    .run = begin,
     .only_reads = 1,
 };

@@ -2,7 +2,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/json.h"
 #include "base/units.h"
@@ -105,13 +104,9 @@ static const double *errors_of(const Job *job, size_t i)
 
 static json_t *describe(const Job *job, size_t i, const Motion *m)
 {
-    json_t *o = json_object();
-    json_object_set_new(o, "design", json_integer(number_of(job, i)));
-    json_object_set_new(o, "record", json_words(m->name));
-    json_object_set_new(o, "pga_g", json_number(motion_peak(m) / GRAVITY));
-    json_object_set_new(o, "scale", json_number(m->scale));
-    json_object_set_new(o, "stretch", json_number(m->stretch));
-    json_object_set_new(o, "processed", json_words(m->processed));
+    json_t *o = json_pack("{s:I, s:o, s:f, s:f, s:f, s:o}", "design", (json_int_t)number_of(job, i), "record",
+                          json_words(m->name), "pga_g", motion_peak(m) / GRAVITY, "scale", m->scale, "stretch",
+                          m->stretch, "processed", json_words(m->processed));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
         json_object_set_new(o, "estimated_error", json_errors(errors_of(job, i)));
@@ -142,10 +137,8 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     fprintf(o.stream, ",outcome\n");
     for (size_t i = 0; i < job->n; i++) {
         fprintf(o.stream, "%ld", number_of(job, i));
-        for (int k = 0; k < N_MEASURES; k++) {
-            fputc(',', o.stream);
-            print_number(o.stream, measure_value(&job->results[i], k));
-        }
+        for (int k = 0; k < N_MEASURES; k++)
+            print_cells(o.stream, 1, (const double[]){measure_value(&job->results[i], k)});
         if (job->has_parts)
             write_replicates(o.stream, &job->summary[i]);
         fprintf(o.stream, ",%s\n", outcome_word(measure_outcome(job->results[i].outcome)));
@@ -174,24 +167,15 @@ static void print_table(const Job *job, const Settings *s, const Tower *t)
     }
 }
 
-/* On standard error, where no table says it. */
-static void warn_of_motions(const Tower *t)
-{
-    for (size_t i = 0; i < tower_n_records(t); i++) {
-        const Motion *m = &tower_record(t, i)->motion;
-        if (m->warning[0])
-            fprintf(stderr, "%s: warning: %s\n", m->name, m->warning);
-    }
-}
-
 static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
 {
-    if (args_has(args, "--csv") || args_has(args, "--json"))
-        warn_of_motions(t);
+    const Motion *m = &tower_record(t, 0)->motion;
+    if (m->warning[0] && (args_has(args, "--csv") || args_has(args, "--json"))) /* where no table says it */
+        fprintf(stderr, "%s: warning: %s\n", m->name, m->warning);
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
-        return print_json(job, &tower_record(t, 0)->motion, err);
+        return print_json(job, m, err);
     if (!args_has(args, "--csv") && !outputs_standard(args, 0))
         print_table(job, s, t);
     return STATUS_OK;
@@ -208,24 +192,16 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
 {
     const char *contacts = args_value(args, "--contacts"), *history = args_value(args, "--history");
     const char *spectra = args_value(args, "--floor-spectra");
-    TimeJob times = {
-        .scene = w->scene, .motion = &w->motion, .n = job->n, .tasks = job->tasks, .results = job->results};
-    if (!contacts && !history && !spectra)
-        return STATUS_OK;
+    TimeJob times = {.scene = w->scene,
+                     .motion = &w->motion,
+                     .n = job->n,
+                     .tasks = job->tasks,
+                     .results = job->results,
+                     .id = job->designs.id};
     TRY(every_of(args, &times.every_s, err));
-    long *number = calloc(job->n, sizeof *number);
-    if (!number)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", job->n);
-    for (size_t i = 0; i < job->n; i++)
-        number[i] = number_of(job, i);
-    times.number = number;
-    Status status = contacts ? write_contacts(&times, contacts, err) : STATUS_OK;
-    if (status == STATUS_OK && history)
-        status = write_histories(&times, history, err);
-    if (status == STATUS_OK && spectra)
-        status = write_floor_spectra(&times, spectra, err);
-    free(number);
-    return status;
+    TRY(contacts ? write_contacts(&times, contacts, err) : STATUS_OK);
+    TRY(history ? write_histories(&times, history, err) : STATUS_OK);
+    return spectra ? write_floor_spectra(&times, spectra, err) : STATUS_OK;
 }
 
 static const char *const TIMES[] = {"--history", "--contacts", "--floor-spectra"};
@@ -254,26 +230,17 @@ static Status check_times(const Args *args, const Job *job, Err *err)
 /* Rows of a history that are a mistake: some 20 GB for 20 floors. */
 static const double ROWS_MAX = 1e7;
 
-/* Before the first simulation: does the history fit, can the files be written? */
-static Status check_time_files(const Args *args, const Job *job, const Scenario *w, Err *err)
+/* Before the first simulation: does the history fit? */
+static Status check_history(const Args *args, const Job *job, const Scenario *w, Err *err)
 {
     double every_s;
     TRY(every_of(args, &every_s, err));
     const double own = w->options.sim.duration_s, all = (double)(w->motion.n - 1) * w->motion.dt_s;
     const double rows = every_s > 0 ? (double)job->n * (own > 0 ? own : all) / every_s : 0;
-    if (rows > ROWS_MAX)
-        return fail(err, STATUS_USAGE, "--every %g: a history of %.3g rows, %g at most; give a longer step", every_s,
-                    rows, ROWS_MAX);
-    for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++) {
-        const char *path = args_value(args, TIMES[i]);
-        struct stat is;
-        Output o;
-        if (!path || strcmp(path, "-") == 0 || (stat(path, &is) == 0 && !S_ISREG(is.st_mode) && !S_ISDIR(is.st_mode)))
-            continue;
-        TRY(output_open(&o, path, err));
-        output_abandon(&o);
-    }
-    return STATUS_OK;
+    return rows <= ROWS_MAX
+               ? STATUS_OK
+               : fail(err, STATUS_USAGE, "--every %g: a history of %.3g rows, %g at most; give a longer step", every_s,
+                      rows, ROWS_MAX);
 }
 
 /* -- the predictability horizon ------------------------------------------------------------------------------------ */
@@ -366,7 +333,7 @@ static Status run(const Args *args, Err *err)
     building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
     Status status = lay_out_job(args, &job, scene_design(w->scene), err);
     if (status == STATUS_OK)
-        status = check_time_files(args, &job, w, err);
+        status = check_history(args, &job, w, err);
     if (status == STATUS_OK)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)
@@ -397,8 +364,6 @@ static const ArgOption OPTIONS[] = {
     {"--horizon", NULL, NULL, 0,
      "predictability horizon: the time until two runs that hardly differ diverge; standard deviation of every result"},
     OPTIONS_MOTION,
-    OPTION_DURATION,
-    OPTION_ENGINE,
     OPTION_JSON,
     OPTION_CSV,
     {"--contacts", "FILE", NULL, 0, "one row per contact: time, floor, side, speeds, force, duration, energy lost"},

@@ -453,7 +453,6 @@ static const ArgOption OPTIONS[] = {
     OPTION_CHANNEL,
     OPTION_UNIT,
     OPTION_PGA,
-    OPTION_STRETCH,
     OPTION_SET,
     OPTION_JSON,
     OPTION_CSV,
@@ -467,7 +466,7 @@ const Command CMD_SPECTRUM = {
     .group = GROUP_PREPARE,
     .operand = "MOTION...",
     .summary = "response spectrum, peak, duration and Arias intensity of ground motions",
-    .example = "imtet spectrum builtin:kobe-like --pga 0.3 --stretch 3.1",
+    .example = "imtet spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1",
     .details = "MOTION is a file (the formats of docs/motions.md) or\n"
                "builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like. It is taken as recorded unless an "
                "option\n"

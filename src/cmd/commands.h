@@ -17,8 +17,8 @@
     X(BUILDING)                                                                                                        \
     X(SPECTRUM)                                                                                                        \
     X(PROBLEM)                                                                                                         \
-    X(SELFTEST)                                                                                                        \
     X(CHECK)                                                                                                           \
+    X(NEW)                                                                                                             \
     X(SETTINGS)
 
 #define X(name) extern const Command CMD_##name;

@@ -1,11 +1,10 @@
 #include "cmd/manual.h"
 
-#include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cmd/commands.h"
 #include "store/provenance.h"
-#include "settings/settings.h"
 
 #define X(name) &CMD_##name,
 static const Command *const COMMANDS[] = {COMMAND_LIST(X)};
@@ -30,6 +29,7 @@ static const struct {
     {"horizon", "simulate", "--horizon"},
     {"verify", "evaluate", "--full-model"},
     {"plot", "report", "--pictures=pictures"},
+    {"selftest", "check", "--self"},
 };
 
 static const Command *command_of(const char *name)
@@ -89,7 +89,7 @@ void usage_write(FILE *out)
 
 /* ---- for man --------------------------------------------------------------------------------------------------- */
 
-/* Text in which roff finds nothing of its own; a line's first character is the text's. */
+/* Text in which roff finds nothing of its own. */
 static void roff(FILE *out, const char *text)
 {
     int first = 1;
@@ -104,115 +104,27 @@ static void roff(FILE *out, const char *text)
     }
 }
 
-static void roff_example(FILE *out, const char *example)
+/* What the terminal shows, under a title and a name for `man` and `apropos`. */
+Status manual_write(const Command *c, FILE *out, Err *err)
 {
-    fputs(".PP\n.nf\n", out);
-    roff(out, example);
-    fputs("\n.fi\n", out);
-}
-
-static void roff_title(FILE *out, const Command *c)
-{
-    char name[40];
+    char name[40], *text = NULL;
+    size_t size;
+    FILE *help = open_memstream(&text, &size);
+    if (!help)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a manual page");
+    if (c)
+        command_help(c, help);
+    else
+        usage_write(help);
+    fclose(help);
     snprintf(name, sizeof name, "imtet%s%s", c ? "-" : "", c ? c->name : "");
-    fputs(".TH ", out);
-    for (const char *p = name; *p; p++)
-        fputc(toupper((unsigned char)*p), out);
-    fprintf(out, " 1 \"\" \"imtet %s\" \"User commands\"\n.SH NAME\n", program_version());
+    fprintf(out, ".TH \"%s\" 1 \"\" \"imtet %s\" \"User commands\"\n.SH NAME\n", name, program_version());
     roff(out, name);
     fputs(" \\- ", out);
     roff(out, c ? c->summary : "earthquake protection by impacts between a tower and an inner core");
-    fputc('\n', out);
-}
-
-static void roff_options(FILE *out, const Command *c)
-{
-    fputs(".SH OPTIONS\n", out);
-    for (const ArgOption *o = c->options; o->name; o++) {
-        fputs(".TP\n.B ", out);
-        roff(out, o->name);
-        if (o->value) {
-            fputs(" \\fI", out);
-            roff(out, o->value);
-            fputs("\\fR", out);
-        }
-        fputc('\n', out);
-        roff(out, o->help);
-        if (o->setting) {
-            fputs("; the setting ", out);
-            roff(out, o->setting);
-        }
-        fputs(".\n", out);
-    }
-    fputs(".TP\n.B \\-\\-help\nThe same on the terminal.\n", out);
-}
-
-static void roff_settings(FILE *out)
-{
-    char line[2048];
-    Settings s;
-    FILE *f = tmpfile();
-    settings_defaults(&s);
-    fputs(".SH SETTINGS\n.nf\n", out);
-    if (f) {
-        settings_write(&s, f, 1);
-        rewind(f);
-    }
-    while (f && fgets(line, sizeof line, f))
-        roff(out, line);
-    if (f)
-        fclose(f);
-    fputs(".fi\n", out);
-}
-
-static void roff_ending(FILE *out)
-{
-    fputs(".SH EXIT STATUS\n", out);
-    for (int s = 0; s < STATUS_COUNT; s++) {
-        fprintf(out, ".TP\n.B %d\n", status_exit_code((Status)s));
-        roff(out, status_words((Status)s));
-        fputs("\n", out);
-    }
-    fputs(".SH SEE ALSO\n.BR imtet (1)", out);
-    for (int i = 0; i < N_COMMANDS; i++)
-        fprintf(out, ",\n.BR imtet\\-%s (1)", COMMANDS[i]->name);
-    fputc('\n', out);
-}
-
-static void manual_of_all(FILE *out)
-{
-    fputs(".SH SYNOPSIS\n.B imtet\n.I COMMAND\n[\\fIoperand\\fR] [\\fIoptions\\fR]\n.SH EXAMPLES\n", out);
-    for (int i = 0; i < FIRST_EXAMPLES; i++)
-        roff_example(out, COMMANDS[i]->example);
-    fputs(".SH COMMANDS\n", out);
-    for (int i = 0; i < N_COMMANDS; i++) {
-        fprintf(out, ".TP\n.B %s \\fI%s\\fR\n", COMMANDS[i]->name, operand_of(COMMANDS[i]));
-        roff(out, COMMANDS[i]->summary);
-        fputs("\n", out);
-    }
-    fputs(".TP\n.B help \\fICOMMAND\\fR\nits example and options\n.TP\n.B \\-\\-version \\fR[\\fB\\-\\-json\\fR]\n"
-          "what this program was built from\n",
-          out);
-}
-
-void manual_write(const Command *c, FILE *out)
-{
-    roff_title(out, c);
-    if (!c) {
-        manual_of_all(out);
-        roff_ending(out);
-        return;
-    }
-    fprintf(out, ".SH SYNOPSIS\n.B imtet %s\n", c->name);
-    if (c->operand)
-        fprintf(out, ".I %s\n", c->operand);
-    fputs("[\\fIoptions\\fR]\n.SH EXAMPLE\n", out);
-    roff_example(out, c->example);
-    fputs(".SH DESCRIPTION\n", out);
-    roff(out, c->details);
-    fputc('\n', out);
-    roff_options(out, c);
-    if (c == &CMD_SETTINGS)
-        roff_settings(out);
-    roff_ending(out);
+    fputs("\n.SH DESCRIPTION\n.nf\n", out);
+    roff(out, text);
+    fprintf(out, ".fi\n.SH SEE ALSO\n.BR imtet%s (1)\n", c ? "" : "\\-optimize");
+    free(text);
+    return STATUS_OK;
 }

@@ -1,5 +1,5 @@
 /* cmd/outputs.h -- the files that a command writes. None of them is one that it reads, by the command line or by the
- * settings, nor another that it writes, nor one that a run keeps (folder_keeps) or that no one may write.
+ * settings, nor one that a run keeps (folder_keeps).
  *
  * Errors  STATUS_USAGE, with the option and the file */
 #ifndef IMTET_CMD_OUTPUTS_H

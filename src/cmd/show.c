@@ -1,7 +1,7 @@
 #include "cmd/show.h"
 
 #include <math.h>
-
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -9,154 +9,168 @@
 #include "moga/hypervolume.h"
 #include "store/output.h"
 
-static const char *scene_word(SceneKind kind)
+/* What a figure is, and what it takes to have it. */
+typedef enum { OF_NUMBER, OF_LONG, OF_INT, OF_STOREY, OF_FLAG, OF_FLOORS, OF_MODES, OF_SIDES, OF_COUNTS } FieldKind;
+enum {
+    IF_FORCES = 1,
+    IF_CORE = 2,
+    IF_CONTACTS = 4,
+    IF_STRESS = 8,
+    IF_BUCKLING = 16,
+    IF_DEVICE = 32,
+    IF_BUMPER = 64,
+    IN_CORE = IF_FORCES | IF_CORE
+};
+
+#define FIELD(kind, needs, field)                                                                                      \
+    {                                                                                                                  \
+#field, kind, needs, offsetof(SimResult, field)                                                                \
+    }
+#define FORCE(kind, needs, field)                                                                                      \
+    {                                                                                                                  \
+#field, kind, needs, offsetof(SimResult, forces.field)                                                         \
+    }
+#define NAMED(name, kind, needs, field)                                                                                \
+    {                                                                                                                  \
+        name, kind, needs, offsetof(SimResult, field)                                                                  \
+    }
+static const struct {
+    const char *name;
+    FieldKind kind;
+    unsigned needs;
+    size_t at;
+} FIELDS[] = {
+    FIELD(OF_LONG, 0, impacts),
+    FIELD(OF_NUMBER, IF_DEVICE, stroke_m),
+    FIELD(OF_NUMBER, IF_DEVICE, dashpot_n),
+    FIELD(OF_LONG, 0, v0_limited),
+    FIELD(OF_NUMBER, 0, settled_s),
+    FIELD(OF_INT, 0, repeated),
+    FIELD(OF_FLOORS, 0, peak_displacement_m),
+    FIELD(OF_FLOORS, 0, peak_drift_m),
+    FIELD(OF_FLOORS, 0, peak_acceleration_g),
+    FIELD(OF_STOREY, 0, drift_ratio_storey),
+    NAMED("peak_drift_ratio", OF_FLOORS, 0, drift_ratio),
+    FIELD(OF_MODES, 0, mode_share_pct),
+    FORCE(OF_NUMBER, IF_FORCES, building_overturning_nm),
+    FORCE(OF_FLOORS, IF_FORCES, building_shear_n),
+    FORCE(OF_NUMBER, IF_FORCES, base_shear_ratio),
+    FORCE(OF_NUMBER, IF_FORCES, overturning_nm),
+    FORCE(OF_FLOORS, IF_FORCES, peak_velocity_m_s),
+    FORCE(OF_NUMBER, IN_CORE, core_top_m),
+    FORCE(OF_FLOORS, IN_CORE, core_shear_n),
+    FORCE(OF_FLOORS, IN_CORE, core_moment_nm),
+    FORCE(OF_STOREY, IN_CORE | IF_STRESS, core_stress_storey),
+    FORCE(OF_FLOORS, IN_CORE | IF_STRESS, core_storey_stress_pa),
+    FORCE(OF_NUMBER, IN_CORE | IF_STRESS, core_shear_stress_pa),
+    FORCE(OF_FLOORS, IN_CORE | IF_BUCKLING, core_slenderness),
+    FORCE(OF_FLOORS, IN_CORE | IF_BUCKLING, core_buckling_pa),
+    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, contact_force_n),
+    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, contact_impulse_ns),
+    FORCE(OF_COUNTS, IF_FORCES | IF_CONTACTS, contacts),
+    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, indentation_m),
+    FIELD(OF_NUMBER, 0, damped_building_j),
+    FIELD(OF_NUMBER, 0, damped_core_j),
+    FIELD(OF_NUMBER, 0, kinetic_strain_j),
+    FIELD(OF_NUMBER, 0, contact_loss_j),
+    FIELD(OF_NUMBER, 0, contact_stored_j),
+    FIELD(OF_NUMBER, 0, clamp_j),
+    FIELD(OF_NUMBER, 0, indentation_max_m),
+    FIELD(OF_FLAG, 0, contact_yields),
+    FIELD(OF_NUMBER, IF_BUMPER, bumper_compression_m),
+    FIELD(OF_NUMBER, IF_BUMPER, bumper_strain),
+    FIELD(OF_FLAG, IF_BUMPER, bumper_bottoms_out),
+    FIELD(OF_LONG, 0, steps),
+    FIELD(OF_LONG, 0, force_evaluations),
+    FIELD(OF_NUMBER, 0, seconds),
+};
+
+static json_t *json_counts(size_t n, const long counts[])
 {
+    json_t *list = json_array();
+    for (size_t i = 0; i < n; i++)
+        list = json_append(list, json_real((double)counts[i]));
+    return list;
+}
+
+static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
+{
+    const double *of = at;
+    const long *counts = at;
+    const int *whole = at;
+    const size_t n = (size_t)r->n_floors;
     switch (kind) {
-    case SCENE_IMPACT:
-        return "impact";
-    case SCENE_NO_CORE:
-        return "no_core";
-    case SCENE_RIGID:
-        return "rigid";
-    case SCENE_TMD:
-        return "tmd";
-    case SCENE_LINKS:
-        return "links";
-    case N_SCENES:
-        break;
+    case OF_NUMBER:
+        return json_number(*of);
+    case OF_LONG:
+        return json_integer(*counts);
+    case OF_INT:
+        return json_integer(*whole);
+    case OF_STOREY:
+        return json_integer(*whole + 1);
+    case OF_FLAG:
+        return json_boolean(*whole);
+    case OF_FLOORS:
+        return json_numbers(n, of);
+    case OF_MODES:
+        return json_numbers((size_t)r->n_modes, of);
+    case OF_SIDES: /* [u > v, u < v][floor] */
+        return json_pack("[o, o]", json_numbers(n, of), json_numbers(n, of + FLOORS_MAX));
+    case OF_COUNTS:
+        return json_pack("[o, o]", json_counts(n, counts), json_counts(n, counts + FLOORS_MAX));
     }
-    return "unknown";
-}
-
-/* [u > v, u < v][floor] */
-static json_t *json_sides(int n, const double of[SIDES][FLOORS_MAX])
-{
-    return json_pack("[o, o]", json_numbers((size_t)n, of[0]), json_numbers((size_t)n, of[1]));
-}
-
-static void add_contact_forces(json_t *o, int n, const SimForces *f)
-{
-    double count[SIDES][FLOORS_MAX] = {{0}};
-    for (int side = 0; side < SIDES; side++)
-        for (int j = 0; j < n; j++)
-            count[side][j] = (double)f->contacts[side][j];
-    json_object_set_new(o, "contact_force_n", json_sides(n, f->contact_force_n));
-    json_object_set_new(o, "contact_impulse_ns", json_sides(n, f->contact_impulse_ns));
-    json_object_set_new(o, "contacts", json_sides(n, count));
-    json_object_set_new(o, "indentation_m", json_sides(n, f->indentation_m));
-}
-
-static void add_core_forces(json_t *o, size_t n, const SimForces *f)
-{
-    json_object_set_new(o, "core_top_m", json_number(f->core_top_m));
-    json_object_set_new(o, "core_shear_n", json_numbers(n, f->core_shear_n));
-    json_object_set_new(o, "core_moment_nm", json_numbers(n, f->core_moment_nm));
-    if (f->stress_known) {
-        json_object_set_new(o, "core_stress_storey", json_integer(f->core_stress_storey + 1));
-        json_object_set_new(o, "core_storey_stress_pa", json_numbers(n, f->core_storey_stress_pa));
-        json_object_set_new(o, "core_shear_stress_pa", json_number(f->core_shear_stress_pa));
-    }
-    if (f->buckling_known) {
-        json_object_set_new(o, "core_slenderness", json_numbers(n, f->core_slenderness));
-        json_object_set_new(o, "core_buckling_pa", json_numbers(n, f->core_buckling_pa));
-    }
-}
-
-static void add_building_forces(json_t *o, size_t n, const SimForces *f)
-{
-    json_object_set_new(o, "building_overturning_nm", json_number(f->building_overturning_nm));
-    json_object_set_new(o, "building_shear_n", json_numbers(n, f->building_shear_n));
-    json_object_set_new(o, "base_shear_ratio", json_number(f->base_shear_ratio));
-    json_object_set_new(o, "overturning_nm", json_number(f->overturning_nm));
-    json_object_set_new(o, "peak_velocity_m_s", json_numbers(n, f->peak_velocity_m_s));
-}
-
-static void add_forces(json_t *o, SceneKind kind, int n, const SimForces *f)
-{
-    add_building_forces(o, (size_t)n, f);
-    if (kind != SCENE_NO_CORE && kind != SCENE_TMD)
-        add_core_forces(o, (size_t)n, f);
-    if (kind == SCENE_IMPACT)
-        add_contact_forces(o, n, f);
-}
-
-static void add_peaks(json_t *o, const SimResult *r)
-{
-    const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
-    json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
-    json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
-    json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
-    json_object_set_new(o, "peak_filtered_g",
-                        r->filtered_known ? json_numbers(n_floors, r->peak_filtered_g) : json_null());
-    json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
-    json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
-    json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
+    return NULL;
 }
 
 json_t *json_result(SceneKind kind, const SimResult *r)
 {
-    json_t *o = json_object();
-    json_object_set_new(o, "scene", json_string(scene_word(kind)));
-    json_object_set_new(o, "outcome", json_string(outcome_word(measure_outcome(r->outcome))));
-    json_object_set_new(o, "reason", json_string(r->reason));
+    static const char *const SCENES[N_SCENES] = {[SCENE_IMPACT] = "impact",
+                                                 [SCENE_NO_CORE] = "no_core",
+                                                 [SCENE_RIGID] = "rigid",
+                                                 [SCENE_TMD] = "tmd",
+                                                 [SCENE_LINKS] = "links"};
+    const int has_device = kind == SCENE_TMD || kind == SCENE_LINKS;
+    const unsigned has = (r->forces_known ? IF_FORCES : 0u) |
+                         (kind != SCENE_NO_CORE && kind != SCENE_TMD ? IF_CORE : 0u) |
+                         (kind == SCENE_IMPACT ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
+                         (r->forces.buckling_known ? IF_BUCKLING : 0u) | (has_device ? IF_DEVICE : 0u) |
+                         (r->bumper_strain > 0 ? IF_BUMPER : 0u);
+    json_t *o = json_pack("{s:s, s:s, s:s}", "scene", SCENES[kind], "outcome",
+                          outcome_word(measure_outcome(r->outcome)), "reason", r->reason);
     for (int k = 0; k < N_MEASURES; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
-    json_object_set_new(o, "impacts", json_integer(r->impacts));
     json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
-    if (kind == SCENE_TMD || kind == SCENE_LINKS) {
-        json_object_set_new(o, "stroke_m", json_number(r->stroke_m));
-        json_object_set_new(o, "dashpot_n", json_number(r->dashpot_n));
-    }
-    json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
-    json_object_set_new(o, "settled_s", json_number(r->settled_s));
-    json_object_set_new(o, "repeated", json_integer(r->repeated));
-    add_peaks(o, r);
-    if (r->forces_known)
-        add_forces(o, kind, r->n_floors, &r->forces);
+    json_object_set_new(o, "peak_filtered_g",
+                        r->filtered_known ? json_numbers((size_t)r->n_floors, r->peak_filtered_g) : json_null());
+    for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++)
+        if (!(FIELDS[i].needs & ~has))
+            json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
+    return o;
+}
 
-    json_object_set_new(o, "damped_building_j", json_number(r->damped_building_j));
-    json_object_set_new(o, "damped_core_j", json_number(r->damped_core_j));
-    json_object_set_new(o, "kinetic_strain_j", json_number(r->kinetic_strain_j));
-    json_object_set_new(o, "contact_loss_j", json_number(r->contact_loss_j));
-    json_object_set_new(o, "contact_stored_j", json_number(r->contact_stored_j));
-    json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
-    json_object_set_new(o, "indentation_max_m", json_number(r->indentation_max_m));
-    json_object_set_new(o, "contact_yields", json_boolean(r->contact_yields));
-    if (r->bumper_strain > 0) {
-        json_object_set_new(o, "bumper_compression_m", json_number(r->bumper_compression_m));
-        json_object_set_new(o, "bumper_strain", json_number(r->bumper_strain));
-        json_object_set_new(o, "bumper_bottoms_out", json_boolean(r->bumper_bottoms_out));
-    }
-    json_object_set_new(o, "steps", json_integer(r->steps));
-    json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
-    json_object_set_new(o, "seconds", json_number(r->seconds));
+static json_t *json_measures(const double values[], int omits)
+{
+    json_t *o = json_object();
+    for (int k = 0; k < N_MEASURES; k++)
+        if (!omits || isfinite(values[k]))
+            json_object_set_new(o, measure(k)->name, json_number(values[k]));
     return o;
 }
 
 json_t *json_errors(const double error[])
 {
-    json_t *o = json_object();
-    for (int k = 0; k < N_MEASURES; k++)
-        if (isfinite(error[k]))
-            json_object_set_new(o, measure(k)->name, json_number(error[k]));
-    return o;
+    return json_measures(error, 1);
 }
 
 json_t *json_replicates(const ReplicateSummary *r)
 {
-    json_t *o = json_object(), *mean = json_object(), *sd = json_object();
-    for (int k = 0; k < N_MEASURES; k++) {
-        json_object_set_new(mean, measure(k)->name, json_number(r->n_failed ? NAN : r->mean[k]));
-        json_object_set_new(sd, measure(k)->name, json_number(r->n_failed ? NAN : r->sd[k]));
-    }
-    json_object_set_new(o, "n", json_integer((json_int_t)r->n_replicates));
-    json_object_set_new(o, "records", json_integer((json_int_t)r->n_records));
-    json_object_set_new(o, "failed", json_integer((json_int_t)r->n_failed));
-    json_object_set_new(o, "spread", json_string(r->spread));
-    json_object_set_new(o, "rule", json_string(r->rule));
-    json_object_set_new(o, "mean", mean);
-    json_object_set_new(o, "sd", sd);
-    return o;
+    double unknown[N_MEASURES];
+    for (int k = 0; k < N_MEASURES; k++)
+        unknown[k] = NAN;
+    return json_pack("{s:I, s:I, s:I, s:s, s:s, s:o, s:o}", "n", (json_int_t)r->n_replicates, "records",
+                     (json_int_t)r->n_records, "failed", (json_int_t)r->n_failed, "spread", r->spread, "rule", r->rule,
+                     "mean", json_measures(r->n_failed ? unknown : r->mean, 0), "sd",
+                     json_measures(r->n_failed ? unknown : r->sd, 0));
 }
 
 Status show_json(json_t *all, Err *err)

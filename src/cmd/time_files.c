@@ -29,6 +29,11 @@ static Status write_all(const TimeJob *job, const char *path, void (*write_heade
     return output_end(&o, status, err);
 }
 
+static long number_of(const TimeJob *job, size_t i)
+{
+    return job->id ? job->id[i] : (long)i + 1;
+}
+
 static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *err)
 {
     SimResult result;
@@ -66,12 +71,10 @@ static void print_contacts(FILE *out, long design, const ContactList *list)
 {
     for (size_t i = 0; i < list->n; i++) {
         const SimContact *c = &list->at[i];
-        const double of[] = {c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost};
         fprintf(out, "%ld,%d,%d,%d", design, c->floor + 1, c->side, c->open);
-        for (size_t k = 0; k < sizeof of / sizeof of[0]; k++) {
-            fputc(',', out);
-            print_number(out, of[k]);
-        }
+        print_cells(out, 8,
+                    (const double[]){c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse,
+                                     c->lost});
         fputc('\n', out);
     }
 }
@@ -91,7 +94,7 @@ static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i,
     if (status == STATUS_OK && list.out_of_memory)
         status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for %zu contacts", list.n);
     if (status == STATUS_OK)
-        print_contacts(out, job->number[i], &list);
+        print_contacts(out, number_of(job, i), &list);
     free(list.at);
     return status;
 }
@@ -153,7 +156,7 @@ static Status write_history_of(const TimeJob *job, SimWorker *worker, size_t i, 
 {
     HistoryRows rows = {.worker = worker,
                         .out = out,
-                        .design = job->number[i],
+                        .design = number_of(job, i),
                         .n_floors = scene_n_floors(job->scene),
                         .wanted = job->results[i].repeated + 1};
     sim_worker_sample(worker, job->every_s, write_history_row, &rows);
@@ -231,7 +234,7 @@ static Status spectra_of(const TimeJob *job, FloorSamples *floors, SimWorker *wo
     sim_worker_sample(worker, SAMPLES_S, take_floors, floors);
     TRY(run_again(job, worker, i, err));
     TRY(find_spectra(job, floors->record, T, psa, err));
-    print_spectra(out, job->number[i], scene_n_floors(job->scene), T, psa);
+    print_spectra(out, number_of(job, i), scene_n_floors(job->scene), T, psa);
     return STATUS_OK;
 }
 

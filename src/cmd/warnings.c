@@ -1,5 +1,6 @@
 #include "cmd/warnings.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,48 +46,38 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user)
     warn_of_twins(s, warn, user);
 }
 
-/* "FILE:LINE" of a design file, else the word. */
-static void name_design(const Designs *d, const char *word, size_t i, char *name, size_t size)
+/* "FILE:LINE: " of a design file, else "WORD: "; then what is said of it. */
+__attribute__((format(printf, 6, 7))) static void warn_of_one(const Designs *d, const char *word, size_t i, WarnFn warn,
+                                                              void *user, const char *format, ...)
 {
+    char text[900], line[16] = "";
+    va_list values;
     if (d->line && !d->id)
-        snprintf(name, size, "%s:%d", word, d->line[i]);
-    else
-        snprintf(name, size, "%s", word);
-}
-
-static void warn_of_gaps(const Designs *d, const char *word, WarnFn warn, void *user)
-{
-    char name[600], variable[TABLE_NAME_MAX], text[900];
-    for (size_t i = 0; i < d->n; i++)
-        for (int j = 0; j < d->space.n_gaps; j++) {
-            const double gap = d->x[i * (size_t)d->space.n_var + (size_t)j];
-            if (!(gap > GAP_MAX_M))
-                continue;
-            name_design(d, word, i, name, sizeof name);
-            design_variable_name(&d->space, j, variable);
-            snprintf(text, sizeof text, "%s: %s is %g m and does not close; gaps are in metres", name, variable, gap);
-            warn("--design", text, user);
-            return;
-        }
-}
-
-static void warn_of_top_heavy(const Designs *d, const char *word, WarnFn warn, void *user)
-{
-    char name[600], text[900];
-    for (size_t i = 0; i < d->n && d->space.n_walls > 0; i++) {
-        const double *wall = &d->x[i * (size_t)d->space.n_var + (size_t)d->space.n_gaps];
-        if (!(wall[1] > wall[0]))
-            continue;
-        name_design(d, word, i, name, sizeof name);
-        snprintf(text, sizeof text, "%s: t_top_m %g is thicker than t_base_m %g; the search would not propose this",
-                 name, wall[1], wall[0]);
-        warn("--design", text, user);
-        return;
-    }
+        snprintf(line, sizeof line, ":%d", d->line[i]);
+    const int n = snprintf(text, sizeof text, "%.600s%s: ", word, line);
+    va_start(values, format);
+    vsnprintf(text + n, sizeof text - (size_t)n, format, values);
+    va_end(values);
+    warn("--design", text, user);
 }
 
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user)
 {
-    warn_of_gaps(d, word, warn, user);
-    warn_of_top_heavy(d, word, warn, user);
+    const DesignSpace *s = &d->space;
+    int has_wide = 0, has_top_heavy = 0;
+    for (size_t i = 0; i < d->n; i++) {
+        const double *gap = &d->x[i * (size_t)s->n_var], *wall = gap + s->n_gaps;
+        for (int j = 0; j < s->n_gaps && !has_wide; j++)
+            if (gap[j] > GAP_MAX_M) {
+                char name[TABLE_NAME_MAX];
+                design_variable_name(s, j, name);
+                has_wide = 1;
+                warn_of_one(d, word, i, warn, user, "%s is %g m and does not close; gaps are in metres", name, gap[j]);
+            }
+        if (s->n_walls > 0 && wall[1] > wall[0] && !has_top_heavy) {
+            has_top_heavy = 1;
+            warn_of_one(d, word, i, warn, user,
+                        "t_top_m %g is thicker than t_base_m %g; the search would not propose this", wall[1], wall[0]);
+        }
+    }
 }

@@ -20,7 +20,7 @@ static json_t *json_of_settings(const Settings *s)
     FILE *stream = open_memstream(&text, &length);
     if (!stream)
         return NULL;
-    settings_write(s, stream, 0);
+    settings_write(s, stream, SETTINGS_PLAIN);
     json_t *string = fclose(stream) == 0 ? json_words(text) : NULL;
     free(text);
     return string;

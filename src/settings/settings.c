@@ -66,13 +66,13 @@ static const Option OPTIONS[] = {
          "a building of the program, an OpenSees model (FILE.tcl), or a folder with K.csv and M.csv, storeys.csv or a "
          "frame "
          "(docs/building.md)",
-         .flags = SETTING_FREE),
+         .flags = SETTING_BASIC | SETTING_FREE),
     CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
            "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
            "such floors"),
     CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
            "modal: building.damping in every mode; rayleigh: in two of them; table: building.damping_table"),
-    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building"),
+    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building", .flags = SETTING_BASIC),
     TEXT(building.rayleigh_modes, "1, 3", "rayleigh: the two modes that have building.damping"),
     TEXT(building.damping_table, "none", "table: damping ratios mode by mode, a comma list; the last for the rest"),
     REAL(building.first_storey_m, "m", "5.4864", 0.1, 100,
@@ -90,10 +90,11 @@ static const Option OPTIONS[] = {
 
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
            "box: square tube of outer side side_m; plate: solid, width_m wide; effective: area and second moment of "
-           "area given"),
+           "area given",
+           .flags = SETTING_BASIC),
     CHOICE(core.theory, CoreTheory, CHOICE_WORDS(CORE_THEORY_LIST), "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
-    REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box"),
+    REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box", .flags = SETTING_BASIC),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "width of the plate"),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),
@@ -113,7 +114,8 @@ static const Option OPTIONS[] = {
     CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
            "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
            "(docs/theory.md)"),
-    REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law"),
+    REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law",
+         .flags = SETTING_BASIC),
     REAL(contact.v0_min_m_s, "m/s", "1e-3", 1e-12, 10,
          "smallest approach speed that the contact law is evaluated with"),
     REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
@@ -129,11 +131,12 @@ static const Option OPTIONS[] = {
          "a bumper compressed by more of its thickness bottoms out: the result says so"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
-         "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_FREE),
+         "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_BASIC | SETTING_FREE),
     PATH_LIST(motion.records, "none",
               "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
               .flags = SETTING_FREE),
-    REAL(motion.pga_g, "g", "0", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded"),
+    REAL(motion.pga_g, "g", "0", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded",
+         .flags = SETTING_BASIC),
     REAL(motion.factor, "-", "1", 1e-6, 1e6, "scaled by this factor; 1: as recorded"),
     REAL(motion.sa_g, "g", "0", 0, 1e6,
          "scaled to this pseudo-acceleration (5 % damping) at motion.sa_period_s; 0: as recorded"),
@@ -162,7 +165,7 @@ static const Option OPTIONS[] = {
     CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
            "preset of step and tolerances, or the relative error of J3 and the shares that is allowed: time of a "
            "simulation against its error (docs/trust.md)",
-           .number = AT_TYPED(sim.tolerance, double), .min = 1e-6, .max = 0.2),
+           .number = AT_TYPED(sim.tolerance, double), .min = 1e-6, .max = 0.2, .flags = SETTING_BASIC),
     REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
     WHOLE(sim.replicates, "1", 1, 1000,
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
@@ -187,10 +190,12 @@ static const Option OPTIONS[] = {
          "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
     WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
     WHOLE(design.bumper_zones, "1", 0, 128, "bumpers of so many zones of floors differ; 1: all are alike; 0: by floor"),
-    REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap"),
-    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap"),
-    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "bound of the search: smallest core thickness"),
-    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "bound of the search: largest core thickness"),
+    REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap", .flags = SETTING_BASIC),
+    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap", .flags = SETTING_BASIC),
+    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "bound of the search: smallest core thickness",
+         .flags = SETTING_BASIC),
+    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "bound of the search: largest core thickness",
+         .flags = SETTING_BASIC),
     REAL(design.bumper_min_n_m, "N/m", "1e7", 1e3, 1e13, "bound of the search: softest bumper"),
     REAL(design.bumper_max_n_m, "N/m", "1e10", 1e3, 1e14, "bound of the search: stiffest bumper"),
     REAL(design.side_min_m, "m", "6", 0.1, 200, "bound of the search: smallest side of the box"),
@@ -224,7 +229,7 @@ static const Option OPTIONS[] = {
          "initial designs: a CSV with a column per variable, or the folder of a run, whose front is taken",
          .flags = SETTING_FREE),
     WHOLE(search.generations, "1000", 1, 1e9, "stop after so many generations", .flags = SETTING_LIMIT),
-    WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_LIMIT),
+    WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_BASIC | SETTING_LIMIT),
     REAL(search.max_hours, "h", "0", 0, 1e4,
          "stop after so many hours; 0: no limit; auto: two minutes before the Slurm job around it ends",
          .words = "auto", .flags = SETTING_LIMIT),
@@ -254,9 +259,10 @@ static const Option OPTIONS[] = {
     TEXT(search.objectives, "auto",
          "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
          "those of them that the building has"),
-    TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none"),
+    TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
+         .flags = SETTING_BASIC),
 
-    PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_FREE | SETTING_OUTPUT),
+    PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),
 };
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
@@ -642,19 +648,24 @@ static void describe(const Option *o, FILE *out)
     fputc('\n', out);
 }
 
-void settings_write(const Settings *s, FILE *out, int described)
+void settings_write(const Settings *s, FILE *out, SettingsForm form)
 {
     const char *section = "";
-    char value[OPTION_TEXT_MAX];
+    char value[OPTION_TEXT_MAX], standard[OPTION_TEXT_MAX];
+    Settings defaults;
+    settings_defaults(&defaults);
     for (int i = 0; i < N_OPTIONS; i++) {
         const Option *o = &OPTIONS[i];
         const int n = (int)strcspn(o->key, ".");
-        if (strncmp(section, o->key, (size_t)n + 1) != 0)
-            fprintf(out, "%s[%.*s]\n", i ? "\n" : "", n, o->key);
-        section = o->key;
-        if (described)
-            describe(o, out);
         format_value(s, o, value);
+        format_value(&defaults, o, standard);
+        if (form == SETTINGS_BASIC && !(o->flags & SETTING_BASIC) && strcmp(value, standard) == 0)
+            continue;
+        if (strncmp(section, o->key, (size_t)n + 1) != 0)
+            fprintf(out, "%s[%.*s]\n", *section ? "\n" : "", n, o->key);
+        section = o->key;
+        if (form != SETTINGS_PLAIN)
+            describe(o, out);
         fprintf(out, "%s = %s\n", o->key + n + 1, value);
     }
 }

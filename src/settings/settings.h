@@ -31,8 +31,9 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
 /* Of a run that is resumed: a limit may be changed on request, a free one changes no result (the files that paths name
- * are told apart by their content). An output is a path that is written: it stays as it is. */
-typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4 } SettingFlags;
+ * are told apart by their content). An output is a path that is written: it stays as it is. A
+ * basic one is touched by a first study. */
+typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4, SETTING_BASIC = 8 } SettingFlags;
 
 /* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */
 typedef void (*SettingsDiffFn)(const char *key, unsigned flags, const char *was, const char *is, void *user);
@@ -65,7 +66,9 @@ Status settings_check(const Settings *s, Err *err);
 const char *settings_key(int i);   /* "section.key"; NULL behind the last */
 const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path the names that are no file; or NULL */
 
-/* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
-void settings_write(const Settings *s, FILE *out, int described);
+/* A valid INI file; described: each key after its meaning, unit and range; basic: those alone that a first study touches
+ * and those that are no default. */
+typedef enum { SETTINGS_PLAIN, SETTINGS_DESCRIBED, SETTINGS_BASIC } SettingsForm;
+void settings_write(const Settings *s, FILE *out, SettingsForm form);
 
 #endif

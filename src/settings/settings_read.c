@@ -1,8 +1,6 @@
 #include "settings/settings.h"
 
 #include <ctype.h>
-#include <ini.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -19,10 +17,8 @@ typedef struct {
     Settings *s;
     const char *path;
     FILE *faults;
-    FILE *file;
-    char *text; /* the line at hand, whole */
-    size_t capacity;
-    const char *long_value; /* in text: what did not fit into the library's line */
+    const char *text; /* the line at hand, without what marks a file as UTF-8 */
+    char section[64];
     int n_faults, line;
     Place seen[TABLE_MAX]; /* where it was set; line 0: nowhere */
     Err *first;
@@ -39,24 +35,24 @@ static void report_fault(Reading *r, Place at, const char *text)
         fprintf(r->faults, "%s%s: %s\n", r->path, where, text);
 }
 
-/* The line at hand without what marks a file as UTF-8. */
-static const char *line_text(const Reading *r)
-{
-    return r->text + (r->line == 1 && strncmp(r->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0);
-}
-
 /* The place of a character of the line at hand: characters count, not bytes. */
 static Place place_of(const Reading *r, const char *at)
 {
     Place place = {r->line, 1};
-    for (const char *c = line_text(r); c < at; c++)
+    for (const char *c = r->text; c < at; c++)
         place.column += (*c & 0xC0) != 0x80;
     return place;
 }
 
-static const char *skip_blanks(const char *text)
+static char *skip_blanks(char *text)
 {
     return text + strspn(text, " \t");
+}
+
+static void trim_end(char *text)
+{
+    for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--)
+        text[n - 1] = 0;
 }
 
 /* A path that was written in a settings file is meant from that file's folder. */
@@ -72,74 +68,66 @@ static void anchor_path(char path[OPTION_TEXT_MAX], void *user)
         memcpy(path, anchored, strlen(anchored) + 1);
 }
 
-/* Stands for a value that waits in long_value; no settings file holds this byte. */
-static const char ELSEWHERE[] = "\x01";
-
-/* The library takes lines of `size` - 1 bytes, too few for a long path: such a value waits in long_value. */
-static void hand_over(Reading *r, char *text, char *line, int size)
+/* Without the quotes around it, as TOML writes a text; one with quotes or escapes inside stays what it is. */
+static void strip_quotes(const char *value, char plain[OPTION_TEXT_MAX])
 {
-    r->long_value = NULL;
-    if (strlen(text) < (size_t)size) {
-        memcpy(line, text, strlen(text) + 1);
-        return;
-    }
-    char *equals = strchr(text, '=');
-    char *note = strstr(text, " ;");
-    if (text[0] == ';' || text[0] == '#') {
-        line[0] = 0;
-    } else if (!equals || equals - text + 4 > size) {
-        report_fault(r, place_of(r, text), "the line is too long");
-        line[0] = 0;
-    } else {
-        if (note)
-            *note = 0;
-        r->long_value = equals + 1 + strspn(equals + 1, " \t");
-        snprintf(line, (size_t)size, "%.*s%s", (int)(equals + 1 - text), text, ELSEWHERE);
-    }
+    const size_t n = strlen(value);
+    const int is_quoted = n > 1 && strchr("\"'", value[0]) && value[n - 1] == value[0];
+    const int strips = is_quoted && strcspn(value + 1, (char[]){value[0], '\\', 0}) == n - 2;
+    snprintf(plain, OPTION_TEXT_MAX, "%.*s", (int)n - 2 * strips, value + strips);
 }
 
-/* Counts lines for the messages and refuses what the library would skip or join without a word: it reports its first
- * bad line only, and takes an indented line for a continuation of the one above. */
-static char *next_line(char *line, int size, void *user)
+/* A text or an array of TOML as this program writes it: "a" is a, ["a", "b"] is a, b. */
+static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
 {
-    Reading *r = user;
-    const ssize_t n = getline(&r->text, &r->capacity, r->file);
-    if (n < 0)
-        return NULL;
-    r->line++;
-    line[0] = 0;
-    char *text = r->text;
-    const int has_nul = strlen(text) != (size_t)n;
-    text += skip_blanks(line_text(r)) - text;
-    for (char *end = text + strlen(text); end > text && isspace((unsigned char)end[-1]);)
-        *--end = 0;
-    if (has_nul)
-        report_fault(r, place_of(r, text), "holds a NUL byte; this is not a settings file");
-    else if (strchr(";#", text[0]) || (text[0] == '[' && strchr(text, ']')) || strchr(text, '='))
-        hand_over(r, text, line, size);
-    else
-        report_fault(r, place_of(r, text), "neither [section] nor key = value");
-    return line;
+    char inner[OPTION_TEXT_MAX], item[OPTION_TEXT_MAX], text[OPTION_TEXT_MAX];
+    size_t n = strlen(value), used = 0;
+    if (n < 2 || n >= sizeof inner || !strchr("\"'[", value[0]))
+        return value;
+    if (value[0] != '[' || value[n - 1] != ']') {
+        strip_quotes(value, plain);
+        return plain;
+    }
+    snprintf(inner, sizeof inner, "%.*s", (int)n - 2, value + 1);
+    for (size_t i = 0; i < list_count(inner) && list_item(inner, i, item, sizeof item); i++) {
+        strip_quotes(item, text);
+        used += (size_t)snprintf(plain + used, OPTION_TEXT_MAX - used, "%s%s", used ? ", " : "", text);
+        if (used >= OPTION_TEXT_MAX)
+            return value;
+    }
+    return plain;
 }
 
-static int take_pair(void *user, const char *section, const char *name, const char *value)
+/* Ends a value where a note follows it: at the first ; behind a blank. */
+static void cut_note(char *value)
 {
-    Reading *r = user;
-    char key[128];
+    for (char *c = value; (c = strchr(c, ';')); c++)
+        if (c > value && isspace((unsigned char)c[-1])) {
+            *c = 0;
+            return;
+        }
+}
+
+/* name = value, from `begin` of the line at hand on. */
+static void take_pair(Reading *r, char *begin)
+{
+    char key[128], name[64], plain[OPTION_TEXT_MAX] = "", *value = strpbrk(begin, "=:");
     Err err = {0};
     int i = 0;
-    if (strcmp(value, ELSEWHERE) == 0 && r->long_value)
-        value = r->long_value;
-    snprintf(key, sizeof key, "%s%s%s", section, section[0] ? "." : "", name);
-    const char *begin = skip_blanks(line_text(r));
+    snprintf(name, sizeof name, "%.*s", (int)(value - begin), begin);
+    trim_end(name);
+    cut_note(++value);
+    trim_end(value);
+    value = skip_blanks(value);
+    snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
     if (table_find(key, &i, &err) != STATUS_OK) {
         report_fault(r, place_of(r, begin), err.text);
-        return 1;
+        return;
     }
-    const Place at = place_of(r, skip_blanks(begin + strcspn(begin, "=:") + 1));
-    if (table_assign(r->s, i, value, &err) != STATUS_OK) {
+    const Place at = place_of(r, value);
+    if (table_assign(r->s, i, plain_value(value, plain), &err) != STATUS_OK) {
         report_fault(r, at, err.text);
-        return 1;
+        return;
     }
     Place *seen = &r->seen[i];
     if (seen->line) {
@@ -149,7 +137,20 @@ static int take_pair(void *user, const char *section, const char *name, const ch
     }
     *seen = at;
     table_change_files(r->s, i, anchor_path, r);
-    return 1;
+}
+
+static void take_line(Reading *r, char *line)
+{
+    char *begin = skip_blanks(line), *end = begin[0] == '[' ? strchr(begin, ']') : NULL;
+    trim_end(begin);
+    if (!begin[0] || strchr(";#", begin[0]))
+        return;
+    if (end)
+        snprintf(r->section, sizeof r->section, "%.*s", (int)(end - begin) - 1, begin + 1);
+    else if (strchr(begin, '='))
+        take_pair(r, begin);
+    else
+        report_fault(r, place_of(r, begin), "neither [section] nor key = value");
 }
 
 static void report_broken(const size_t fields[RULE_FIELDS], const char *text, void *user)
@@ -162,30 +163,26 @@ static void report_broken(const size_t fields[RULE_FIELDS], const char *text, vo
     report_fault(r, at, text);
 }
 
-static Status read_stream(Reading *r, int *n_faults, Err *err)
+/* text (length, and a zero behind it): its lines are closed by zeros. */
+static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 {
-    const int bad_line = ini_parse_stream(next_line, r, take_pair, r);
-    const int whole = feof(r->file);
-    free(r->text);
-    if (!whole)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", r->path);
-    if (bad_line > 0 && r->n_faults == 0)
-        report_fault(r, (Place){bad_line, 1}, "neither [section] nor key = value");
+    for (char *next = text, *line = text, *end = text + length; next < end; line = next) {
+        char *stop = memchr(line, '\n', (size_t)(end - line));
+        stop = stop ? stop : end;
+        next = stop + 1;
+        *stop = 0;
+        if (r->line++ == 0 && strncmp(line, "\xEF\xBB\xBF", 3) == 0)
+            line += 3;
+        r->text = line;
+        if (strlen(line) == (size_t)(stop - line))
+            take_line(r, line);
+        else
+            report_fault(r, place_of(r, skip_blanks(line)), "holds a NUL byte; this is not a settings file");
+    }
     rules_check(r->s, report_broken, r);
     if (n_faults)
         *n_faults = r->n_faults;
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
-}
-
-static Status read_text(Reading *r, const char *text, size_t length, int *n_faults, Err *err)
-{
-    r->first = err;
-    r->file = length > 0 ? fmemopen((void *)(uintptr_t)text, length, "rb") : fopen("/dev/null", "rb");
-    if (!r->file)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", r->path);
-    const Status status = read_stream(r, n_faults, err);
-    fclose(r->file);
-    return status;
 }
 
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
@@ -194,14 +191,19 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
     char *text;
     size_t length;
     TRY(file_read(path, LARGEST, &text, &length, err));
-    Reading r = {.s = s, .path = path, .faults = faults};
-    const Status status = read_text(&r, text, length, n_faults, err);
+    Reading r = {.s = s, .path = path, .faults = faults, .first = err};
+    const Status status = read_text(&r, text, length, n_faults);
     free(text);
     return status;
 }
 
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
 {
-    Reading r = {.s = s, .path = path};
-    return read_text(&r, text, strlen(text), NULL, err);
+    char *copy = strdup(text);
+    Reading r = {.s = s, .path = path, .first = err};
+    if (!copy)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", path);
+    const Status status = read_text(&r, copy, strlen(copy), NULL);
+    free(copy);
+    return status;
 }

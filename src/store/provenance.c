@@ -44,7 +44,7 @@ const char *program_revision(void)
     return IMTET_REVISION;
 }
 
-/* inih and Random123 do not say their versions; the Debian release does. */
+/* Random123 does not say its version; the Debian release does. */
 static json_t *libraries(void)
 {
     char sundials[32] = "unknown", nlopt[32];
@@ -52,9 +52,9 @@ static json_t *libraries(void)
     SUNDIALSGetVersion(sundials, (int)sizeof sundials);
     nlopt_version(&major, &minor, &fix);
     snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s}", "sqlite", sqlite3_libversion(), "sundials", sundials,
-                     "nlopt", nlopt, "openblas", openblas_get_config(), "jansson", jansson_version_str(), "inih",
-                     "as packaged by the system", "random123", "as packaged by the system");
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s}", "sqlite", sqlite3_libversion(), "sundials", sundials, "nlopt",
+                     nlopt, "openblas", openblas_get_config(), "jansson", jansson_version_str(), "random123",
+                     "as packaged by the system");
 }
 
 json_t *program_description(void)

@@ -225,7 +225,7 @@ static Status write_origin(const RunStore *store, const Settings *used, const ch
     Output o;
     folder_path(&store->folder, "settings.ini", path);
     TRY(output_open_inside(&o, path, err));
-    settings_write(used, o.stream, 0);
+    settings_write(used, o.stream, SETTINGS_PLAIN);
     TRY(output_close(&o, err));
     folder_path(&store->folder, "provenance.json", path);
     TRY(output_open_inside(&o, path, err));

@@ -114,7 +114,7 @@ static Status settings_text(const Settings *s, char **text, Err *err)
     size_t length;
     FILE *f = open_memstream(text, &length);
     if (f)
-        settings_write(s, f, 0);
+        settings_write(s, f, SETTINGS_PLAIN);
     return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the settings");
 }
 

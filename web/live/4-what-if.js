@@ -122,8 +122,8 @@ function whatIfPart() {
 
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
-  const options = { pga_g: "--pga", stretch: "--stretch" };
-  const groundOptions = (g) => bounds.options + (g.pga_g === undefined ? "" : bounds.pga_options) + Object.entries(g).map(([key, v]) => (options[key] ? ` ${options[key]} ${v}` : ` --set contact.restitution=${v}`)).join("");
+  const options = { pga_g: "--pga ", stretch: "--set motion.stretch=", restitution: "--set contact.restitution=" };
+  const groundOptions = (g) => bounds.options + (g.pga_g === undefined ? "" : bounds.pga_options) + Object.entries(g).map(([key, v]) => ` ${options[key]}${v}`).join("");
 
   function showKept() {
     list.replaceChildren(...kept.map((one, i) => element("li", {}, `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
