@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* ---- files -------------------------------------------------------------------------------------------------------- */
+/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 /* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a
  * shell's <(...) have a writer. */

@@ -4,10 +4,10 @@
  *   cells     parted by one character (comma, semicolon, tab), or by blanks with at most one comma or semicolon; quotes
  *             and blanks around them are dropped
  *   numbers   1.5, 1,5, 1.5E+3, 1.5D+3; finite ones only, decimal points or decimal commas, not both in one file
- *   tables    rows of equally many cells; lines that are blank, of empty cells, or begin with # are passed over. Cells are
- *             parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
+ *   tables    rows of equally many cells; lines that are blank, of empty cells, or begin with # are passed over.
+ *             Cells are parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
  *
- * Ownership  Lines borrow path and text; table_read and sheet_read allocate, table_free releases (an empty Table is fine)
+ * Ownership  Lines borrow path and text; table_read and sheet_read allocate, table_free releases (an empty one is fine)
  * Threads    no state.   Errors  "PATH:LINE: what was found" */
 #ifndef IMTET_BASE_CSV_H
 #define IMTET_BASE_CSV_H
@@ -40,8 +40,8 @@ typedef struct {
     int is_quoted;
 } Cell;
 
-/* The cell at *p, which moves on; beyond `end` after the last one. It ends at any of the marks; where the first of them is
- * a blank, at blanks too, of which any number stand between cells, with at most one of the other marks. */
+/* The cell at *p, which moves on; beyond `end` after the last one. It ends at any of the marks; where the first of
+ * them is a blank, at blanks too, of which any number stand between cells, with at most one of the other marks. */
 Cell cell_next(const char **p, const char *end, const char *marks);
 
 /* All of the cell is one number? Hexadecimal ones, which strtod would take, are none. */

@@ -118,7 +118,7 @@ static const char *name_of(const Spectrum *s) /* the last part of its path */
     return slash ? slash + 1 : s->motion.name;
 }
 
-/* ---- columns ------------------------------------------------------------------------------------------------------ */
+/* ---- columns ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     char name[160], title[24]; /* of CSV and JSON; of the table on the screen */

@@ -29,9 +29,9 @@ typedef struct {
     uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 
-/* The motion that a user names: builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like (motion/builtin.h), else the
- * path of a file (motion/motion_read.h has the kinds). unit: UNIT_FROM_FILE demands that the file says it; otherwise it must
- * not contradict the file; it does not matter to a built-in motion. */
+/* The motion that a user names: builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like (motion/builtin.h),
+ * else the path of a file (motion/motion_read.h has the kinds). unit: UNIT_FROM_FILE demands that the file says it;
+ * otherwise it must not contradict the file; it does not matter to a built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
 
 /* The record of the options, read and processed as they say; not scaled yet (motion_scale). */

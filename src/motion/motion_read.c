@@ -21,7 +21,8 @@ enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCH
 
 static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
-/* A peak that misses the header's by more belongs to other samples; by a fifth of it: rounded, or filtered once more. */
+/* A peak that misses the header's by more belongs to other samples; by a fifth of it: rounded, or filtered once
+ * more. */
 static const double PEAK_ERROR_MAX = 0.05;
 
 /* ---- which unit ----------------------------------------------------------------------------------------------- */

@@ -19,19 +19,21 @@
  *   motion.factor                 a times factor
  *   motion.sa_g, sa_period_s      the pseudo-acceleration at that period, 5 % damping, becomes sa_g
  *   motion.target                 the spectrum comes nearest to a code spectrum between two periods: the factor f that
- *                                 makes the mean square of ln(f PSa / target) least over TARGET_PERIODS periods, equally
- *                                 spaced in their logarithm,
+ *                                 makes the mean square of ln(f PSa / target) least over TARGET_PERIODS periods,
+ *                                 equally spaced in their logarithm,
  *                                     ln f = mean of ln(target / PSa)          (PEER ground motion data base)
  *
  * after t -> motion.stretch t: periods are those of what shakes the building. None: as recorded.
  *
- *   eurocode8 ag=0.3 soil=C     EN 1998-1:2004, 3.2.2.2, 5 % damping: ag S [1 + 1.5 T / TB] | 2.5 ag S | 2.5 ag S TC / T |
- *                               2.5 ag S TC TD / T^2; soil gives S, TB, TC, TD by Table 3.2, type 1; s= tb= tc= td= change them
- *   asce7 sds=1 sd1=0.6 tl=8    ASCE 7-16, 11.4.6: SDS (0.4 + 0.6 T / T0) | SDS | SD1 / T | SD1 TL / T^2,  TS = SD1 / SDS,
- *                               T0 = 0.2 TS
+ *   eurocode8 ag=0.3 soil=C     EN 1998-1:2004, 3.2.2.2, 5 % damping: ag S [1 + 1.5 T / TB] | 2.5 ag S | 2.5 ag S TC
+ *                               / T | 2.5 ag S TC TD / T^2; soil gives S, TB, TC, TD by Table 3.2, type 1; s= tb= tc=
+ *                               td= change them
+ *   asce7 sds=1 sd1=0.6 tl=8    ASCE 7-16, 11.4.6: SDS (0.4 + 0.6 T / T0) | SDS | SD1 / T | SD1 TL / T^2,  TS = SD1 /
+ *                               SDS, T0 = 0.2 TS
  *   from=0.2 to=2               [s] the periods of the fit
  *
- * Errors   STATUS_BAD_DATA: a cutoff beyond half the sampling rate, fewer samples than the base line has coefficients, a motion of zeros, one that does not move an oscillator of that period, an absurd scale
+ * Errors   STATUS_BAD_DATA: a cutoff beyond half the sampling rate, fewer samples than the base line has coefficients, a
+ *          motion of zeros, one that does not move an oscillator of that period, an absurd scale
  * Threads  no state */
 #ifndef IMTET_MOTION_MOTION_SCALE_H
 #define IMTET_MOTION_MOTION_SCALE_H

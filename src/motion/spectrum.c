@@ -184,9 +184,9 @@ static inline m2 may_exceed(const Flow4 *g, const State4 *y, int h, double a, do
     return ~((room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1));
 }
 
-/* Can |u| be larger than so far, which is no less than at both ends? Where |u''| <= c, u lies less than dt^2 / 8 c above
- * its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. The better bound for
- * periods much longer than dt. */
+/* Can |u| be larger than so far, which is no less than at both ends? Where |u''| <= c, u lies less than dt^2 / 8 c
+ * above its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. The better
+ * bound for periods much longer than dt. */
 static inline m2 may_exceed_chord(const Flow4 *g, const State4 *y, const State4 *end, int h, double a, double slope)
 {
     const m2 magnitude = {INT64_MAX, INT64_MAX};

@@ -1,13 +1,15 @@
-/* The text formats of agencies: one reader, and a row of FORMATS for each, by the words of its header. What a row cannot
- * say has a function above it. The layouts are those of the agencies' descriptions and of their files (docs/motions.md).
+/* The text formats of agencies: one reader, and a row of FORMATS for each, by the words of its header. What a row
+ * cannot say has a function above it. The layouts are those of the agencies' descriptions and of their files
+ * (docs/motions.md).
  *
- * A header ends where a line `ends` was seen and a line of numbers follows; or behind `text_lines` lines. Its words give
+ * A header ends where a line `ends` was seen and a line of numbers follows; or behind `text_lines` lines. Its words
+ * give
  *
  *   COUNT, or RATE times DURATION     number of samples         STEP, or 1 / RATE, or DURATION / COUNT    [s]
  *   UNIT, PEAK, NAME, TYPE            of the motion; what is twice in a header counts where it stands first
  *
- * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES are
- * in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
+ * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES
+ * are in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -53,7 +55,7 @@ typedef struct Format {
     HeaderWord words[12];
 } Format;
 
-/* ---- headers ------------------------------------------------------------------------------------------------------ */
+/* ---- headers ----------------------------------------------------------------------------------------------------- */
 
 /* Does the line begin with one of the words parted by |, or, anywhere, hold one? */
 static int is_any(const Lines *l, const char *words, int anywhere)
@@ -248,7 +250,7 @@ static Status check_type(const Lines *type, Err *err)
                     line_shown(&whole), whole.from);
 }
 
-/* ---- samples ------------------------------------------------------------------------------------------------------ */
+/* ---- samples ----------------------------------------------------------------------------------------------------- */
 
 /* Behind `peak_of` with the channel's name: one number or two, "0.658~ -0.837", of which the larger counts. */
 static void take_named_peak(const Format *f, const Header *h, Channel *c, const char *end)
@@ -344,15 +346,15 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
 }
 
-/* ---- what no row can say ------------------------------------------------------------------------------------------- */
+/* ---- what no row can say ----------------------------------------------------------------------------------------- */
 
 /* CSMIP (report OSMS 85-03): 7 lines 16I5, 50 (V1) or 100 (V2) reals 8F10, then a line such as
  *
  *   13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)               V1, digital
  *   12000 points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.6)                V2
  *
- * V1 of a film recorder has no such line: pairs of time and acceleration, 10F7.3. A name is what stands behind "Chan  1:",
- * with the location where the text has one, for that tells the channels of a building apart. */
+ * V1 of a film recorder has no such line: pairs of time and acceleration, 10F7.3. A name is what stands behind "Chan 
+ * 1:", with the location where the text has one, for that tells the channels of a building apart. */
 static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum { REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
@@ -447,8 +449,8 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     return STATUS_OK;
 }
 
-/* USGS SMC (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held; 6 lines 8I10,
- * 10 lines 5E15.7; comments that begin with '|'; numbers in cm/s2, 8E10.4 or in wider columns (5E14.7).
+/* USGS SMC (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held; 6 lines
+ * 8I10, 10 lines 5E15.7; comments that begin with '|'; numbers in cm/s2, 8E10.4 or in wider columns (5E14.7).
  *
  *   integer 16   comment lines                 real 1         stands for "undefined" (1.7E38)
  *   integer 17   numbers that follow           real 2         samples per second; undefined: pairs of time and
@@ -518,9 +520,9 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
     return STATUS_OK;
 }
 
-/* K-NET, KiK-net (NIED): a count times the factor 3920(gal)/6182761 is in gal; its zero is the recorder's, so the mean is
- * subtracted, as NIED does for its Max. Acc. KiK-net numbers its directions: 1 to 3 are NS, EW, UD in the borehole, 4 to 6
- * the same at the surface. */
+/* K-NET, KiK-net (NIED): a count times the factor 3920(gal)/6182761 is in gal; its zero is the recorder's, so the
+ * mean is subtracted, as NIED does for its Max. Acc. KiK-net numbers its directions: 1 to 3 are NS, EW, UD in the
+ * borehole, 4 to 6 the same at the surface. */
 static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     static const char *const DIRECTIONS[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2", "N-S", "E-W", "U-D"};
@@ -569,8 +571,8 @@ static Status geonet_more(Lines *l, Header *h, Channel *c, Err *err)
     return STATUS_OK;
 }
 
-/* PEER: "NPTS=  3930, DT=   .0050 SEC" or "3930    0.0050    NPTS, DT"; not in the comments of plain text. Below a title the
- * step may be missing: that is a fault of this format, not another format. */
+/* PEER: "NPTS=  3930, DT=   .0050 SEC" or "3930    0.0050    NPTS, DT"; not in the comments of plain text. Below a
+ * title the step may be missing: that is a fault of this format, not another format. */
 static int at2_is(Lines l)
 {
     int has_title = 0;
@@ -668,7 +670,7 @@ static Status tspair_read(Record *r, Lines *l, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the table ------------------------------------------------------------------------------------------------------ */
+/* ---- the table --------------------------------------------------------------------------------------------------- */
 
 static const Format FORMATS[] = {
     {"knet", .begins = "Origin Time", .within = 1, .ends = "Memo.", .unit = UNIT_CM_S2, .more = knet_more,

@@ -4,10 +4,10 @@
  *             "key: value": unit (m/s2, cm/s2, gal, g), step ("dt = 1/200 s", "sampling rate: 100"), number of samples
  *             ("npts = 4000"); what is stated twice must agree. Anything else in them is passed over
  *   names     the last line of words names the columns; a unit in a name, "acc [m/s2]" or "acc_m_s2", wins
- *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of samples or
- *             rows that follow; npts alone in the first row
- *   times     the column that is named so, else the first, unless there is only one, or the names or the numbers say that
- *             it is none; then the step must be known. 0, 1, 2, ... without such a name are numbers of samples
+ *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of
+ *             samples or rows that follow; npts alone in the first row
+ *   times     the column that is named so, else the first, unless there is only one, or the names or the numbers say
+ *             that it is none; then the step must be known. 0, 1, 2, ... without such a name are numbers of samples
  *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
  *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
  *             digits, and where the names name one column and no number has a point */
@@ -34,7 +34,7 @@ typedef struct {
     int wrong_line;                /* 0: nothing */
 } Plain;
 
-/* ---- header -------------------------------------------------------------------------------------------------------- */
+/* ---- header ------------------------------------------------------------------------------------------------------ */
 
 __attribute__((format(printf, 3, 4))) static void note_wrong(Plain *t, const Lines *l, const char *what, ...)
 {
@@ -118,7 +118,8 @@ static int is_comment(const Lines *l)
     return (strchr("#%!", *l->from) && !csv_is_error(l->from, l->to)) || line_begins(l, "//");
 }
 
-/* A line of words begins like a word, or with the empty name of a column of numbers, and is no number (nan and inf are). */
+/* A line of words begins like a word, or with the empty name of a column of numbers, and is no number (nan and inf
+ * are). */
 static int is_words(const Lines *l)
 {
     double x;
@@ -129,7 +130,7 @@ static int is_words(const Lines *l)
     return cell_number(c, c.is_quoted, &x) == NO_NUMBER && !number_behind(c.from, c.to, "", &x);
 }
 
-/* ---- names --------------------------------------------------------------------------------------------------------- */
+/* ---- names ------------------------------------------------------------------------------------------------------- */
 
 static int has_marks(const Lines *l)
 {
@@ -139,7 +140,8 @@ static int has_marks(const Lines *l)
     return p < l->to;
 }
 
-/* The name at *p; commas, semicolons or tabs part names, or else blanks, but none that stands in brackets or before them. */
+/* The name at *p; commas, semicolons or tabs part names, or else blanks, but none that stands in brackets or before
+ * them. */
 static Cell next_name(const Lines *l, const char **p)
 {
     const size_t n = (size_t)(l->to - l->from);
@@ -184,7 +186,8 @@ static int is_named(const Plain *t)
     return t->n_names > 0 && t->n_names == t->width;
 }
 
-/* "acc [m/s2]", "acceleration (in g)", "acc_m_s2", "gal". Behind a number of several digits, "x1000_m_s2", stands a multiple. */
+/* "acc [m/s2]", "acceleration (in g)", "acc_m_s2", "gal". Behind a number of several digits, "x1000_m_s2", stands a
+ * multiple. */
 static void unit_in_name(Cell name, Channel *c)
 {
     const char *open = name.to;
@@ -231,7 +234,7 @@ static Status times_are_seconds(const Plain *t, Cell name, Err *err)
     return STATUS_OK;
 }
 
-/* ---- rows ---------------------------------------------------------------------------------------------------------- */
+/* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 static void count_row(Plain *t, size_t n, int line)
 {
@@ -264,7 +267,8 @@ static Status fail_unknown(const Plain *t, Err *err)
                 t->l->path, t->l->number, line_shown(&start), start.from);
 }
 
-/* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one width? */
+/* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one
+ * width? */
 static int is_table(const Plain *t)
 {
     Lines start = t->start;
@@ -385,7 +389,7 @@ static Status check_rows(const Plain *t, Err *err)
         t->l->path, t->odd_line, t->odd_width, s, t->width, t->r->n);
 }
 
-/* ---- which column is what ------------------------------------------------------------------------------------------ */
+/* ---- which column is what ---------------------------------------------------------------------------------------- */
 
 /* How many steps down the first column rise. */
 static size_t count_rises(const Plain *t)

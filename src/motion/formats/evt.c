@@ -1,7 +1,7 @@
-/* Kinemetrics EVT (K2, Makalu, Etna and others), as the Altus manual lays it out: a tag of 16 bytes and a header of 2040
- * for 12 channels, then for each tenth of a second a tag, a frame header of 32 bytes and the samples of that tenth,
- * channel by channel. All numbers have the byte order that the tag names; only the most significant byte first is read,
- * the one of the instruments themselves.
+/* Kinemetrics EVT (K2, Makalu, Etna and others), as the Altus manual lays it out: a tag of 16 bytes and a header of
+ * 2040 for 12 channels, then for each tenth of a second a tag, a frame header of 32 bytes and the samples of that
+ * tenth, channel by channel. All numbers have the byte order that the tag names; only the most significant byte first
+ * is read, the one of the instruments themselves.
  *
  *   tag       0 'K'   1 byte order   4 type: 1 header, 2 frame   8 length of what follows   10 length of the samples
  *   header    0x234 frames   0x24e channels   0x250 station   0x2c8 + 76 k: channel k: name (5), 32 full scale [V],

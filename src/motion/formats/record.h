@@ -70,8 +70,8 @@ Status sac_text_read(Record *r, Lines *l, Err *err);
 
 /* ---- archives ---------------------------------------------------------------------------------------------------- */
 
-/* Zip, tar, and gzip, bzip2, xz with or without tar, in memory: all of a member at a time, ARCHIVE_BYTES_MAX of all members.
- * What unpacks to more is refused. */
+/* Zip, tar, and gzip, bzip2, xz with or without tar, in memory: all of a member at a time, ARCHIVE_BYTES_MAX of all
+ * members. What unpacks to more is refused. */
 #define ARCHIVE_BYTES_MAX ((size_t)1 << 28)
 
 int archive_is(const unsigned char bytes[], size_t n);
@@ -102,15 +102,15 @@ void name_shorten(char *out, size_t room, const char *name);
  * them in full, the member shortened to fit. */
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
-/* The unit that from..to begins with, as "g/10." or "gal. DCoffset"; one that is not known, up to a comma, a bracket or two
- * blanks, becomes `stated`; numbers of a recorder become counts. */
+/* The unit that from..to begins with, as "g/10." or "gal. DCoffset"; one that is not known, up to a comma, a bracket
+ * or two blanks, becomes `stated`; numbers of a recorder become counts. */
 void channel_unit(Channel *c, const char *from, const char *to);
 
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
 
-/* `count` samples into the last channel, at equal steps dt, or, digitized, pairs of time and acceleration, from the line
- * after l's; width: of columns of numbers that run together, 0: none. A line of words ends them early; a further number
- * is an error, behind `lines_behind` lines that are skipped. */
+/* `count` samples into the last channel, at equal steps dt, or, digitized, pairs of time and acceleration, from the
+ * line after l's; width: of columns of numbers that run together, 0: none. A line of words ends them early; a further
+ * number is an error, behind `lines_behind` lines that are skipped. */
 Status record_block(Record *r, Lines *l, double count, double dt, int width, size_t lines_behind, Err *err);
 
 int line_has_letters(const Lines *l); /* beside those of exponents */

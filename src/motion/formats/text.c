@@ -191,7 +191,8 @@ int format_width(const Lines *l)
 
 /* ---- units ---------------------------------------------------------------------------------------------------- */
 
-/* In small letters, _ as /, sec and seg as s, without blanks, ^, * and the square sign's two bytes: cm/sec**2 is cm/s2. */
+/* In small letters, _ as /, sec and seg as s, without blanks, ^, * and the square sign's two bytes: cm/sec**2 is
+ * cm/s2. */
 static void tidy_unit(const char *from, const char *to, char tidy[16])
 {
     size_t n = 0;

@@ -19,14 +19,16 @@ const char *find_word(const char *from, const char *to, const char *word); /* wi
 /* The first number in `from`..`to` behind `word` and any of " =:(", decimal point or comma: 1, else 0. */
 int number_behind(const char *from, const char *to, const char *word, double *x);
 
-/* A step [s] or, is_rate, a rate [1/s] in the same place: "0.005", "1/200 s", "5 ms", "0.1 kHz"; -1: in another unit. */
+/* A step [s] or, is_rate, a rate [1/s] in the same place: "0.005", "1/200 s", "5 ms", "0.1 kHz"; -1: in another
+ * unit. */
 int quantity_behind(const char *from, const char *to, const char *word, int is_rate, double *x);
 
 /* The number in a cell of the line; with_comma: 1,5 is one and a half. SUB_NO_NUMBER: it is none. */
 Status line_number(const Lines *l, Cell c, int with_comma, double *x, Err *err);
 
 /* Numbers of the line, at most max; *n is how many. Parted by blanks, commas or semicolons, unless that gives something
- * that is no number or a whole number longer than `width`: then they run together and are columns of that width (0: none). */
+ * that is no number or a whole number longer than `width`: then they run together and are columns of that width (0:
+ * none). */
 Status line_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err);
 
 /* w of a Fortran format (8F9.6) that the line names, 0: none. */
