@@ -58,7 +58,10 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv)
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
-LIB      := $(BUILD)/libimtet.a
+LIB      := $(BUILD)/libprogram.a
+# What stands alone: no SQLite, no server, nothing printed. `make lib-alone` links it so.
+CORE     := $(BUILD)/libimtet.a
+CORE_OBJ := $(foreach d,base settings scene motion sim rbf moga evaluate,$(filter $(BUILD)/src/$(d)/%,$(LIB_OBJ))) $(filter %.csv.o,$(LIB_OBJ))
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
 TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
@@ -66,7 +69,7 @@ TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
 STABILITY.release := fast cvode
 STABILITY.asan    := fast
 
-.PHONY: all help setup run test tests check format install clean .FORCE
+.PHONY: all help setup run test tests check format install clean lib-alone .FORCE
 .SECONDARY:
 all: $(PROGRAM) ## builds ./imtet
 
@@ -89,6 +92,17 @@ $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 $(LIB): $(LIB_OBJ)
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $^
+
+$(CORE): $(CORE_OBJ) Makefile
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $(CORE_OBJ)
+
+$(BUILD)/alone: $(BUILD)/tests/alone.o $(CORE)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(filter-out -lsqlite3 -lmicrohttpd,$(LDLIBS))
+
+lib-alone: $(BUILD)/alone ## links libimtet.a without SQLite and libmicrohttpd, and simulates a design with it
+	@$(BUILD)/alone
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)

@@ -394,7 +394,7 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->n_workers = workers < n_tasks ? workers : n_tasks;
     t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
                               .n_replicates = (size_t)s->sim.replicates,
-                              .rule = s->sim.robust,
+                              .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
                               .quantile = s->sim.quantile,
                               .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
     Status status = measures_order(&order, s->search.objectives, 0, err);

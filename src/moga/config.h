@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "evaluate/evaluation.h"
-#include "moga/options.h"
+#include "settings/search_options.h"
 
 enum { SEARCH_CENTRES = 600 };                 /* of the surrogate at most */
 static const double SEARCH_TRUST_ERROR = 0.05; /* of a prediction that stands for an evaluation */

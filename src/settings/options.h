@@ -5,7 +5,7 @@
 #ifndef IMTET_SETTINGS_OPTIONS_H
 #define IMTET_SETTINGS_OPTIONS_H
 
-#include "moga/options.h"
+#include "settings/search_options.h"
 #include "motion/options.h"
 #include "scene/options.h"
 #include "sim/options.h"

@@ -175,10 +175,9 @@ static const Option OPTIONS[] = {
            "an objective or a limit needs them"),
     REAL(sim.filter_hz, "Hz", "25", 0.01, 1000, "low-pass of j3_filtered_g, the acceleration that equipment feels"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
-           "several records: worst or mean of their means over the replicates; mean_plus_sd, quantile: of all "
-           "replicates of "
-           "all records"),
-    REAL(sim.quantile, "-", "0.9", 0, 1, "sim.robust = quantile: this share of the simulations is better"),
+           "several records: worst or mean of their means over the replicates; of all replicates of all records "
+           "mean_plus_sd, or a number: the quantile on the bad side, 0.9: nine in ten are better",
+           .number = AT_TYPED(sim.quantile, double), .min = 1e-6, .max = 1),
 
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",

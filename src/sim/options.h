@@ -39,9 +39,8 @@ typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
 #define ROBUST_LIST(X)                                                                                                 \
     X(ROBUST_WORST, "worst")                                                                                           \
     X(ROBUST_MEAN, "mean")                                                                                             \
-    X(ROBUST_MEAN_PLUS_SD, "mean_plus_sd")                                                                             \
-    X(ROBUST_QUANTILE, "quantile")
-typedef enum { ROBUST_LIST(CHOICE_NAME) } Robust;
+    X(ROBUST_MEAN_PLUS_SD, "mean_plus_sd")
+typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.quantile */ } Robust;
 
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
@@ -60,7 +59,7 @@ typedef struct {
     double duration_s;        /* 0: the whole motion */
     long replicates;          /* simulations of a design under each record */
     Robust robust;            /* how a design's results under several records become one */
-    double quantile;          /* of ROBUST_QUANTILE, on the bad side */
+    double quantile;          /* a number as sim.robust: on the bad side; 0: robust is one of the words */
     UncertainOptions uncertain;
     double gap_tolerance_m; /* standard deviation of a gap as built */
     double filter_hz;       /* cutoff frequency of SimResult.j3_filtered_g */

@@ -1,6 +1,6 @@
-/* moga/options.h -- choices of the search (moga/search.h, moga/selection.h). */
-#ifndef IMTET_MOGA_OPTIONS_H
-#define IMTET_MOGA_OPTIONS_H
+/* settings/search_options.h -- choices of the search (moga/search.h, moga/selection.h). */
+#ifndef IMTET_SETTINGS_SEARCH_OPTIONS_H
+#define IMTET_SETTINGS_SEARCH_OPTIONS_H
 
 #include "base/option.h"
 
