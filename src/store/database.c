@@ -204,8 +204,8 @@ Status database_number(Database *d, const char *sql, double otherwise, double *v
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
-/* File systems of several machines, by the number that each has in Linux (linux/magic.h, and the sources of Lustre, GPFS
- * and BeeGFS). */
+/* File systems of several machines, by the number that each has in Linux (linux/magic.h, and the sources of Lustre,
+ * GPFS and BeeGFS). */
 static int is_shared(const char *path)
 {
     static const unsigned KINDS[] = {0x6969 /* NFS */,
@@ -416,7 +416,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     return status;
 }
 
-/* -- a file that is removed while it is written to ------------------------------------------------------------------ */
+/* -- a file that is removed while it is written to ----------------------------------------------------------------- */
 
 void database_remove_journal(const char *path)
 {

@@ -1,7 +1,8 @@
 /* store/database.h -- one SQLite file, opened so that what was committed is never lost; its faults in our words.
  *
  *   journal WAL, synchronous FULL   a commit returns when it is on the disk; readers never wait for the writer
- *   rollback journal                instead on NFS, Lustre, GPFS, CephFS, BeeGFS, SMB: WAL needs memory that all processes
+ *   rollback journal                instead on NFS, Lustre, GPFS, CephFS, BeeGFS, SMB: WAL needs memory that all
+ *   processes
  *                                   share, which those of several machines have not. Readers and writer wait for each
  *                                   other, up to a minute
  *   application_id, user_version    the file is ours, and the version of its tables; checked on opening, like its
@@ -12,8 +13,8 @@
  *
  * Life cycle  database_create or database_open -> database_do, database_each ... -> database_close
  * Threads     one connection, one thread at a time (where it is written to a mutex guards the rest)
- * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and cause;
- *             no such file: STATUS_MISSING
+ * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and
+ *             cause; no such file: STATUS_MISSING
  * Source      https://sqlite.org/wal.html, https://sqlite.org/pragma.html#pragma_synchronous */
 #ifndef IMTET_STORE_DATABASE_H
 #define IMTET_STORE_DATABASE_H
@@ -44,8 +45,8 @@ int database_changes(const Database *d); /* rows that the last statement changed
 /* "FILE: is damaged: ...", STATUS_IO with SUB_DAMAGED. */
 __attribute__((format(printf, 3, 4))) Status database_damaged(const Database *d, Err *err, const char *format, ...);
 
-/* The file and its journal are still where they were opened. If not: STATUS_IO, after what the database holds was put back
- * where it was removed. Not within a transaction. */
+/* The file and its journal are still where they were opened. If not: STATUS_IO, after what the database holds was put
+ * back where it was removed. Not within a transaction. */
 Status database_check_place(Database *d, Err *err);
 
 /* The journal of an earlier file in that place, which SQLite would take for that of the next one. */

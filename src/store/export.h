@@ -1,8 +1,8 @@
 /* store/export.h -- designs of a run as CSV and as JSON; results/README.md explains the columns.
  *
- * One writer: a table is a list of parts, of which each knows its column heads and its cells. The same bytes for the same
- * evaluations: nothing here depends on the clock or on the number of threads, which share many rows. Failures of the stream
- * are seen by whoever closes it (store/output.h).
+ * One writer: a table is a list of parts, of which each knows its column heads and its cells. The same bytes for the
+ * same evaluations: nothing here depends on the clock or on the number of threads, which share many rows. Failures of
+ * the stream are seen by whoever closes it (store/output.h).
  *
  * Errors  STATUS_NO_MEMORY */
 #ifndef IMTET_STORE_EXPORT_H
@@ -12,13 +12,12 @@
 
 #include "store/run.h"
 
-typedef enum {
-    EXPORT_FRONT, /* id, variables, objectives (natural, means over repeats), those further results that are limited; where
-                       designs are several simulations sd of the objectives and replicates */
-    EXPORT_ALL, /* id, generation, kind, outcome, reason, variables, objectives of this very evaluation, all further results */
-    EXPORT_NEAREST, /* id, violation, variables, objectives, limited results */
-    EXPORT_PAGE     /* id, variables, objectives, limited results, without column heads */
-} ExportTable;
+/* FRONT    id, variables, objectives (natural, means over repeats), further results that are limited; where designs are
+ *          several simulations sd of the objectives and replicates
+ * ALL      id, generation, kind, outcome, reason, variables, objectives of this very evaluation, all further results
+ * NEAREST  id, violation, variables, objectives, limited results
+ * PAGE     id, variables, objectives, limited results, without column heads */
+typedef enum { EXPORT_FRONT, EXPORT_ALL, EXPORT_NEAREST, EXPORT_PAGE } ExportTable;
 
 /* Those rows of the run, NULL: its first n. */
 Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err);
@@ -26,7 +25,8 @@ Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, cons
 /* Settings, columns, evaluations, unfinished ones too, and generations as one object. */
 Status export_json(FILE *f, const Run *run, Err *err);
 
-/* front.csv, nearest.csv in the run's folder; with n = 0 the latter is removed: a run that was resumed may have a front now. */
+/* front.csv, nearest.csv in the run's folder; with n = 0 the latter is removed: a run that was resumed may have a front
+ * now. */
 Status export_front(const Run *run, Err *err);
 Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err);
 

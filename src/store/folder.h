@@ -1,8 +1,9 @@
-/* store/folder.h -- the folder of a run: which process works on it, and files in it that are replaced whole or appended to.
+/* store/folder.h -- the folder of a run: which process works on it, and files in it that are replaced whole or appended
+ * to.
  *
- * The file `lock` holds "PID HOST N": the process, and how many evaluations the database has; the lock itself is the system's
- * (an open file description lock) and ends with its process, so that a file left behind by one that was killed locks
- * nothing. Across machines as far as the file system passes locks on.
+ * The file `lock` holds "PID HOST N": the process, and how many evaluations the database has; the lock itself is the
+ * system's (an open file description lock) and ends with its process, so that a file left behind by one that was killed
+ * locks nothing. Across machines as far as the file system passes locks on.
  *
  * Life cycle  folder_take -> append_open ... -> folder_release ({.lock = -1} is fine)
  * Links       in it are not followed when writing: the folder may come from elsewhere
@@ -21,8 +22,8 @@ typedef struct {
     size_t n_stored; /* evaluations that the database had when the folder was taken, as the lock says */
 } Folder;
 
-/* Made where it is not there, and locked; held by another process, and still so 1.5 s later: STATUS_IO, its id and machine.
- * fresh: the first of path, path-2, path-3, ... that holds no run and that no process works on. */
+/* Made where it is not there, and locked; held by another process, and still so 1.5 s later: STATUS_IO, its id and
+ * machine. fresh: the first of path, path-2, path-3, ... that holds no run and that no process works on. */
 Status folder_take(Folder *folder, const char *path, int fresh, Err *err);
 void folder_release(Folder *folder);
 

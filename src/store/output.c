@@ -16,8 +16,8 @@ static void folder_of(const char *path, char folder[PATH_MAX])
 
 static const char OWN_FILES[] = "/proc/self/fd";
 
-/* A file without a name, of which a process that is killed leaves nothing. Where the file system has none, a new file: what
- * lies there under that name, a prepared link say, is removed. */
+/* A file without a name, of which a process that is killed leaves nothing. Where the file system has none, a new file:
+ * what lies there under that name, a prepared link say, is removed. */
 static FILE *open_new(const char *path)
 {
     char folder[PATH_MAX];

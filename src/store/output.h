@@ -19,8 +19,8 @@ typedef struct {
 
 Status output_open(Output *o, const char *path, Err *err);
 
-/* A file whose name was not typed, in the folder of a run that may come from elsewhere: whatever is there, a link too, is
- * replaced and never followed. */
+/* A file whose name was not typed, in the folder of a run that may come from elsewhere: whatever is there, a link too,
+ * is replaced and never followed. */
 Status output_open_inside(Output *o, const char *path, Err *err);
 Status output_close(Output *o, Err *err);
 void output_abandon(Output *o); /* a closed Output is fine */

@@ -12,8 +12,8 @@ typedef struct Settings Settings;
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
 
-/* Version and revision, instruction set, and a hash of compiler, flags and libraries: where two are the same, so are the
- * numbers of both. */
+/* Version and revision, instruction set, and a hash of compiler, flags and libraries: where two are the same, so are
+ * the numbers of both. */
 void program_identity(size_t n, char text[]);
 
 /* Version, revision, compiler and its flags, libraries. NULL: out of memory. */

@@ -1,12 +1,12 @@
 /* store/run.h -- a run as its database has it: settings, every evaluation, the front, how it came about.
  *
- * Read once by a command (store/run_read.h) and handed on as const Run *. Rows: first those of the search, in the order of
- * their ids, as they were asked for; then the polished ones (KIND_POLISHED). An id is the next one when its row is stored:
- * those of the search are 1, 2, ... but for polished ones between sessions. A simulation of a generation that is under
- * way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
+ * Read once by a command (store/run_read.h) and handed on as const Run *. Rows: first those of the search, in the order
+ * of their ids, as they were asked for; then the polished ones (KIND_POLISHED). An id is the next one when its row is
+ * stored: those of the search are 1, 2, ... but for polished ones between sessions. A simulation of a generation that
+ * is under way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
  *
- * Replicates  a design that was simulated again has in F the mean of its simulations, and sd is estimated from all repeats
- *             of the run (moga/noise.h); one with a simulation that failed keeps its first
+ * Replicates  a design that was simulated again has in F the mean of its simulations, and sd is estimated from all
+ *             repeats of the run (moga/noise.h); one with a simulation that failed keeps its first
  * Values      natural signs and units, as in front.csv; NAN where there is none (failed, or deviation not known)
  * Front       feasible, ok and nondominated, polished designs included; entered <= g < left are the generations of the
  *             search in which a design was on the search's own front
@@ -88,14 +88,15 @@ const double *run_f(const Run *run, size_t row); /* (n_obj) */
 /* Row of that design, or run->table.n. */
 size_t run_find(const Run *run, long id);
 
-/* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be there. */
+/* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be
+ * there. */
 Status run_settle_front(Run *run, Err *err);
 
 int run_is_screened(const Run *run); /* search.fidelity acts */
 
-/* Of search.max_evals, those of the rows from `first` on: a screened design is one of sim.replicates parts of an evaluation,
- * finished it is the rest. Of a generation that is not finished no more than it will be: rows without spreads are
- * taken as screened. */
+/* Of search.max_evals, those of the rows from `first` on: a screened design is one of sim.replicates parts of an
+ * evaluation, finished it is the rest. Of a generation that is not finished no more than it will be: rows without
+ * spreads are taken as screened. */
 size_t run_evaluations(const Run *run, size_t first);
 
 int run_has_polished(const Run *run);
@@ -104,7 +105,7 @@ size_t run_first_polished(const Run *run); /* its row: behind those of the searc
 /* As if nothing had been polished: the front is that of the search. */
 void run_drop_polished(Run *run);
 
-/* -- the front: each wants n_front > 0; ties go to the first; results are rows of the run --------------------------- */
+/* -- the front: each wants n_front > 0; ties go to the first; results are rows of the run -------------------------- */
 
 size_t run_best(const Run *run, size_t objective);
 
@@ -123,12 +124,12 @@ size_t run_knee(const Run *run);
  * chosen; polished ones are left out unless they are wanted. Returns how many. */
 size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]);
 
-/* `word`: the id of any design that the run has, on its front or not, failed or not; "knee"; "best_NAME" of an objective.
- * An empty front has neither of the last two: run_why_empty. */
+/* `word`: the id of any design that the run has, on its front or not, failed or not; "knee"; "best_NAME" of an
+ * objective. An empty front has neither of the last two: run_why_empty. */
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err);
 
-/* Rows with the least violation of search.limits, the least first, ties by number; none that is screened only. Returns how
- * many; 0: all of those failed. */
+/* Rows with the least violation of search.limits, the least first, ties by number; none that is screened only. Returns
+ * how many; 0: all of those failed. */
 enum { NEAREST_MAX = 10 };
 size_t run_nearest(const Run *run, size_t rows[NEAREST_MAX]);
 

@@ -106,8 +106,8 @@ static Status check_nothing_lost(const RunStore *store, Err *err)
         store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
 }
 
-/* An evaluation that belongs to no later generation than the one that was cut short; others are left of a transaction that was
- * lost. So is, where they are numbered as they arrive, what is behind a gap. */
+/* An evaluation that belongs to no later generation than the one that was cut short; others are left of a transaction
+ * that was lost. So is, where they are numbered as they arrive, what is behind a gap. */
 static int is_of_the_next(const RunStore *store, const Evaluation *e)
 {
     const Run *run = &store->run;
@@ -551,8 +551,8 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
     return store_state(store, v, err);
 }
 
-/* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that wait
- * for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
+/* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
+ * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
 static Status put_whole_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(begin(store, err));
@@ -572,7 +572,8 @@ static Status put_whole_generation(RunStore *store, const SearchView *v, double 
     return status;
 }
 
-/* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk. */
+/* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk.
+ * */
 static int is_due(RunStore *store, const SearchView *v)
 {
     const double now = clock_seconds(), before = store->last_generation;
@@ -590,8 +591,8 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
     return database_check_place(store->db, err);
 }
 
-/* What is known of later generations is taken out again, their evaluations stay. A design that left the front, came back
- * in one of them and is taken off again by the next one has lost its first leaving: its digest is not known. */
+/* What is known of later generations is taken out again, their evaluations stay. A design that left the front, came
+ * back in one of them and is taken off again by the next one has lost its first leaving: its digest is not known. */
 static Status step_back(RunStore *store, Err *err)
 {
     const Run *run = &store->run;

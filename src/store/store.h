@@ -8,14 +8,14 @@
  *   lock              which process works on it (store/folder.h)
  *
  * One evaluation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
- * COMMIT_S after the one before, and at the end of its batch. Generations that take less than GENERATION_S are committed
- * together, likewise. What a kill can cost is what was under way and COMMIT_S of evaluations. The end of a generation is
- * whole or not there: kinds, front, hypervolume, state of the search.
+ * COMMIT_S after the one before, and at the end of its batch. Generations that take less than GENERATION_S are
+ * committed together, likewise. What a kill can cost is what was under way and COMMIT_S of evaluations. The end of a
+ * generation is whole or not there: kinds, front, hypervolume, state of the search.
  *
- * Faults      on a full disk or without memory SQLite may roll back all that is not committed: then nothing more is written
- *             in this session, what waits is dropped, and the run is resumed from the last commit
- * Damage      digests of all rows but those of `session` are checked when a run is read (store/tables.h), and the text of
- *             the tables. A run that lost its journal is refused: `lock` knows of more evaluations. A database
+ * Faults      on a full disk or without memory SQLite may roll back all that is not committed: then nothing more is
+ *             written in this session, what waits is dropped, and the run is resumed from the last commit
+ * Damage      digests of all rows but those of `session` are checked when a run is read (store/tables.h), and the text
+ *             of the tables. A run that lost its journal is refused: `lock` knows of more evaluations. A database
  *             that is removed while the run goes on is put back at the end of a generation, which ends the session
  *
  * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
@@ -43,8 +43,8 @@ const char *store_folder(const RunStore *store);
 /* The run that the folder held when it was opened, without its rows (run_load_head); NULL: none. */
 const Run *store_run(const RunStore *store);
 
-/* What a session goes on from: the evaluations of the generation that was cut short, whose id is their number in the search;
- * and which designs of the finished generations are on the search's front (run->n_finished). */
+/* What a session goes on from: the evaluations of the generation that was cut short, whose id is their number in the
+ * search; and which designs of the finished generations are on the search's front (run->n_finished). */
 const EvaluationTable *store_unfinished(const RunStore *store);
 const unsigned char *store_on_front(const RunStore *store);
 
@@ -57,13 +57,13 @@ Status store_read(RunStore *store, Run *run, Err *err);
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
 
-/* A new run, or the one that is there, with other limits or threads. goes_on: a session follows, and a run that was finished
- * is not any more. Borrow the schema. */
+/* A new run, or the one that is there, with other limits or threads. goes_on: a session follows, and a run that was
+ * finished is not any more. Borrow the schema. */
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err);
 
-/* Where store_run's state is not that of the last generation, which is damaged: as if that generation were not finished. Its
- * evaluations stay. Before store_resume; store_run is read again. */
+/* Where store_run's state is not that of the last generation, which is damaged: as if that generation were not
+ * finished. Its evaluations stay. Before store_resume; store_run is read again. */
 Status store_step_back(RunStore *store, Err *err);
 
 /* A start of the program on this run; to be called after one of the two. */
@@ -90,9 +90,9 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
 
-/* Designs from outside the search, polished ones say, into a run that is there and has no session now: they get the next ids
- * and the kind `polished`, and front.csv is written again. The search does not see them: a run that is resumed later does
- * what it would have done without them. first_id may be NULL. */
+/* Designs from outside the search, polished ones say, into a run that is there and has no session now: they get the
+ * next ids and the kind `polished`, and front.csv is written again. The search does not see them: a run that is resumed
+ * later does what it would have done without them. first_id may be NULL. */
 Status store_open_run(RunStore **out, const char *folder, Err *err);
 Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err);
 

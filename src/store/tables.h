@@ -1,8 +1,9 @@
 /* store/tables.h -- the tables of a run's database: how they are made and checked, and the rows of evaluations in them.
  *
  *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at, digest
- *   evaluation   id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, violation, digest,
- *                and a REAL column, by its name, for every variable, objective and further measure; NULL: not known
+ *   evaluation   id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, violation,
+ *                digest, and a REAL column, by its name, for every variable, objective and further measure; NULL: not
+ *                known
  *   replicates   evaluation, NAME_sd of every objective: standard deviation of a single simulation; where it is known
  *   generation   number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished, digest
  *   front        evaluation, entered, left: it was on the front of the generations entered <= g < left
@@ -10,8 +11,8 @@
  *   session      started, ended, host, pid, program, threads, simulated_before, seconds, stopped, is_final,
  *                search, waited, surrogate
  *
- * Digests  check values by which a bit that the disk has changed is found, of the values as SQLite gives them back: it keeps
- *          no -0, and NULL for what is not finite. Not for adversaries
+ * Digests  check values by which a bit that the disk has changed is found, of the values as SQLite gives them back: it
+ *          keeps no -0, and NULL for what is not finite. Not for adversaries
  * Threads  as Database
  * Errors   a row that cannot be read, or is not what was written: STATUS_IO with its id */
 #ifndef IMTET_STORE_TABLES_H
@@ -25,8 +26,8 @@
 #include "store/database.h"
 #include "store/run.h"
 
-/* Whether SQLite has columns for all of it (2,000 in a table or an answer): STATUS_BAD_DATA with the number of variables that
- * the other columns leave. */
+/* Whether SQLite has columns for all of it (2,000 in a table or an answer): STATUS_BAD_DATA with the number of
+ * variables that the other columns leave. */
 Status tables_have_room(const Schema *schema, Err *err);
 
 /* The database of a new run at `path`. Made beside its place and renamed: it is there whole or not at all. */

@@ -1,5 +1,5 @@
-/* study/front_review.h -- what a front of the tower says about its own search box and contact law: gaps that sit on a bound,
- * gaps that never close, designs beyond the contact law.
+/* study/front_review.h -- what a front of the tower says about its own search box and contact law: gaps that sit on a
+ * bound, gaps that never close, designs beyond the contact law.
  *
  * Errors   none but those of simulations
  * Threads  no state */

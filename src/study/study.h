@@ -6,9 +6,9 @@
  * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept with its reason, never
  * on the front.
  *
- * Resumes       a run that is there already is resumed, however it stopped: from the state at the end of its last finished
- *               generation, evaluations made after that taken from the database. front.csv and the exports are then
- *               the same bytes as of a run that was never interrupted
+ * Resumes       a run that is there already is resumed, however it stopped: from the state at the end of its last
+ *               finished generation, evaluations made after that taken from the database. front.csv and the exports are
+ *               then the same bytes as of a run that was never interrupted
  * Settings      must be those of the run (study/differences.h). What the first search.max_evals decides beside the end
  *               (size of the first sample, directions of infill) stays as planned: with 1500 raised to 3000 the first
  *               1500 designs are those of the shorter run
