@@ -407,8 +407,10 @@ static int take_source(Reader *r, int n, Words w)
     char path[PATH_MAX], whole[PATH_MAX];
     const size_t length = strlen(r->folder);
     const char *name = Tcl_GetString(w[n - 1]);
-    snprintf(path, sizeof path, "%s%s%s", *name == '/' ? "" : r->folder, *name == '/' ? "" : "/", name);
-    if (!realpath(path, whole))
+    const int is_absolute = *name == '/';
+    const int n_path =
+        snprintf(path, sizeof path, "%s%s%s", is_absolute ? "" : r->folder, is_absolute ? "" : "/", name);
+    if (n_path >= (int)sizeof path || !realpath(path, whole))
         return refuse(r, "source: %.200s: %s", name, strerror(errno));
     if (strncmp(whole, r->folder, length) != 0 || whole[length] != '/')
         return refuse(r, "source: %.200s is not below the folder of the model", name);
