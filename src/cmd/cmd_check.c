@@ -312,7 +312,11 @@ static void print_value(const json_t *value)
     else if (json_is_number(value))
         printf(" %.4g", json_number_value(value));
     else
-        json_array_foreach(value, i, item) print_value(item);
+        json_array_foreach(value, i, item)
+        {
+            printf("%s", i ? "," : "");
+            print_value(item);
+        }
 }
 
 /* What was found, a line for each figure: its unit is the end of its name. */
