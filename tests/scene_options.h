@@ -28,12 +28,14 @@ static inline Status load_model(Building *b, const char *model, Err *err)
     return building_load(b, &s.building, err);
 }
 
+#define LIST_OF(...) ((NumberList){.n = sizeof((double[]){__VA_ARGS__}) / sizeof(double), .at = {__VA_ARGS__}})
+
 /* The core of n storeys of the options' heights. */
 static inline Status make_core_of(CoreBeam *core, const SceneOptions *s, int n, double t_base, double t_top, Err *err)
 {
     double storey_m[FLOORS_MAX];
     for (int j = 0; j < n; j++)
-        storey_m[j] = j == 0 ? s->building.first_storey_m : s->building.storey_m;
+        storey_m[j] = list_at(&s->building.heights_m, j);
     return core_beam_make(core, &s->core, n, storey_m, t_base, t_top, err);
 }
 

@@ -335,9 +335,6 @@ static void test_faults_of_storeys_are_named(void **state)
     expect_refusal_of(&o, "has both mass_kg and mass_t");
     write_file(&o, "storeys.csv", "height_m;mass_t;stiffness_kn_m\n3,5;100;200.000\n"); /* a mark of thousands */
     expect_refusal_of(&o, "storeys.csv:2: decimal points and decimal commas are mixed");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n");
-    snprintf(o.heights_m, sizeof o.heights_m, "3");
-    expect_refusal_of(&o, "has heights of its own");
 }
 
 static void test_a_folder_holds_one_kind_of_model(void **state)
@@ -358,15 +355,17 @@ static void test_heights_may_be_listed_storey_by_storey(void **state)
     BuildingOptions o = folder_of("matrices");
     write_file(&o, "K.csv", "2e8,-1e8\n-1e8,1e8\n");
     write_file(&o, "M.csv", "2e5,0\n0,2e5\n");
-    snprintf(o.heights_m, sizeof o.heights_m, "4.5, 3.25");
+    o.heights_m = LIST_OF(4.5, 3.25);
     Building b = load(&o);
     assert_close(b.storey_m[0], 4.5, 1e-15);
     assert_close(b.storey_m[1], 3.25, 1e-15);
     building_free(&b);
-    snprintf(o.heights_m, sizeof o.heights_m, "4.5");
-    expect_refusal_of(&o, "has 1 heights; the building has 2 storeys");
-    snprintf(o.heights_m, sizeof o.heights_m, "4.5, low");
-    expect_refusal_of(&o, "'low' is no number above 0");
+    o.heights_m = LIST_OF(4.5);
+    b = load(&o);
+    assert_same_number(b.storey_m[1], 4.5);
+    building_free(&b);
+    o.heights_m = LIST_OF(4.5, 4, 3);
+    expect_refusal_of(&o, "has 3 heights; the building has 2 storeys");
 }
 
 /* ---- P-delta -------------------------------------------------------------------------------------------------- */
@@ -442,7 +441,7 @@ static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
     (void)state;
     BuildingOptions o = scene_defaults().building;
     o.damping_model = DAMPING_RAYLEIGH;
-    o.damping = 0.02;
+    o.damping = LIST_OF(0.02);
     snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 4");
     Building b = load(&o);
     assert_close(b.zeta[0], 0.02, 1e-12);
@@ -459,18 +458,15 @@ static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
     expect_refusal_of(&o, "'1, 2, 3' has 3 modes; Rayleigh damping takes two");
 }
 
-static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
+static void test_a_list_of_damping_gives_each_mode_its_ratio(void **state)
 {
     (void)state;
     BuildingOptions o = scene_defaults().building;
-    o.damping_model = DAMPING_TABLE;
-    expect_refusal_of(&o, "building.damping_table: is none");
-    snprintf(o.damping_table, sizeof o.damping_table, "0.01, 0.02, 0.05");
+    o.damping = LIST_OF(0.01, 0.02, 0.05);
     Building b = load(&o);
     assert_true(b.zeta[0] == 0.01 && b.zeta[1] == 0.02 && b.zeta[2] == 0.05 && b.zeta[19] == 0.05);
     building_free(&b);
-    for (size_t i = 0; i < 20; i++)
-        snprintf(o.damping_table + 2 * i, sizeof o.damping_table - 2 * i, "1,1");
+    o.damping.n = 21;
     expect_refusal_of(&o, "has 21 ratios; the building has 20 modes");
 }
 
@@ -737,8 +733,8 @@ static void test_p_delta_and_damping_reach_the_full_model(void **state)
     assert_close(b.omega[0] / (2 * M_PI), 0.2553, 2e-4);
     assert_close(b.model.zeta[0], 0.03, 1e-4);
     building_free(&b);
-    o.damping_model = DAMPING_TABLE;
-    snprintf(o.damping_table, sizeof o.damping_table, "0.01, 0.02, 0.05");
+    o.damping_model = DAMPING_MODAL;
+    o.damping = LIST_OF(0.01, 0.02, 0.05);
     b = load(&o);
     for (int i = 0; i < b.model.n; i++)
         assert_same_number(b.model.zeta[i], (b.model.like[i] == 0 ? 0.01 : b.model.like[i] == 1 ? 0.02 : 0.05));
@@ -887,7 +883,7 @@ int main(void)
         cmocka_unit_test(test_p_delta_of_one_storey_is_the_inverted_pendulum),
         cmocka_unit_test(test_a_column_buckles_at_eulers_load),
         cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
-        cmocka_unit_test(test_a_damping_table_gives_each_mode_its_ratio),
+        cmocka_unit_test(test_a_list_of_damping_gives_each_mode_its_ratio),
         cmocka_unit_test(test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines),
         cmocka_unit_test(test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices),
         cmocka_unit_test(test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass),

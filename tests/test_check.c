@@ -29,7 +29,7 @@ static void write_building(double k_factor, double m_factor, int top_first)
     free(folder);
     write_in_place("six/K.csv", stiffness);
     write_in_place("six/M.csv", mass);
-    write_in_place("six.ini", "[building]\nmodel = six\nfirst_storey_m = 3.5\nstorey_m = 3.5\n[core]\nside_m = 3\n"
+    write_in_place("six.ini", "[building]\nmodel = six\nheights_m = 3.5\n[core]\nwidth_m = 3\n"
                               "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 1\n");
 }
 
@@ -237,7 +237,7 @@ static void test_damping_peak_and_gaps_beyond_reason_are_noticed(void **state)
     expect_warnings("building.damping", "--set building.damping=3");
     expect_warnings("core.damping", "--set core.damping=0.25");
     expect_warnings("motion.pga_g", "--pga 3.1");
-    expect_warnings("design.gap_max_m", "--set design.gap_max_m=9");
+    expect_warnings("design.gap_m", "--set design.gap_m=0.001,9");
     expect_warnings("sim.duration_s", "--set sim.duration_s=1e5");
     write_in_place("wide.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                                "0.1,0.1,20,0.1,0.1,0.1,0.012,0.01\n");
@@ -256,8 +256,8 @@ static void test_a_squat_core_without_shear_is_noticed(void **state)
 {
     (void)state;
     write_building(1, 1, 0);
-    expect_warnings("core.theory", "--set core.theory=euler_bernoulli --set core.side_m=7");
-    expect_warnings("", "--set core.side_m=7");
+    expect_warnings("core.theory", "--set core.theory=euler_bernoulli --set core.width_m=7");
+    expect_warnings("", "--set core.width_m=7");
 }
 
 static void test_faults_come_as_json_too(void **state)

@@ -160,16 +160,16 @@ static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
 static void test_a_setting_without_effect_is_named(void **state)
 {
     (void)state;
-    expect(0, "note: core.width_m has no effect: it is read where core.section = plate",
-           "simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.width_m=3");
+    expect(0, "note: core.masses_kg has no effect: it is read where core.section = effective",
+           "simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.masses_kg=3");
     char keeps[sizeof place.folder + 8];
     snprintf(keeps, sizeof keeps, "%s/keeps", place.folder);
     assert_int_equal(mkdir(keeps, 0755), 0);
     write_in_place("keeps/run.sqlite", "");
     expect(2, "which a run needs", "spectrum builtin:kobe-like --csv @/keeps/settings.ini");
     expect(2, "which a run needs", "report @/keeps --out @/keeps/front.csv");
-    expect(0, "warning: building.damping_table: has no effect",
-           "check configs/quick.ini --set building.damping_table=1");
+    expect(0, "warning: building.rayleigh_modes: has no effect",
+           "check configs/quick.ini --set building.rayleigh_modes=1,2");
     expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");
     const double gap[2] = {0.01, 0.02}, wall[2] = {0.02, 0.02};
     write_designs("two.csv", 2, gap, wall, wall);
@@ -459,7 +459,7 @@ static void write_five_floors(double k, double m)
     free(folder);
     write_in_place("five/K.csv", stiffness);
     write_in_place("five/M.csv", mass);
-    write_in_place("five.ini", "[building]\nmodel = five\nfirst_storey_m = 4\nstorey_m = 3\n[core]\nside_m = 5\n"
+    write_in_place("five.ini", "[building]\nmodel = five\nheights_m = 4, 3\n[core]\nwidth_m = 5\n"
                                "[motion]\npga_g = 0.3\n[sim]\nduration_s = 15\n"
                                "[search]\ninitial = 20\npopulation = 12\nmax_evals = 30\n");
     write_in_place("five.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,t_top_m\n"

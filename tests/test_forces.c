@@ -82,7 +82,7 @@ TEST(a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever)
     double push[N] = {[N - 1] = P};
     frame_open(&f, CORE_BOX, t, t);
     push_core(&f, push, N, &r);
-    const double B = f.options.core.side_m, b = B - 2 * t, I = (pow(B, 4) - pow(b, 4)) / 12;
+    const double B = f.options.core.width_m, b = B - 2 * t, I = (pow(B, 4) - pow(b, 4)) / 12;
     double z = 0;
     for (int s = 0; s < N; s++) {
         assert_close(r.core_shear_n[s], P, 1e-7);

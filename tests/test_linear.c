@@ -278,7 +278,7 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
     Physical p;
     CoreBeam *core = calloc(1, sizeof *core);
     const LinearDevice d = {.tmd_hz = 1.3, .tmd_damping = 0.2, .link_ns_m = 4e5};
-    o.core.side_m = 1; /* slender, so that its fastest mode needs no tiny steps */
+    o.core.width_m = 1; /* slender, so that its fastest mode needs no tiny steps */
     make_shaking(accel);
     make_frame(&f, N, 4e7, 1e5, 0.03);
     make_core(core, &o, N);

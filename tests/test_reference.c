@@ -242,7 +242,7 @@ TEST(without_damping_the_tied_pair_is_a_sum_of_closed_forms)
     double accel[SINES_N], energy = 0;
     const Motion m = sines(accel, 1);
     stage_set(&stage, 0);
-    stage.s.building.damping = stage.s.core.damping = 0;
+    stage.s.building.damping.at[0] = stage.s.core.damping = 0;
     CHECK_OK(building_damp(&stage.b, &stage.s.building, &(Err){0}), &(Err){0});
     pair_set(&pair, &stage);
     pair_shake(&pair, &m);
@@ -285,8 +285,7 @@ TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
     const Motion m = sines(accel, 1);
     static const double DURATION[] = {1.234, 3, 4.321};
     stage_without_core(&stage);
-    stage.s.core.area_base_m2 = stage.s.core.area_top_m2 = 1e-9;
-    stage.s.core.inertia_base_m4 = stage.s.core.inertia_top_m4 = 1e-9;
+    stage.s.core.areas_m2 = stage.s.core.inertias_m4 = LIST_OF(1e-9);
     CHECK_OK(make_core_of(&stage.core, &stage.s, stage.b.n, 1, 1, &err), &err);
     for (size_t i = 0; i < sizeof DURATION / sizeof DURATION[0]; i++) {
         const SimResult t = run_tied(&stage, &m, DURATION[i], ACCURACY_FINE);

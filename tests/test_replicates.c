@@ -202,7 +202,7 @@ static void test_a_structure_as_built_is_the_scene_whose_settings_say_so(void **
             break;
         default:
             b.building_damping = 3;
-            other.building.damping *= 3;
+            other.building.damping.at[0] *= 3;
         }
         const SimResult built = run_scene(&s, &b), wanted = run_scene(&other, NULL);
         assert_close(built.j1_m, wanted.j1_m, 1e-9);

@@ -56,13 +56,13 @@ TEST(the_effective_core_has_the_frequencies_of_table_1)
     assert_close(mass, 7.584e5, 1e-3);
 }
 
-/* Twenty numbers from the first to the last, as a comma list. */
-static void list_of(char list[OPTION_TEXT_MAX], double first, double last)
+/* Twenty numbers from the first to the last. */
+static NumberList list_of(double first, double last)
 {
-    size_t used = 0;
+    NumberList list = {.n = 20};
     for (int j = 0; j < 20; j++)
-        used += (size_t)snprintf(list + used, OPTION_TEXT_MAX - used, "%s%.9g", j ? ", " : "",
-                                 first + (last - first) * j / 19);
+        list.at[j] = first + (last - first) * j / 19;
+    return list;
 }
 
 TEST(an_effective_core_may_be_given_storey_by_storey)
@@ -72,14 +72,13 @@ TEST(an_effective_core_may_be_given_storey_by_storey)
     Err err = {0};
     s.core.section = CORE_EFFECTIVE;
     CHECK_OK(make_core_of(&linear, &s, 20, 1, 1, &err), &err);
-    list_of(s.core.areas_m2, s.core.area_base_m2, s.core.area_top_m2);
-    list_of(s.core.inertias_m4, s.core.inertia_base_m4, s.core.inertia_top_m4);
-    s.core.area_base_m2 = s.core.inertia_top_m4 = 1e3;
+    s.core.areas_m2 = list_of(s.core.areas_m2.at[0], s.core.areas_m2.at[1]);
+    s.core.inertias_m4 = list_of(s.core.inertias_m4.at[0], s.core.inertias_m4.at[1]);
     CHECK_OK(make_core_of(&listed, &s, 20, 1, 1, &err), &err);
     assert_close(listed.mass_kg, linear.mass_kg, 1e-8);
     for (int i = 0; i < 20; i++)
         assert_close(listed.omega[i], linear.omega[i], 1e-8);
-    list_of(s.core.masses_kg, 2000, 1000);
+    s.core.masses_kg = LIST_OF(2000, 1000);
     CHECK_OK(make_core_of(&listed, &s, 20, 1, 1, &err), &err);
     assert_close(listed.mass_kg, 20 * 1500, 1e-9);
     assert_true(make_core_of(&listed, &s, 19, 1, 1, &err) != STATUS_OK);
@@ -115,7 +114,7 @@ TEST(a_uniform_core_is_a_textbook_cantilever)
     SceneOptions s = paper_scene();
     Err err = {0};
     s.core.section = CORE_PLATE;
-    s.building.first_storey_m = s.building.storey_m = 4;
+    s.building.heights_m = LIST_OF(4);
     CHECK_OK(make_core_of(&core, &s, 20, 0.5, 0.5, &err), &err);
     const double L = 80, EI = s.core.youngs_modulus_pa * s.core.width_m * pow(0.5, 3) / 12;
     const double m = s.core.density_kg_m3 * s.core.width_m * 0.5;
@@ -142,8 +141,8 @@ static SceneOptions uniform_storeys(double side, CoreTheory theory)
 {
     SceneOptions s = scene_defaults();
     s.core.theory = theory;
-    s.core.side_m = side;
-    s.building.first_storey_m = s.building.storey_m = 4;
+    s.core.width_m = side;
+    s.building.heights_m = LIST_OF(4);
     return s;
 }
 
@@ -153,7 +152,7 @@ typedef struct {
 
 static Tube tube(const CoreOptions *o, double t)
 {
-    const double B = o->side_m, A = B * B - (B - 2 * t) * (B - 2 * t), I = (pow(B, 4) - pow(B - 2 * t, 4)) / 12;
+    const double B = o->width_m, A = B * B - (B - 2 * t) * (B - 2 * t), I = (pow(B, 4) - pow(B - 2 * t, 4)) / 12;
     const double k = 20 * (1 + o->poisson) / (48 + 39 * o->poisson), E = o->youngs_modulus_pa;
     return (Tube){E * I, k * E / (2 * (1 + o->poisson)) * A, o->density_kg_m3 * A, A, I};
 }
@@ -278,7 +277,7 @@ TEST(condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent)
     CoreBeam core;
     Err err = {0};
     double b[BEAM_MODES];
-    s.building.first_storey_m = s.building.storey_m = L / 64;
+    s.building.heights_m = LIST_OF(L / 64);
     clamped_free_roots(sqrt(a.I / a.A) / L, sqrt(a.EI / a.kGA) / L, BEAM_MODES, b);
     CHECK_OK(make_core_of(&core, &s, 64, 0.01, 0.01, &err), &err);
     for (int i = 0; i < BEAM_MODES; i++) {
@@ -318,13 +317,13 @@ TEST(an_effective_section_shears_by_the_area_that_is_given)
     const Tube a = tube(&s.core, 0.02);
     CHECK_OK(make_core_of(&box, &s, 8, 0.02, 0.02, &err), &err);
     s.core.section = CORE_EFFECTIVE;
-    s.core.area_base_m2 = s.core.area_top_m2 = a.A;
-    s.core.inertia_base_m4 = s.core.inertia_top_m4 = a.I;
-    s.core.shear_area_base_m2 = s.core.shear_area_top_m2 = a.kGA * 2 * (1 + s.core.poisson) / s.core.youngs_modulus_pa;
+    s.core.areas_m2 = LIST_OF(a.A);
+    s.core.inertias_m4 = LIST_OF(a.I);
+    s.core.shear_areas_m2 = LIST_OF(a.kGA * 2 * (1 + s.core.poisson) / s.core.youngs_modulus_pa);
     CHECK_OK(make_core_of(&effective, &s, 8, 1, 1, &err), &err);
     for (int i = 0; i < 8; i++)
         assert_close(effective.omega[i], box.omega[i], 1e-10);
-    s.core.shear_area_top_m2 = 0;
+    s.core.shear_areas_m2 = LIST_OF(1, 0);
     assert_int_equal(make_core_of(&effective, &s, 8, 1, 1, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "core.shear_area"));
 }
@@ -392,7 +391,7 @@ TEST(walls_that_do_not_fit_are_refused)
     CoreBeam core;
     SceneOptions s = paper_scene();
     Err err = {0};
-    s.core.side_m = 0.05;
+    s.core.width_m = 0.05;
     assert_int_equal(make_core_of(&core, &s, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
     assert_int_equal(make_core_of(&core, &s, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
 }

@@ -40,8 +40,8 @@ TEST(the_mass_changes_with_the_thickness_as_the_section_says)
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     for (int j = 0; j < 20; j++) {
         const double part = j / 19.0, t = x[20] + (x[21] - x[20]) * part;
-        const double height = j == 0 ? s.building.first_storey_m : s.building.storey_m;
-        const double slope = s.core.density_kg_m3 * height * (4 * s.core.side_m - 8 * t);
+        const double height = list_at(&s.building.heights_m, j);
+        const double slope = s.core.density_kg_m3 * height * (4 * s.core.width_m - 8 * t);
         base += (1 - part) * slope;
         top += part * slope;
     }
@@ -67,7 +67,7 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
         Settings other = s;
         Problem p;
         SimResult r;
-        other.building.damping += (side ? 0.5 : -0.5) * damping->step;
+        other.building.damping.at[0] += (side ? 0.5 : -0.5) * damping->step;
         CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
         CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_NO_CORE, .x = NULL}, &r, &err), &err);
         j1[side] = r.j1_m;

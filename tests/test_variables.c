@@ -54,7 +54,7 @@ TEST(a_core_of_given_areas_has_no_thickness_to_search)
     expect_names(&s, WANT, 3);
     assert_int_equal(design_space_floors(&o, CORE_EFFECTIVE, 3), 2);
     design_bounds(&s, &o, lower, upper);
-    assert_true(upper[1] == o.gap_max_m && lower[2] == log10(o.bumper_min_n_m));
+    assert_true(upper[1] == o.gap_m.at[1] && lower[2] == log10(o.bumper_n_m.at[0]));
     design_of(&s, (double[]){0.1, 0.2, 8}, &d);
     assert_true(d.gap[1] == 0.2 && d.t_base == 0 && d.t_top == 0);
     assert_close(d.bumper[1], 1e8, 1e-12);
@@ -146,7 +146,7 @@ TEST(a_design_is_simulated_the_same_by_any_variables)
     plain.sim.duration_s = zoned.sim.duration_s = 14;
     plain.sim.forces = zoned.sim.forces = FORCES_YES;
     plain.contact.bumper_stiffness_n_m = 1e9;
-    plain.core.side_m = 9.4;
+    plain.core.width_m = 9.4;
     snprintf(zoned.design.variables, sizeof zoned.design.variables, "gaps, thickness, bumper, side");
     zoned.design.gap_zones = 5;
     zoned.design.bumper_zones = 2;

@@ -72,7 +72,7 @@ static double largest_displacement(const Tower *tower)
     Building b;
     Err err = {0};
     need(building_load(&b, &tower->settings.building, &err), &err);
-    const double zeta = tower->settings.building.damping, dt = tower->motion.dt_s;
+    const double zeta = tower->settings.building.damping.at[0], dt = tower->motion.dt_s;
     double q[FLOORS_MAX] = {0}, v[FLOORS_MAX] = {0}, most = 0;
     for (size_t k = 0; k + 1 < tower->motion.n; k++) {
         double u[LOOKS + 1][FLOORS_MAX] = {{0}};

@@ -30,7 +30,8 @@ typedef struct {
 
 static double setting_of(const Settings *s, size_t key)
 {
-    const double values[N_KEYS] = {s->contact.radius_m, s->contact.restitution, s->building.damping, s->core.damping,
+    const double damping = s->building.damping.n == 1 ? s->building.damping.at[0] : 0; /* of a list of them: none */
+    const double values[N_KEYS] = {s->contact.radius_m, s->contact.restitution, damping, s->core.damping,
                                    s->contact.bumper_stiffness_n_m};
     return values[key];
 }

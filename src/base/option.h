@@ -15,6 +15,26 @@ enum { OPTION_TEXT_MAX = 512 }; /* bytes, the final zero included */
 /* Value of a number for which a word was given ("auto"); below every number that such a setting allows. */
 #define OPTION_WORD (-1.0)
 
+/* A comma list of numbers. */
+enum { OPTION_LIST_MAX = 128 };
+typedef struct {
+    int n;                      /* 0: none */
+    double at[OPTION_LIST_MAX]; /* (n) */
+} NumberList;
+
+/* Number i, the last for those behind the list. */
+static inline double list_at(const NumberList *list, int i)
+{
+    return list->at[i < list->n ? i : list->n - 1];
+}
+
+/* Number i of `count` along something: of a list of so many; of two, at the first and the last; of one. */
+static inline double list_along(const NumberList *list, int i, int count)
+{
+    const double share = count > 1 ? (double)i / (count - 1) : 0;
+    return list->n == 2 && count != 2 ? list->at[0] + (list->at[1] - list->at[0]) * share : list_at(list, i);
+}
+
 /* A path from outside; STATUS_MISSING where there is no room for it. */
 Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err);
 

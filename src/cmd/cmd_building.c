@@ -63,7 +63,7 @@ static Status make_core(const Args *args, Model *m, Err *err)
         design_free(&d);
     }
     if (m->design.side > 0)
-        core->side_m = m->design.side;
+        core->width_m = m->design.side;
     for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
         TRY(core_beam_first_hz(core, k, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, &m->by_theory[k],
                                err));

@@ -163,7 +163,7 @@ static int summarise(Check *c, CheckedScene *p)
     CoreOptions core = p->s->core;
     design_of(&p->space, p->x, &p->design);
     if (p->design.side > 0)
-        core.side_m = p->design.side;
+        core.width_m = p->design.side;
     const Status status =
         scene_summarise(&p->summary, &p->building, &core, &p->motion, p->design.t_base, p->design.t_top, &e);
     if (!note(c, status, "core", &e))
@@ -245,8 +245,8 @@ static void describe_study(Check *c, const CheckedScene *p)
     const double seconds = (double)simulations * r.seconds / (double)threads;
     json_object_set_new(c->out, "study",
                         json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f}", "variables", p->space.n_var,
-                                  "gap_m", s->design.gap_min_m, s->design.gap_max_m, "thickness_m",
-                                  s->design.thickness_min_m, s->design.thickness_max_m, "simulations",
+                                  "gap_m", s->design.gap_m.at[0], s->design.gap_m.at[1], "thickness_m",
+                                  s->design.thickness_m.at[0], s->design.thickness_m.at[1], "simulations",
                                   (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
                                   "impacts", (json_int_t)r.impacts, "seconds", seconds));
 }

@@ -138,8 +138,10 @@ static void print_review(const Schema *schema, const FrontReview *r)
     char heading[100];
     for (size_t j = 0; j < r->n_floors; j++)
         never[j] = r->n_simulated - r->closes[j];
-    print_gaps("on design.gap_min_m in half of the front or more: ", schema, r->n_gaps, r->at_smallest, half);
-    print_gaps("on design.gap_max_m in half of the front or more: ", schema, r->n_gaps, r->at_largest, half);
+    print_gaps("on the lower bound of design.gap_m in half of the front or more: ", schema, r->n_gaps, r->at_smallest,
+               half);
+    print_gaps("on the upper bound of design.gap_m in half of the front or more: ", schema, r->n_gaps, r->at_largest,
+               half);
     snprintf(heading, sizeof heading,
              "gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
     print_gaps(heading, NULL, r->n_floors, never, r->n_simulated);

@@ -37,10 +37,10 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user)
         warn("search.fidelity", "has no effect: it screens sim.replicates of a tower, unless problem.noisy", user);
     if (s->problem.kind != PROBLEM_TOWER)
         return;
-    if (s->sim.gap_tolerance_m > s->design.gap_max_m) {
+    if (s->sim.gap_tolerance_m > s->design.gap_m.at[1]) {
         char text[100];
         snprintf(text, sizeof text, "%g m is more than the largest gap of %g m", s->sim.gap_tolerance_m,
-                 s->design.gap_max_m);
+                 s->design.gap_m.at[1]);
         warn("sim.gap_tolerance_m", text, user);
     }
     warn_of_twins(s, warn, user);

@@ -16,19 +16,11 @@
 
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
-    const int listed = list_is_given(o->heights_m);
-    if (listed && list_count(o->heights_m) != (size_t)b->n)
-        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %zu heights; the building has %d storey%s",
-                    list_count(o->heights_m), b->n, b->n == 1 ? "" : "s");
-    if (listed && files->storey_m)
-        return fail(err, STATUS_BAD_DATA, "building.heights_m: %s has heights of its own; leave it at none", o->model);
-    for (int j = 0; j < b->n; j++) {
-        b->storey_m[j] = j == 0 ? o->first_storey_m : o->storey_m;
-        if (files->storey_m)
-            b->storey_m[j] = files->storey_m[j];
-        if (listed)
-            TRY(list_positive(o->heights_m, (size_t)j, "building.heights_m", &b->storey_m[j], err));
-    }
+    if (o->heights_m.n > b->n && o->heights_m.n > 2 && !files->storey_m)
+        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %d heights; the building has %d storey%s",
+                    o->heights_m.n, b->n, b->n == 1 ? "" : "s");
+    for (int j = 0; j < b->n; j++)
+        b->storey_m[j] = files->storey_m ? files->storey_m[j] : list_at(&o->heights_m, j);
     return STATUS_OK;
 }
 
@@ -142,7 +134,7 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
     const double w1 = b->omega[(int)mode[0] - 1], w2 = b->omega[(int)mode[1] - 1];
     if (!(w1 != w2))
         return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: '%s' are not two modes", o->rayleigh_modes);
-    const double mass = 2 * o->damping * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping / (w1 + w2);
+    const double mass = 2 * o->damping.at[0] * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping.at[0] / (w1 + w2);
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);
     for (int i = 0; i < b->model.n; i++)
@@ -150,32 +142,18 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
     return STATUS_OK;
 }
 
-static Status damping_table(Building *b, const BuildingOptions *o, Err *err)
+Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 {
-    const size_t n = list_is_given(o->damping_table) ? list_count(o->damping_table) : 0;
-    if (n == 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "building.damping_table: is none; building.damping_model = table wants a list");
-    if (n > (size_t)b->n)
-        return fail(err, STATUS_BAD_DATA, "building.damping_table: has %zu ratios; the building has %d mode%s", n, b->n,
-                    b->n == 1 ? "" : "s");
+    if (o->damping_model == DAMPING_RAYLEIGH)
+        return rayleigh(b, o, err);
+    if (o->damping.n > b->n)
+        return fail(err, STATUS_BAD_DATA, "building.damping: has %d ratios; the building has %d mode%s", o->damping.n,
+                    b->n, b->n == 1 ? "" : "s");
     for (int i = 0; i < b->n; i++)
-        TRY(list_positive(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
-                          err));
+        b->zeta[i] = list_at(&o->damping, i);
     for (int i = 0; i < b->model.n; i++)
         b->model.zeta[i] = b->zeta[b->model.like[i] >= 0 ? b->model.like[i] : b->n - 1];
     return STATUS_OK;
-}
-
-Status building_damp(Building *b, const BuildingOptions *o, Err *err)
-{
-    for (int i = 0; i < b->n; i++)
-        b->zeta[i] = o->damping;
-    for (int i = 0; i < b->model.n; i++)
-        b->model.zeta[i] = o->damping;
-    if (o->damping_model == DAMPING_RAYLEIGH)
-        return rayleigh(b, o, err);
-    return o->damping_model == DAMPING_TABLE ? damping_table(b, o, err) : STATUS_OK;
 }
 
 /* ---- the model that is integrated ----------------------------------------------------------------------------- */

@@ -18,12 +18,12 @@
  * (Craig-Bampton, scene/reduction.h), and with as many as there are the full model. K, M, phi, omega, gamma and
  * zeta are always those of the floors alone; shares by mode are booked under the mode of these that a mode resembles.
  *
- * Storey heights: of the folder where it has them; else building.heights_m, or first_storey_m and storey_m.
+ * Storey heights: of the files where they have them; else building.heights_m.
  *
  * P-delta  with building.p_delta = on K loses the geometric stiffness of the weights above: storey j of height h_j
  *          carries W_j = g sum_{k >= j} m_k (m row sums of M), K_j,j-1 block -= W_j / h_j [1 -1; -1 1].
- * Damping  modal: building.damping in every mode; rayleigh: zeta_i = (a / w_i + b w_i) / 2 through building.damping at
- *          the two modes of building.rayleigh_modes; table: building.damping_table, mode by mode, the last one for the rest
+ * Damping  modal: building.damping mode by mode, the last ratio for the rest; rayleigh: zeta_i = (a / w_i + b w_i) / 2
+ *          through its first ratio at the two modes of building.rayleigh_modes
  *
  * Checked: square, finite, symmetric to rounding (1e-6 of the largest entry), positive definite. K.csv and M.csv with
  * building.units = auto are read as N/m and kg; a first period beyond 0.01 to 1 s per storey is then

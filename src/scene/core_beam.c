@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/linalg.h"
-#include "base/list.h"
 #include "scene/beam.h"
 
 typedef struct {
@@ -21,11 +20,11 @@ static double tube_shear_factor(double poisson)
 
 static const double PLATE_SHEAR_FACTOR = 5.0 / 6; /* solid rectangle, parabola of shear stress */
 
-static Section section_at(const CoreOptions *o, double share, double t)
+static Section section_at(const CoreOptions *o, int n, int storey, double t)
 {
     switch (o->section) {
     case CORE_BOX: {
-        const double outer = o->side_m, inner = outer - 2 * t;
+        const double outer = o->width_m, inner = outer - 2 * t;
         const double area = outer * outer - inner * inner;
         return (Section){area, (pow(outer, 4) - pow(inner, 4)) / 12, tube_shear_factor(o->poisson) * area, 0};
     }
@@ -34,29 +33,9 @@ static Section section_at(const CoreOptions *o, double share, double t)
     case CORE_EFFECTIVE:
         break;
     }
-    return (Section){o->area_base_m2 + (o->area_top_m2 - o->area_base_m2) * share,
-                     o->inertia_base_m4 + (o->inertia_top_m4 - o->inertia_base_m4) * share,
-                     o->shear_area_base_m2 + (o->shear_area_top_m2 - o->shear_area_base_m2) * share, 0};
-}
-
-/* Value `storey` of a list of n, where there is one. */
-static Status take_listed(const char *list, int n, int storey, const char *key, double *value, Err *err)
-{
-    if (!list_is_given(list))
-        return STATUS_OK;
-    if (list_count(list) != (size_t)n)
-        return fail(err, STATUS_BAD_DATA, "%s: has %zu values; the building has %d storeys", key, list_count(list), n);
-    return list_positive(list, (size_t)storey, key, value, err);
-}
-
-/* What an effective section has storey by storey. */
-static Status take_lists(const CoreOptions *o, int n, int storey, Section *a, Err *err)
-{
-    if (o->section != CORE_EFFECTIVE)
-        return STATUS_OK;
-    TRY(take_listed(o->areas_m2, n, storey, "core.areas_m2", &a->area, err));
-    TRY(take_listed(o->inertias_m4, n, storey, "core.inertias_m4", &a->inertia, err));
-    return take_listed(o->masses_kg, n, storey, "core.masses_kg", &a->mass_kg, err);
+    return (Section){list_along(&o->areas_m2, storey, n), list_along(&o->inertias_m4, storey, n),
+                     list_along(&o->shear_areas_m2, storey, n),
+                     o->masses_kg.n ? list_along(&o->masses_kg, storey, n) : 0};
 }
 
 static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
@@ -70,16 +49,28 @@ static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
                   .length = length};
 }
 
-static Status check(const CoreOptions *o, double t_base_m, double t_top_m, Err *err)
+static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m, Err *err)
 {
     if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
         return fail(err, STATUS_BAD_DATA, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
-    if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->side_m))
-        return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.side_m = %g m",
-                    fmax(t_base_m, t_top_m), o->side_m);
-    if (o->section == CORE_EFFECTIVE && (o->shear_area_base_m2 > 0) != (o->shear_area_top_m2 > 0))
-        return fail(err, STATUS_BAD_DATA, "core.shear_area_base_m2 is %g, core.shear_area_top_m2 %g: give both or none",
-                    o->shear_area_base_m2, o->shear_area_top_m2);
+    if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->width_m))
+        return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.width_m = %g m",
+                    fmax(t_base_m, t_top_m), o->width_m);
+    const struct {
+        const char *key;
+        const NumberList *list;
+    } lists[] = {{"core.areas_m2", &o->areas_m2},
+                 {"core.inertias_m4", &o->inertias_m4},
+                 {"core.shear_areas_m2", &o->shear_areas_m2},
+                 {"core.masses_kg", &o->masses_kg}};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0] && o->section == CORE_EFFECTIVE; i++)
+        if (lists[i].list->n > 2 && lists[i].list->n != n)
+            return fail(err, STATUS_BAD_DATA, "%s: has %d values; the building has %d storeys", lists[i].key,
+                        lists[i].list->n, n);
+    for (int j = 0; j < n && o->section == CORE_EFFECTIVE; j++)
+        if ((list_along(&o->shear_areas_m2, j, n) > 0) != (o->shear_areas_m2.at[0] > 0))
+            return fail(err, STATUS_BAD_DATA,
+                        "core.shear_areas_m2: 0 in one storey and not in another; give all or none");
     return STATUS_OK;
 }
 
@@ -87,13 +78,12 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
                       double t_top_m, Err *err)
 {
     Beam beam[FLOORS_MAX];
-    TRY(check(o, t_base_m, t_top_m, err));
+    TRY(check(o, n, t_base_m, t_top_m, err));
     memset(c, 0, sizeof *c);
     c->n = n;
     for (int e = 0; e < n; e++) {
         const double share = n > 1 ? (double)e / (n - 1) : 0;
-        Section section = section_at(o, share, t_base_m + (t_top_m - t_base_m) * share);
-        TRY(take_lists(o, n, e, &section, err));
+        const Section section = section_at(o, n, e, t_base_m + (t_top_m - t_base_m) * share);
         beam[e] = storey_beam(o, &section, storey_m[e]);
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }
@@ -106,8 +96,8 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
 CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
 {
     const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
-    const double side = o->side_m, inner = side - 2 * t;
-    const Section a = section_at(o, share, t);
+    const double side = o->width_m, inner = side - 2 * t;
+    const Section a = section_at(o, n, storey, t);
     CoreStorey c = {.thickness = t, .area = a.area, .inertia = a.inertia};
     if (o->section == CORE_BOX) {
         c.depth = side;

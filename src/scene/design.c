@@ -102,14 +102,13 @@ void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[],
 {
     const int wall = s->n_gaps, bumper = wall + s->n_walls, side = bumper + s->n_bumpers;
     for (int j = 0; j < s->n_var; j++) {
-        lower[j] = j < wall     ? o->gap_min_m
-                   : j < bumper ? o->thickness_min_m
-                   : j < side   ? log10(o->bumper_min_n_m)
-                                : o->side_min_m;
-        upper[j] = j < wall     ? o->gap_max_m
-                   : j < bumper ? o->thickness_max_m
-                   : j < side   ? log10(o->bumper_max_n_m)
-                                : o->side_max_m;
+        const NumberList *l = j < wall     ? &o->gap_m
+                              : j < bumper ? &o->thickness_m
+                              : j < side   ? &o->bumper_n_m
+                                           : &o->width_m;
+        const int is_log = j >= bumper && j < side;
+        lower[j] = is_log ? log10(l->at[0]) : l->at[0];
+        upper[j] = is_log ? log10(l->at[1]) : l->at[1];
     }
 }
 

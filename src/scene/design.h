@@ -50,7 +50,7 @@ typedef struct {
     double gap[FLOORS_MAX];    /* [m] */
     double bumper[FLOORS_MAX]; /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
     double t_base, t_top;      /* [m]; 0: there are none */
-    double side;               /* [m]; 0: as core.side_m says */
+    double side;               /* [m]; 0: as core.width_m says */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);
 

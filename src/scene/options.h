@@ -21,20 +21,18 @@ enum { FLOORS_MAX = 128 }; /* of a building */
     X(BUILDING_KIP_FT, "kip_ft")
 typedef enum { BUILDING_UNITS_LIST(CHOICE_NAME) } BuildingUnits;
 
-#define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh") X(DAMPING_TABLE, "table")
+#define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh")
 typedef enum { DAMPING_MODEL_LIST(CHOICE_NAME) } DampingModel;
 
 typedef struct {
     char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder (scene/building.h has its forms) */
     BuildingUnits units;
     DampingModel damping_model;
-    double damping;                       /* [-] of every mode, or of two (rayleigh) */
+    NumberList damping;                   /* [-] mode by mode, the last for the rest; rayleigh: of two modes */
     char rayleigh_modes[OPTION_TEXT_MAX]; /* two of them, from 1 */
-    char damping_table[OPTION_TEXT_MAX];  /* [-] mode by mode, or none */
-    double first_storey_m, storey_m;
-    char heights_m[OPTION_TEXT_MAX]; /* storey by storey, or none */
-    Switch rigid_floors;             /* of a frame */
-    long modes;                      /* fixed-interface modes beside the floors; 0: condensed */
+    NumberList heights_m;                 /* storey by storey, the last for the rest; of matrices */
+    Switch rigid_floors;                  /* of a frame */
+    long modes;                           /* fixed-interface modes beside the floors; 0: condensed */
     Switch p_delta;
 } BuildingOptions;
 
@@ -47,17 +45,15 @@ typedef enum { CORE_THEORY_LIST(CHOICE_NAME) } CoreTheory;
 typedef struct {
     CoreSection section;
     CoreTheory theory;
-    double side_m, width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
-    double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
-    double shear_area_base_m2, shear_area_top_m2; /* 0: no shear deformation */
-    char areas_m2[OPTION_TEXT_MAX], inertias_m4[OPTION_TEXT_MAX], masses_kg[OPTION_TEXT_MAX]; /* by storey, or none */
+    double width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
+    NumberList areas_m2, inertias_m4, shear_areas_m2, masses_kg; /* at base and top, or by storey; 0, none: no shear
+                                                                  * deformation, density times area */
 } CoreOptions;
 
 typedef struct {
-    char variables[OPTION_TEXT_MAX]; /* words (scene/design.h); empty: gaps, thickness */
-    long gap_zones, bumper_zones;    /* 0: one per floor */
-    double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
-    double bumper_min_n_m, bumper_max_n_m, side_min_m, side_max_m;
-} DesignOptions; /* the design variables and their bounds */
+    char variables[OPTION_TEXT_MAX];                    /* words (scene/design.h); empty: gaps, thickness */
+    long gap_zones, bumper_zones;                       /* 0: one per floor */
+    NumberList gap_m, thickness_m, bumper_n_m, width_m; /* each from, to */
+} DesignOptions;                                        /* the design variables and their bounds */
 
 #endif

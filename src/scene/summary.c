@@ -180,7 +180,7 @@ void scene_warnings(const SceneSummary *s, const CoreOptions *core, const Design
     warn_of_core(s, core, &w);
     if (peak_g > PEAK_MAX_G)
         say(&w, "motion.pga_g", "a peak of %.4g g; hardly a record exceeds %g g", peak_g, PEAK_MAX_G);
-    if (design->gap_max_m > GAP_MAX_M)
-        say(&w, "design.gap_max_m", "gaps up to %g m; floors move less than %g m, such a gap does not close",
-            design->gap_max_m, GAP_MAX_M);
+    if (design->gap_m.at[1] > GAP_MAX_M)
+        say(&w, "design.gap_m", "gaps up to %g m; floors move less than %g m, such a gap does not close",
+            design->gap_m.at[1], GAP_MAX_M);
 }

@@ -14,12 +14,9 @@ static const struct {
     {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", "problem.kind", "external"},
     {"problem.variables problem.objectives problem.variable_names problem.objective_names", "problem.kind", "!tower"},
     {"building.rayleigh_modes", "building.damping_model", "rayleigh"},
-    {"building.damping_table", "building.damping_model", "table"},
-    {"core.side_m", "core.section", "box"},
-    {"core.width_m", "core.section", "plate"},
-    {"core.area_ core.inertia_ core.shear_area_ core.areas_m2 core.inertias_m4 core.masses_kg", "core.section",
-     "effective"},
-    {"design.thickness_", "core.section", "!effective"},
+    {"core.width_m", "core.section", "!effective"},
+    {"core.areas_m2 core.inertias_m4 core.shear_areas_m2 core.masses_kg", "core.section", "effective"},
+    {"design.thickness_m", "core.section", "!effective"},
     {"motion.sa_period_s", "motion.sa_g", "!0"},
 };
 

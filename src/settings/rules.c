@@ -31,38 +31,6 @@ __attribute__((format(printf, 3, 4))) static void break_rule(const Rules *r, con
     r->broken(fields, text, r->user);
 }
 
-/* low below high; both real. */
-#define BELOW(low, high)                                                                                               \
-    {                                                                                                                  \
-        AT(low), AT(high), #low, #high                                                                                 \
-    }
-static const struct {
-    size_t low, high;
-    const char *low_key, *high_key;
-} BELOW_EACH_OTHER[] = {
-    BELOW(design.gap_min_m, design.gap_max_m),
-    BELOW(design.thickness_min_m, design.thickness_max_m),
-    BELOW(design.bumper_min_n_m, design.bumper_max_n_m),
-    BELOW(design.side_min_m, design.side_max_m),
-};
-
-static double real_at(const Settings *s, size_t field)
-{
-    double value;
-    memcpy(&value, (const char *)s + field, sizeof value);
-    return value;
-}
-
-static void check_bounds(const Settings *s, const Rules *r)
-{
-    for (size_t i = 0; i < sizeof BELOW_EACH_OTHER / sizeof BELOW_EACH_OTHER[0]; i++) {
-        const size_t low = BELOW_EACH_OTHER[i].low, high = BELOW_EACH_OTHER[i].high;
-        if (!(real_at(s, low) < real_at(s, high)))
-            break_rule(r, (const size_t[RULE_FIELDS]){low, high, high}, "%s: %g must be below %s = %g",
-                       BELOW_EACH_OTHER[i].low_key, real_at(s, low), BELOW_EACH_OTHER[i].high_key, real_at(s, high));
-    }
-}
-
 static void check_motion(const MotionOptions *m, const Rules *r)
 {
     char scalings[SCALINGS_TEXT_MAX];
@@ -90,14 +58,14 @@ static void check_variables(const Settings *s, const Rules *r)
     }
     if (space.has_side && s->core.section != CORE_BOX)
         break_rule(r, PAIR(design.variables, core.section), "design.variables: side is that of core.section = box");
-    if (space.has_side && 2 * d->thickness_max_m > d->side_min_m)
-        break_rule(r, TIED(design.side_min_m, design.thickness_max_m, design.variables),
-                   "design.side_min_m: twice design.thickness_max_m = %g m does not fit into %g m", d->thickness_max_m,
-                   d->side_min_m);
-    if (s->core.section == CORE_BOX && 2 * d->thickness_max_m > s->core.side_m)
-        break_rule(r, TIED(design.thickness_max_m, core.side_m, core.section),
-                   "design.thickness_max_m: twice %g m does not fit into core.side_m = %g", d->thickness_max_m,
-                   s->core.side_m);
+    if (space.has_side && 2 * d->thickness_m.at[1] > d->width_m.at[0])
+        break_rule(r, TIED(design.width_m, design.thickness_m, design.variables),
+                   "design.width_m: twice a thickness of %g m (design.thickness_m) does not fit into %g m",
+                   d->thickness_m.at[1], d->width_m.at[0]);
+    if (s->core.section == CORE_BOX && 2 * d->thickness_m.at[1] > s->core.width_m)
+        break_rule(r, TIED(design.thickness_m, core.width_m, core.section),
+                   "design.thickness_m: twice %g m does not fit into core.width_m = %g", d->thickness_m.at[1],
+                   s->core.width_m);
 }
 
 static void check_replicates(const Settings *s, const Rules *r)
@@ -129,7 +97,6 @@ static void check_fidelity(const SearchOptions *s, const Rules *r)
 void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
-    check_bounds(s, r);
     check_motion(&s->motion, r);
     check_variables(s, r);
     check_replicates(s, r);

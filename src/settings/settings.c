@@ -11,7 +11,7 @@
 #include "settings/rules.h"
 #include "settings/table.h"
 
-typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_SHARES, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
+typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_SHARES, KIND_LIST, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
 typedef struct {
     const char *key;
@@ -23,6 +23,7 @@ typedef struct {
     const char
         *words;    /* CHOICE: "a|b|c", in the order of its enum; SHARES: the names of its numbers, likewise; PATH: names
                           that are no path, or NULL; REAL: the one that stands for OPTION_WORD, or NULL */
+    int count;     /* LIST: how many numbers there are, in ascending order; 0: any number of them */
     size_t number; /* CHOICE: the field of a number that is taken in the place of a word, as the default is; 0: none */
     const char *help;
     unsigned flags; /* SettingFlags */
@@ -46,6 +47,9 @@ typedef char OptionText[OPTION_TEXT_MAX];
     OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-")
 #define SHARES(field, type, words_, standard_, ...) \
     OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = 1)
+#define LIST(field, unit_, standard_, min_, max_, ...) \
+    OPTION(KIND_LIST, field, NumberList, standard_, __VA_ARGS__, .unit = unit_, .min = min_, .max = max_)
+#define BOUNDS(field, unit_, standard_, min_, max_, ...) LIST(field, unit_, standard_, min_, max_, __VA_ARGS__, .count = 2)
 #define PATH(field, standard_, words_, ...) \
     OPTION(KIND_PATH, field, OptionText, standard_, __VA_ARGS__, .words = words_)
 #define PATH_LIST(field, standard_, ...) OPTION(KIND_PATH_LIST, field, OptionText, standard_, __VA_ARGS__)
@@ -71,14 +75,12 @@ static const Option OPTIONS[] = {
            "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
            "such floors"),
     CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
-           "modal: building.damping in every mode; rayleigh: in two of them; table: building.damping_table"),
-    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building", .flags = SETTING_BASIC),
+           "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
+    LIST(building.damping, "-", "0.03", 0, 10,
+         "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
     TEXT(building.rayleigh_modes, "1, 3", "rayleigh: the two modes that have building.damping"),
-    TEXT(building.damping_table, "none", "table: damping ratios mode by mode, a comma list; the last for the rest"),
-    REAL(building.first_storey_m, "m", "5.4864", 0.1, 100,
-         "height of the first storey, where the first node of the core is"),
-    REAL(building.storey_m, "m", "3.9624", 0.1, 100, "height of every further storey"),
-    TEXT(building.heights_m, "none", "heights of all storeys from the bottom, a comma list; none: the two above"),
+    LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
+         "heights of the storeys from the bottom where the files have none; the last for all further storeys"),
     CHOICE(building.rigid_floors, Switch, CHOICE_WORDS(SWITCH_LIST), "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
     WHOLE(
@@ -89,27 +91,22 @@ static const Option OPTIONS[] = {
            "on: the weights of the storeys soften the building (P-delta)"),
 
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
-           "box: square tube of outer side side_m; plate: solid, width_m wide; effective: area and second moment of "
+           "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
            "area given",
            .flags = SETTING_BASIC),
     CHOICE(core.theory, CoreTheory, CHOICE_WORDS(CORE_THEORY_LIST), "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
-    REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box", .flags = SETTING_BASIC),
-    REAL(core.width_m, "m", "11.3", 0.1, 200, "width of the plate"),
+    REAL(core.width_m, "m", "11.3", 0.1, 200, "outer side of the box, width of the plate", .flags = SETTING_BASIC),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),
     REAL(core.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of the core, for its shear modulus"),
     REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "density of the core"),
-    REAL(core.area_base_m2, "m2", "1.567", 1e-9, 1e4, "effective: area in the first storey"),
-    REAL(core.area_top_m2, "m2", "0.811", 1e-9, 1e4, "effective: area in the last storey"),
-    REAL(core.inertia_base_m4, "m4", "25.6201", 1e-9, 1e6, "effective: second moment of area in the first storey"),
-    REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: second moment of area in the last storey"),
-    REAL(core.shear_area_base_m2, "m2", "0", 0, 1e4, "effective: first storey; 0: no shear deformation"),
-    REAL(core.shear_area_top_m2, "m2", "0", 0, 1e4, "effective: last storey"),
-    TEXT(core.areas_m2, "none",
-         "effective: areas [m2] storey by storey from the bottom, a comma list; none: the two above"),
-    TEXT(core.inertias_m4, "none", "effective: second moments of area [m4], the same way"),
-    TEXT(core.masses_kg, "none", "effective: masses of the storeys [kg]; none: density times area"),
+    LIST(core.areas_m2, "m2", "1.567, 0.811", 1e-9, 1e4,
+         "effective: areas, in the first and the last storey, or storey by storey from the bottom"),
+    LIST(core.inertias_m4, "m4", "25.6201, 24.0503", 1e-9, 1e6, "effective: second moments of area, the same way"),
+    LIST(core.shear_areas_m2, "m2", "0", 0, 1e4, "effective: shear areas, the same way; 0: no shear deformation"),
+    LIST(core.masses_kg, "kg", "none", 1e-9, 1e9,
+         "effective: masses of the storeys, the same way; none: density times area"),
 
     CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
            "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
@@ -189,17 +186,13 @@ static const Option OPTIONS[] = {
          "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
     WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
     WHOLE(design.bumper_zones, "1", 0, 128, "bumpers of so many zones of floors differ; 1: all are alike; 0: by floor"),
-    REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap", .flags = SETTING_BASIC),
-    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap", .flags = SETTING_BASIC),
-    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "bound of the search: smallest core thickness",
-         .flags = SETTING_BASIC),
-    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "bound of the search: largest core thickness",
-         .flags = SETTING_BASIC),
-    REAL(design.bumper_min_n_m, "N/m", "1e7", 1e3, 1e13, "bound of the search: softest bumper"),
-    REAL(design.bumper_max_n_m, "N/m", "1e10", 1e3, 1e14, "bound of the search: stiffest bumper"),
-    REAL(design.side_min_m, "m", "6", 0.1, 200, "bound of the search: smallest side of the box"),
-    REAL(design.side_max_m, "m", "15", 0.1, 200,
-         "bound of the search: largest side of the box, by the footprint it may take"),
+    BOUNDS(design.gap_m, "m", "0.001, 0.5", 0, 10, "bounds of the search: smallest and largest gap",
+           .flags = SETTING_BASIC),
+    BOUNDS(design.thickness_m, "m", "0.004, 0.04", 1e-6, 10, "bounds of the search: core thickness",
+           .flags = SETTING_BASIC),
+    BOUNDS(design.bumper_n_m, "N/m", "1e7, 1e10", 1e3, 1e14, "bounds of the search: stiffness of a bumper"),
+    BOUNDS(design.width_m, "m", "6, 15", 0.1, 200,
+           "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
@@ -344,6 +337,26 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     return STATUS_OK;
 }
 
+static Status assign_list(Settings *s, const Option *o, const char *value, Err *err)
+{
+    NumberList *list = field_of(s, o), found = {0};
+    char item[OPTION_TEXT_MAX];
+    const size_t n = list_is_given(value) ? list_count(value) : 0;
+    if (n > OPTION_LIST_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu numbers; at most %d are supported", o->key, n, OPTION_LIST_MAX);
+    for (; found.n < (int)n; found.n++) {
+        if (!list_item(value, (size_t)found.n, item, sizeof item))
+            return fail(err, STATUS_BAD_DATA, "%s: item %d of '%.60s' is empty", o->key, found.n + 1, value);
+        TRY(parse_number(o, item, &found.at[found.n], err));
+    }
+    if (n == 0 && strcmp(o->standard, "none") != 0)
+        return fail(err, STATUS_BAD_DATA, "%s: needs a number", o->key);
+    if (o->count && (found.n != 2 || !(found.at[0] < found.at[1])))
+        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not two numbers, the first below the second", o->key, value);
+    *list = found;
+    return STATUS_OK;
+}
+
 /* A word, or the number that may stand in its place. */
 static Status assign_choice(Settings *s, const Option *o, const char *value, Err *err)
 {
@@ -418,6 +431,8 @@ Status table_assign(Settings *s, int at, const char *value, Err *err)
         return assign_choice(s, o, value, err);
     case KIND_SHARES:
         return assign_shares(s, o, value, err);
+    case KIND_LIST:
+        return assign_list(s, o, value, err);
     case KIND_TEXT:
     case KIND_PATH:
     case KIND_PATH_LIST:
@@ -567,6 +582,17 @@ static void format_shares(const Settings *s, const Option *o, char text[OPTION_T
     }
 }
 
+static void format_list(const NumberList *list, char text[OPTION_TEXT_MAX])
+{
+    char number[OPTION_TEXT_MAX];
+    size_t n = 0;
+    snprintf(text, OPTION_TEXT_MAX, "none");
+    for (int i = 0; i < list->n && n < OPTION_TEXT_MAX; i++) {
+        format_real(list->at[i], number);
+        n += (size_t)snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", number);
+    }
+}
+
 static void format_value(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
 {
     const void *field = field_of_const(s, o);
@@ -593,6 +619,9 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
         break;
     case KIND_SHARES:
         format_shares(s, o, text);
+        break;
+    case KIND_LIST:
+        format_list(field, text);
         break;
     case KIND_TEXT:
     case KIND_PATH:
@@ -634,6 +663,9 @@ static void describe(const Option *o, FILE *out)
     fprintf(out, "; %s", o->help);
     if (o->kind == KIND_REAL || o->kind == KIND_WHOLE)
         fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
+    if (o->kind == KIND_LIST)
+        fprintf(out, " [%s, %.10g..%.10g,%s comma list]", o->unit, o->min, o->max,
+                o->count ? " from and to in a" : " a");
     if (o->kind == KIND_CHOICE && o->number)
         fprintf(out, " (%s|%g..%g)", o->words, o->min, o->max);
     else if (o->kind == KIND_CHOICE)

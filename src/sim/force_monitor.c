@@ -560,7 +560,7 @@ static void report_stresses(const ForceMonitor *m, SimForces *out)
         out->core_shear_stress_pa = fmax(out->core_shear_stress_pa, out->core_shear_n[s] * c.shear_stress_per_n);
         if (!out->buckling_known)
             continue;
-        out->core_slenderness[s] = (o->side_m - 2 * c.thickness) / c.thickness;
+        out->core_slenderness[s] = (o->width_m - 2 * c.thickness) / c.thickness;
         out->core_buckling_pa[s] = plate / (out->core_slenderness[s] * out->core_slenderness[s]);
         out->core_buckling_ratio = fmax(out->core_buckling_ratio, stress / out->core_buckling_pa[s]);
     }

@@ -146,7 +146,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     Design d;
     design_of(&scene->design, x, &d);
     if (d.side > 0)
-        options.side_m = d.side;
+        options.width_m = d.side;
     Status status = core_beam_make(core, &options, n, scene->building.storey_m, d.t_base, d.t_top, err);
     if (status == STATUS_OK)
         status = core_beam_joined_hz(core, &scene->building, zero_gap_hz, err);
@@ -395,7 +395,7 @@ static Status make_core(SimWorker *w, const Design *d, Err *err)
         w->options = &w->own_options;
     }
     if (d->side > 0)
-        w->own_options.core.side_m = d->side;
+        w->own_options.core.width_m = d->side;
     return core_beam_make(&w->core, &w->options->core, w->building->n, w->building->storey_m, d->t_base, d->t_top, err);
 }
 

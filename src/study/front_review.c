@@ -33,14 +33,14 @@ static double result_of(const Run *run, size_t row, MeasureId id)
 static void count_bounds(const Run *run, size_t row, FrontReview *r)
 {
     const DesignOptions *o = &run->settings->design;
-    const double near = ON_BOUND * (o->gap_max_m - o->gap_min_m);
+    const double near = ON_BOUND * (o->gap_m.at[1] - o->gap_m.at[0]);
     size_t gap = 0;
     for (size_t j = 0; j < run->schema.n_var && gap < FLOORS_MAX; j++) {
         const double x = run_x(run, row)[j];
         if (!is_gap(run, j))
             continue;
-        r->at_smallest[gap] += x <= o->gap_min_m + near;
-        r->at_largest[gap] += x >= o->gap_max_m - near;
+        r->at_smallest[gap] += x <= o->gap_m.at[0] + near;
+        r->at_largest[gap] += x >= o->gap_m.at[1] - near;
         gap++;
     }
     r->n_gaps = gap;
