@@ -520,8 +520,8 @@ static void test_a_first_study_touches_fifteen_settings(void **state)
         n += strstr(line, " = ") && strcspn(line + 1, ";[\n") > strcspn(line + 1, "=");
     assert_int_equal(n, 15);
     free(text);
-    s.design.gap_max_m = 0.2;
-    s.core.width_m = 4; /* none of the fifteen, but no default */
+    s.design.gap_m.at[1] = 0.2;
+    s.core.poisson = 0.2; /* none of the fifteen, but no default */
     text = written(&s, SETTINGS_BASIC);
     CHECK_OK(read_text(&again, text, &err), &err);
     assert_memory_equal(&s, &again, sizeof s);

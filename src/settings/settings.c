@@ -73,14 +73,16 @@ static const Option OPTIONS[] = {
          .flags = SETTING_BASIC | SETTING_FREE),
     CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
            "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
-           "such floors"),
+           "such floors",
+           .flags = SETTING_BASIC),
     CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
            "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
     LIST(building.damping, "-", "0.03", 0, 10,
          "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
     TEXT(building.rayleigh_modes, "1, 3", "rayleigh: the two modes that have building.damping"),
     LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
-         "heights of the storeys from the bottom where the files have none; the last for all further storeys"),
+         "heights of the storeys from the bottom where the files have none; the last for all further storeys",
+         .flags = SETTING_BASIC),
     CHOICE(building.rigid_floors, Switch, CHOICE_WORDS(SWITCH_LIST), "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
     WHOLE(
