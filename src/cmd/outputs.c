@@ -1,9 +1,12 @@
 #include "cmd/outputs.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "scene/building_read.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 
@@ -29,16 +32,22 @@ const char *outputs_standard(const Args *args, int i)
     return NULL;
 }
 
+static void folder_of(const char *path, char folder[PATH_MAX])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
+}
+
 /* Is it that file, or one in that folder, which is no run's and holds more than pictures? */
 static int is_read_from(const char *out, const char *place)
 {
     struct stat is, other;
     char folder[PATH_MAX];
-    const char *slash = strrchr(out, '/'), *end = strrchr(out, '.');
+    const char *end = strrchr(out, '.');
     if (stat(out, &is) != 0 || !S_ISREG(is.st_mode) || stat(place, &other) != 0)
         return 0;
     if (S_ISDIR(other.st_mode) && !folder_is_run(place) && !(end && strcmp(end, ".svg") == 0)) {
-        snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - out) + 1 : 1, slash ? out : ".");
+        folder_of(out, folder);
         if (stat(folder, &is) != 0)
             return 0;
     }
@@ -60,11 +69,25 @@ static Status refuse(const Given *out, const char *reader, Err *err)
                 reader);
 }
 
+/* Is there a folder that takes it? The folder of --out may be made by the command. */
+static Status check_place(const Given *out, Err *err)
+{
+    char folder[PATH_MAX];
+    folder_of(out->value, folder);
+    if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", out->value, strerror(errno));
+    return STATUS_OK;
+}
+
 static Status check_one(const Args *args, const Given *out, Err *err)
 {
     int n_readers = 0;
+    struct stat is;
     if (folder_keeps(out->value))
         return refuse(out, "a run needs", err);
+    if (stat(out->value, &is) == 0 && S_ISREG(is.st_mode) && !(is.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)))
+        return refuse(out, "is write-protected", err);
+    TRY(check_place(out, err));
     for (int j = 0; j < args->n_operands; j++)
         n_readers += is_read(out->value, args->operands[j]);
     for (int j = 0; j < args->n_given; j++) {
@@ -98,7 +121,10 @@ typedef struct {
 static void compare(const char *key, const char *path, void *user)
 {
     Looking *l = user;
-    if (is_read_from(l->out, path))
+    struct stat is;
+    const char *slash = strrchr(l->out, '/');
+    const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
+    if (is_read_from(l->out, path) && (!is_folder || building_reads(slash ? slash + 1 : l->out)))
         snprintf(l->reader, sizeof l->reader, "%s names", key);
 }
 
