@@ -47,7 +47,8 @@ const char *column_text(sqlite3_stmt *row, int column)
 
 double column_number(sqlite3_stmt *row, int column)
 {
-    return sqlite3_column_type(row, column) == SQLITE_NULL ? NAN : sqlite3_column_double(row, column);
+    const double value = sqlite3_column_double(row, column); /* NULL: 0 */
+    return value == 0.0 && sqlite3_column_type(row, column) == SQLITE_NULL ? NAN : value;
 }
 
 long column_whole(sqlite3_stmt *row, int column, long otherwise)
@@ -233,8 +234,7 @@ static Status open_file(Database **out, const char *path, const char *name, int 
         return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
                     path);
     }
-    const int mutex = flags & SQLITE_OPEN_READONLY ? SQLITE_OPEN_NOMUTEX : SQLITE_OPEN_FULLMUTEX;
-    const int code = sqlite3_open_v2(name, &d->db, flags | mutex, NULL);
+    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_NOMUTEX, NULL);
     if (code != SQLITE_OK) {
         const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
         sqlite3_close(d->db);

@@ -12,7 +12,7 @@
  * longer than the file. Every write of a run's database goes through database_do.
  *
  * Life cycle  database_create or database_open -> database_do, database_each ... -> database_close
- * Threads     one connection, one thread at a time (where it is written to a mutex guards the rest)
+ * Threads     one connection, one thread at a time
  * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and
  *             cause; no such file: STATUS_MISSING
  * Source      https://sqlite.org/wal.html, https://sqlite.org/pragma.html#pragma_synchronous */

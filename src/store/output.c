@@ -142,22 +142,15 @@ Status output_end(Output *o, Status status, Err *err)
     return status;
 }
 
-/* 15 digits where they give back the same number, as of what people write; else 17, which always do. A multiple of a
- * millionth below 1e9, or of a billionth below 1e6, has no more than 15. */
-static int put_number(FILE *stream, double value)
-{
-    const double millions = rint(1e6 * value), billions = rint(1e9 * value);
-    const int is_short =
-        (fabs(millions) < 1e15 && millions / 1e6 == value) || (fabs(billions) < 1e15 && billions / 1e9 == value);
-    return fprintf(stream, is_short ? "%.15g" : "%.17g", value);
-}
+char *digits_of(char *from, char *to, double value); /* digits.cpp: returns where they end */
 
 static void put_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
 {
+    char text[32];
     for (size_t j = 0; j < n; j++) {
         fputs_unlocked(j == 0 ? before : ",", stream);
         if (isfinite(values[j]))
-            put_number(stream, values[j]);
+            fwrite_unlocked(text, 1, (size_t)(digits_of(text, text + sizeof text, values[j]) - text), stream);
         else
             fputs_unlocked(missing, stream);
     }

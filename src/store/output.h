@@ -35,7 +35,7 @@ Status output_sync(FILE *stream, const char *path, Err *err);
  */
 void output_sync_folder(const char *path);
 
-/* Digits (15 or 17) that read back as the same number; nothing for one that is not finite. */
+/* The fewest digits that read back as the same number; nothing for one that is not finite. */
 void print_number(FILE *stream, double value);
 void print_cells(FILE *stream, size_t n, const double values[]); /* each behind a comma */
 void print_list(FILE *stream, size_t n, const double values[]);  /* JSON: [1,2.5,null] */
