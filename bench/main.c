@@ -12,7 +12,7 @@
 #include "bench/promise.h"
 #include "bench/paper.h"
 #include "cmd/args.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "store/output.h"
 
 static const double DISTRIBUTION_LIMIT_S = 0.4; /* for one run; there are 64 */

@@ -11,7 +11,7 @@
 #include "bench/search/families.h"
 #include "bench/search/factors.h"
 #include "bench/search/reference.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 
 typedef struct {

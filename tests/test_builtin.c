@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene_options.h"
 #include "sim/sim.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"

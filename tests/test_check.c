@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene/summary.h"
 #include "scene_options.h"

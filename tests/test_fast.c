@@ -11,7 +11,7 @@
 #include "base/csv.h"
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */

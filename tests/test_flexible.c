@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "bench/promise.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/fast/fast.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "bench/stability/bob.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "sim/engine.h"
 #include "sim/fast/fast.h"
 #include "sim/sim.h"

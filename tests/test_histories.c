@@ -5,7 +5,7 @@
 
 #include <sys/stat.h>
 
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "sim/floor_filter.h"
 #include "sim/sim.h"
 

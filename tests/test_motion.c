@@ -6,7 +6,7 @@
 #include <time.h>
 #include <string.h>
 
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "motion/motion_read.h"
 #include "motion/spectrum.h"
 

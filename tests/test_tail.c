@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "bench/case.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"

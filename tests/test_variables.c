@@ -2,7 +2,7 @@
 #include "runs.h"
 
 #include "base/random.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/sim.h"
 

@@ -6,7 +6,7 @@
 
 #include "bench/timed_run.h"
 #include "motion/motion_read.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "scene_options.h"
 
 typedef struct {

@@ -7,7 +7,7 @@
 #include "bench/stability/oracle.h"
 #include "sim/engine.h"
 #include "bench/stability/tower.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "store/output.h"
 
 enum { LAWS = LAW_JANKOWSKI + 1, N_R = 20 };

@@ -10,7 +10,7 @@
 #include "base/list.h"
 #include "evaluate/device.h"
 #include "evaluate/threads.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "settings/settings.h"
 
 /* A part of a task whose whole result is wanted. */

@@ -1,3 +1,17 @@
+/* moga/screening.c -- screening: most designs are evaluated by the cheap level of the problem alone.
+ *
+ * The whole evaluation is predicted from the cheap one, output by output, over the designs that have both, y = a + b y_cheap
+ * by least squares, and the predictions stand in the archive. Of the designs on the front of results and predictions those
+ * that add most to the front of the whole evaluations are finished: evaluated as a whole, to the same bytes as if asked for
+ * at once, of the first replicates the other simulations alone. A row of the cheap level is never on the front of the
+ * archive. One design is finished for SCREENED_PER_FINISHED, LEVEL_PAIRS after the initial sample, most at the end.
+ *
+ * The levels agree while Kendall's tau, mean over the objectives, is LEVEL_TAU_MIN at least: of the pairs of designs that
+ * the whole evaluation tells apart; those that the cheap level does not tell apart speak neither for it nor against it, so
+ * that tau of a constant is 0. Where they do not agree the initial sample is finished and nothing is screened any more.
+ *
+ * Sources  Kennedy and O'Hagan, Biometrika 87 (2000) 1-13 (autoregression between levels)
+ * Threads  one */
 #include "moga/state.h"
 
 #include <float.h>

@@ -1,13 +1,13 @@
 /* moga/state.h -- a search under way: what the files below share. Everybody else reads search.h.
  *
  *   search.c         limits, the loop over generations, the view of the observer
- *   state.c   memory; what outlives a generation, as bytes
+ *   state.c          memory; what outlives a generation, as bytes
  *   generation.c     one generation: the steps of the method in their order
  *   surrogate_use.c  criteria, fit, prediction, descents, predicted failures
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
  *   infill_select.c  which candidates are evaluated
  *   replication.c    which noisy designs are evaluated again
- *   screening.c      which designs are evaluated by the cheap level first, which of them are finished (screening.h)
+ *   screening.c      which designs are evaluated by the cheap level first, which of them are finished
  *   batch.c          evaluation, the only way into the archive
  *
  * Threads  one; the simulator and predictions of the surrogate use several */
@@ -18,6 +18,7 @@
 
 #include "base/clock.h"
 #include "base/pack.h"
+#include "evaluate/problem.h"
 #include "evaluate/queue.h"
 #include "moga/archive.h"
 #include "moga/constants.h"
@@ -25,7 +26,6 @@
 #include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/directions.h"
-#include "moga/screening.h"
 #include "moga/infill.h"
 #include "moga/population.h"
 #include "moga/selection.h"
@@ -83,7 +83,26 @@ typedef struct {
     double *reference;      /* (n_obj) */
 } Scratch;
 
-struct Search {
+/* A design of which the cheap level was evaluated first. */
+typedef struct {
+    size_t row, finished; /* of the archive; of its evaluation in full, SIZE_MAX: there is none */
+    void *parts;          /* (n_cheap) of part_size, parts of the whole; NULL: not kept */
+} Screened;
+
+typedef struct {
+    LevelCosts cost; /* whole 1: nothing is screened in this search */
+    size_t is_on;    /* 0: the levels do not agree, or nothing is screened */
+    size_t n, n_max, n_finished;
+    size_t n_open;                     /* on that front, not finished */
+    Screened *design;                  /* (n) by row */
+    double *y;                         /* (n, n_obj + n_con) objectives and constraints of the cheap level */
+    double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
+    size_t n_front, front_max, *front; /* rows of the front of results and predictions */
+    unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
+    size_t *rows, n_rows;              /* (n_max) designs that have both levels */
+} Screening;
+
+typedef struct {
     const Problem *problem;
     const SearchConfig *config;
     Queue *queue;
@@ -107,7 +126,7 @@ struct Search {
     Pack state;         /* as of the last report */
     double start;       /* [s] of the clock */
     void *store;
-};
+} Search;
 
 /* [s] wall time since the search began. */
 static inline double search_seconds(const Search *s)
@@ -170,9 +189,27 @@ size_t infill_select_batch(Search *s);
  * designs that it reports. Both return the new n. */
 size_t replication_add(Search *s, size_t n);
 size_t replication_last(Search *s);
-size_t
-replication_due(const Search *s); /* replicates that the evaluations so far bring with them and that are not made yet */
+/* Replicates that the evaluations so far bring with them and that are not made yet. */
+size_t replication_due(const Search *s);
 int replication_noise_is_significant(const Search *s); /* estimates are to be compared instead of means */
+
+/* screening.c */
+void screening_begin(Search *s);
+void screening_free(Search *s);
+size_t search_evaluations(const Search *s); /* of max_evals; what a screened design costs is a part of one */
+int search_is_spent(const Search *s);
+
+/* Room for a batch of n new designs, beside what the screened ones are finished with. */
+int screening_has_room(const Search *s, size_t n);
+Status screening_take(Search *s, const Finished *done, Err *err); /* before it enters the archive */
+Status screening_update(Search *s, Err *err);                     /* after results: predictions, agreement, front */
+void screening_exchange(Search *s); /* predictions in the archive for what was evaluated, and back */
+const void *screening_parts(const Search *s, const double x[]); /* of the cheap level of x; NULL: not kept */
+
+/* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
+Status screening_finish(Search *s, size_t *n, Err *err);
+Status screening_last(Search *s, size_t *n, Err *err);
+int screening_is_due(const Search *s); /* designs are to be finished, and there is room */
 
 /* batch.c */
 size_t batch_size(const Search *s);

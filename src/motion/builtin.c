@@ -31,8 +31,6 @@
 #include <Random123/philox.h>
 #pragma GCC diagnostic pop
 
-#include "motion/motion_read.h"
-
 static const double DT_S = 0.02;
 
 typedef struct {

@@ -2,7 +2,8 @@
  *
  *   a(t) = accel[k] + (accel[k+1] - accel[k]) (t - t_k) / dt,   t_k = k dt,   k = 0..n-1,   duration (n-1) dt
  *
- * Life cycle  motion_load or motion_open -> motion_prepare -> ... -> motion_free      (an empty Motion may be freed)
+ * Life cycle  motion_load or motion_open (motion/motion_scale.h) -> motion_prepare -> ... -> motion_free
+ *             (an empty Motion may be freed)
  * Ownership   accel belongs to the Motion
  * Units       SI; the unit of a file is converted once, here
  * Threads     read-only after motion_prepare */
@@ -28,14 +29,6 @@ typedef struct {
     char warning[240];   /* what does not fit in the file; empty: nothing */
     uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
-
-/* The motion that a user names: builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like (motion/builtin.h),
- * else the path of a file (motion/motion_read.h has the kinds). unit: UNIT_FROM_FILE demands that the file says it;
- * otherwise it must not contradict the file; it does not matter to a built-in motion. */
-Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
-
-/* The record of the options, read and processed as they say; not scaled yet (motion_scale). */
-Status motion_open(Motion *m, const MotionOptions *o, Err *err);
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);

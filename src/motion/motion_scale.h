@@ -1,4 +1,4 @@
-/* motion/motion_scale.h -- what is done to a record: its base line and filters, and how strong it is made.
+/* motion/motion_scale.h -- opens a record, and what is done to it: its base line and filters, and how strong it is made.
  *
  * Base line and filters of a recorded acceleration, on request (motion.baseline, highpass_hz,
  * lowpass_hz); the default leaves a record as it is.
@@ -40,6 +40,14 @@
 
 #include "motion/motion.h"
 #include "motion/options.h"
+
+/* The motion that a user names: builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like (motion/builtin.h),
+ * else the path of a file (motion/motion_read.h has the kinds). unit: UNIT_FROM_FILE demands that the file says it;
+ * otherwise it must not contradict the file; it does not matter to a built-in motion. */
+Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
+
+/* The record of the options, read and processed as they say; not scaled yet (motion_scale). */
+Status motion_open(Motion *m, const MotionOptions *o, Err *err);
 
 /* Base line and filters; m->accel may be another one afterwards. */
 Status motion_process(Motion *m, const MotionOptions *o, Err *err);

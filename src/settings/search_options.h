@@ -8,7 +8,7 @@
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
-/* What of most designs is evaluated alone (moga/screening.h): the first replicate of every record. */
+/* What of most designs is evaluated alone (moga/screening.c): the first replicate of every record. */
 #define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;
 

@@ -6,7 +6,7 @@
 
 #include "base/list.h"
 #include "motion/builtin.h"
-#include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "settings/options.h"
 #include "store/provenance.h"
 
