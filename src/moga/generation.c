@@ -63,6 +63,7 @@ Status generation_first(Search *s, Err *err)
 static Status sample_again(Search *s, Err *err)
 {
     const size_t first = s->archive.n, n = add_samples(s, 0, s->config->population);
+    surrogate_drop(s->surrogate); /* a resumed search has none here either */
     TRY(batch_evaluate(s, n, n, err));
     batch_join(s, &s->population, first);
     return STATUS_OK;
