@@ -16,7 +16,8 @@ static const double ESTIMATE_FACTOR = 9;
 /* error (N_MEASURES), in the unit of each; not numbers where one of the two runs failed. */
 void estimate_errors(const Measured *result, const Measured *finer, double error[]);
 
-/* The same for n results of single simulations, by simulating the tasks once more: error (n, N_MEASURES). The engine is fast. */
+/* The same for n results of single simulations, by simulating the tasks once more: error (n, N_MEASURES). The engine
+ * is fast. */
 Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
                         Err *err);
 

@@ -3,14 +3,15 @@
  *   record r, intensity l: every case of EVALUATION_CASES, in run[r n_levels + l].result
  *
  * Life cycle  evaluations_add, evaluations_add_folder ... -> evaluations_read -> evaluations_run -> evaluations_free
- * Threads     tasks of a queue (evaluate/queue.h), threads as search.threads says or ranks of a cluster; the results do not
- *             depend on their number
+ * Threads     tasks of a queue (evaluate/queue.h), threads as search.threads says or ranks of a cluster; the results
+ *             do not depend on their number
  * Errors      a record that cannot be read: status and why of it, where it came from a folder; else that of
  *             evaluations_read
  * Fractiles   fractile p of the n records at one intensity: straight lines between the order statistics, the i-th at
- *             p = (i - 1) / (n - 1); a simulation that failed counts as infinite, so that a fractile above it has no value
- * Source      Vamvatsikos and Cornell, Earthquake Eng. Struct. Dyn. 31 (2002) 491-514; Hyndman and Fan, Am. Statistician 50
- *             (1996) 361-365, type 7 */
+ *             p = (i - 1) / (n - 1); a simulation that failed counts as infinite, so that a fractile above it has no
+ *             value
+ * Source      Vamvatsikos and Cornell, Earthquake Eng. Struct. Dyn. 31 (2002) 491-514; Hyndman and Fan, Am.
+ *             Statistician 50 (1996) 361-365, type 7 */
 #ifndef IMTET_ANALYSIS_EVALUATIONS_H
 #define IMTET_ANALYSIS_EVALUATIONS_H
 

@@ -1,4 +1,5 @@
-/* analysis/full_model.h -- designs on the building as the settings reduce it, and on all degrees of freedom of its frame.
+/* analysis/full_model.h -- designs on the building as the settings reduce it, and on all degrees of freedom of its
+ * frame.
  *
  * Ownership  full_model_find allocates, full_model_free releases ({0} is fine)
  * Threads    tasks of the queue */

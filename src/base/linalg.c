@@ -21,7 +21,8 @@ static void fix_sign(int n, double *mode)
             mode[j] = -mode[j];
 }
 
-/* Of one thread: the buffer of OpenBLAS (128 MiB), stack (8 MiB) and the C library's arena (128 MiB while it is made). */
+/* Of one thread: the buffer of OpenBLAS (128 MiB), stack (8 MiB) and the C library's arena (128 MiB while it is
+ * made). */
 static const size_t BYTES_OF_THREAD = (size_t)264 << 20;
 
 /* Of OpenBLAS, which keeps a buffer that was given back for the next call. */

@@ -9,9 +9,9 @@
 
 #include "base/status.h"
 
-/* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at once, the
- * first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where there is none:
- * STATUS_NO_MEMORY. To be called before memory is taken for other things. */
+/* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at
+ * once, the first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where
+ * there is none: STATUS_NO_MEMORY. To be called before memory is taken for other things. */
 Status linalg_room(size_t n_threads, Err *err);
 
 /* K x = w^2 M x, ascending: omega[i] = sqrt(w^2) [rad/s], phi (n, n) with column i = mode i, phi' M phi = 1, the

@@ -9,8 +9,8 @@
  *   Pack in = {.bytes = b, .n = n, .reading = 1};  walk(&in, t);       pack_finished(&in): all of it fitted
  *
  * What is added to a state is one line in its walk, and cannot be written in one order and read in another. A fault
- * (memory, too few bytes, a count or number beyond its limits) is kept and turns the rest of the walk into nothing; what
- * is left to be read is then unchanged. Numbers are in the order of bytes of the machine.
+ * (memory, too few bytes, a count or number beyond its limits) is kept and turns the rest of the walk into nothing;
+ * what is left to be read is then unchanged. Numbers are in the order of bytes of the machine.
  *
  * Threads  a Pack belongs to one thread. */
 #ifndef IMTET_BASE_PACK_H

@@ -111,8 +111,8 @@ static void print_front(const Run *run, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
-/* The gaps, or without a schema the floors, that at least `least` designs have so, behind a heading; nothing where there
- * is none. */
+/* The gaps, or without a schema the floors, that at least `least` designs have so, behind a heading; nothing where
+ * there is none. */
 static void print_gaps(const char *heading, const Schema *schema, size_t n, const size_t count[], size_t least)
 {
     size_t n_named = 0;

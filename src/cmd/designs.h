@@ -23,8 +23,8 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
-/* A row of the run. A word that leads elsewhere (a file, another run) names that of the run's designs which has the same
- * variables; where none has, elsewhere holds the design, for design_free, and row is run->table.n.
+/* A row of the run. A word that leads elsewhere (a file, another run) names that of the run's designs which has the
+ * same variables; where none has, elsewhere holds the design, for design_free, and row is run->table.n.
  * elsewhere NULL: such a design is refused. */
 Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err);
 

@@ -1,4 +1,5 @@
-/* cmd/full_model.h -- evaluate --full-model: designs on all degrees of freedom of the building, beside the reduced model. */
+/* cmd/full_model.h -- evaluate --full-model: designs on all degrees of freedom of the building, beside the reduced
+ * model. */
 #ifndef IMTET_CMD_FULL_MODEL_H
 #define IMTET_CMD_FULL_MODEL_H
 

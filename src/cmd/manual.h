@@ -15,8 +15,8 @@ void usage_write(FILE *out);      /* `imtet --help` */
 /* A page for man; NULL: imtet(1). */
 Status manual_write(const Command *command, FILE *out, Err *err);
 
-/* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option that
- * it stands for, or NULL. */
+/* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option
+ * that it stands for, or NULL. */
 Status command_find(const char *word, const Command **found, const char **option, Err *err);
 
 #endif

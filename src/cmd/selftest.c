@@ -67,7 +67,8 @@ typedef struct {
 } TowerCase;
 
 /* Answers: `imtet check --self --json` with the kernel avx512. Those of the kernels base and avx2 are within 2e-10
- * without impacts and 2e-7 with them: every window ends before the horizon of its design (`imtet simulate --horizon`). */
+ * without impacts and 2e-7 with them: every window ends before the horizon of its design (`imtet simulate
+ * --horizon`). */
 static const TowerCase TOWER[] = {
     {"no core",
      {"building.model=guyan", "motion.record=builtin:kobe-like"},
@@ -156,7 +157,7 @@ static Status check_tower(Selftest *t, Err *err)
     return STATUS_OK;
 }
 
-/* ---- a search ------------------------------------------------------------------------------------------------------ */
+/* ---- a search ---------------------------------------------------------------------------------------------------- */
 
 enum { N_DTLZ2 = 3 };
 

@@ -21,8 +21,8 @@ Status show_json(json_t *all, Err *err);
  * was done to the samples and of what does not fit, where there is any. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
-/* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: of a value
- * no digit is shown that it leaves open; a line of its own has those of the objectives. */
+/* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: of a
+ * value no digit is shown that it leaves open; a line of its own has those of the objectives. */
 void show_result_names(const char *label, const MeasureOrder *order);
 void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[]);
 void show_result_errors(const MeasureOrder *order, const double error[]);

@@ -1,5 +1,5 @@
-/* cmd/signals.h -- SIGINT, SIGTERM, SIGHUP (the terminal is gone) and SIGUSR1 (which mpirun and batch systems pass on) as a
- * request to end; one that was ignored when the program was started stays ignored.
+/* cmd/signals.h -- SIGINT, SIGTERM, SIGHUP (the terminal is gone) and SIGUSR1 (which mpirun and batch systems pass
+ * on) as a request to end; one that was ignored when the program was started stays ignored.
  *
  * The first one is only noted, for signals_asked to tell; a second one of any kind ends the program at once, unless
  * it comes within 0.2 s of the first (`timeout` signals the process and then its group). Also SIGXFSZ, a file beyond

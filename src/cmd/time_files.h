@@ -1,4 +1,5 @@
-/* cmd/time_files.h -- what `imtet simulate` writes of a response over time: histories, contacts one by one, floor spectra.
+/* cmd/time_files.h -- what `imtet simulate` writes of a response over time: histories, contacts one by one, floor
+ * spectra.
  *
  * Every design is simulated once more, on its own: the same simulation, to the last bit. results/README.md explains the
  * columns. Files are written whole or not at all, - is standard output.

@@ -1,5 +1,5 @@
-/* evaluate/cluster.h -- processes on other machines, as an executor: none in the ordinary program (alone.c), ranks of MPI in
- * imtet_mpi, which is linked with src/mpi instead.
+/* evaluate/cluster.h -- processes on other machines, as an executor: none in the ordinary program (alone.c), ranks of
+ * MPI in imtet_mpi, which is linked with src/mpi instead.
  *
  *   rank 0       is the program: searches, stores, prints
  *   every other  opens the problems of rank 0 again, each from its recipe (evaluate/problem.h), and does their tasks on
@@ -18,8 +18,8 @@ typedef Status (*ReopenFn)(Problem *p, const void *recipe, size_t size, Err *err
 
 enum { CLUSTER_VERSION_MAX = 128 };
 
-/* serves 1: this process was a rank that evaluates, and rank 0 has ended; there is nothing left to do. version: the same
- * bytes in every process that may work with this one. */
+/* serves 1: this process was a rank that evaluates, and rank 0 has ended; there is nothing left to do. version: the
+ * same bytes in every process that may work with this one. */
 Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
                     Err *err);
 void cluster_leave(int exit_code);

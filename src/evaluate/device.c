@@ -7,8 +7,8 @@
 enum { MODES = 8, GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, SIMPLEX_EVALS = 40 };
 static const double STEP = 8e-3, ARIAS = 0.995, PERIODS = 3;
 
-/* The box of a device: tuned mass: frequency over that of the building, damping ratio; links: constant over m w_1 of a mean
- * floor. */
+/* The box of a device: tuned mass: frequency over that of the building, damping ratio; links: constant over m w_1 of
+ * a mean floor. */
 static const double HZ_MIN = 0.4, HZ_MAX = 3.2, DAMPING_MIN = 0.01, DAMPING_MAX = 1, LINK_MIN = 1e-3, LINK_MAX = 1e4;
 
 LinearDevice warburton_device(double hz, double mu)

@@ -8,9 +8,10 @@
  *
  * Shapes     of one table, all rows have the same; in its memory rows follow each other: table.x is X (n, n_var)
  *            row-major, likewise f, sd, extra, and row[i].x = table.x + i n_var
- * Ownership  the table owns rows, numbers and reasons; pointers into it hold until the next evaluation_table_add. A row outside a
- *            table borrows its arrays
- * Memory     an allocation for each array, doubled when it is full; of room that is not used the system has only addresses
+ * Ownership  the table owns rows, numbers and reasons; pointers into it hold until the next evaluation_table_add. A
+ *            row outside a table borrows its arrays
+ * Memory     an allocation for each array, doubled when it is full; of room that is not used the system has only
+ *            addresses
  * Threads    no state
  * Errors     STATUS_NO_MEMORY; a design that failed is a row with another outcome than OUTCOME_OK, not an error */
 #ifndef IMTET_EVALUATE_EVALUATION_H
@@ -83,8 +84,8 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 /* Nothing is known: x and the room stay, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
 
-/* Outcome and reason, for which there is room where it is not empty; the text becomes one of visible characters (base/visible.h) and a cell of a CSV file
- * (base/cell.h), of valid UTF-8 whatever a worker wrote. */
+/* Outcome and reason, for which there is room where it is not empty; the text becomes one of visible characters
+ * (base/visible.h) and a cell of a CSV file (base/cell.h), of valid UTF-8 whatever a worker wrote. */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 
 typedef Status (*EvaluationFn)(const Evaluation *e, void *user, Err *err); /* the row holds until it returns */

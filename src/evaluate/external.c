@@ -238,8 +238,8 @@ static int take_objectives(const External *e, const json_t *list, double f[])
     return 1;
 }
 
-/* A number that begins at `text` in `line` and is too large to be one, 1e999 say. Its length, or 0. The end of a number is
- * none: 1.7976931348623157e+308 is finite, its last digits with the exponent are not. */
+/* A number that begins at `text` in `line` and is too large to be one, 1e999 say. Its length, or 0. The end of a
+ * number is none: 1.7976931348623157e+308 is finite, its last digits with the exponent are not. */
 static size_t overflow_length(const char *line, const char *text)
 {
     char *end;
@@ -301,8 +301,8 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
     json_decref(o);
 }
 
-/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request, which it
- * spoils. */
+/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request,
+ * which it spoils. */
 static void look_for_answer(External *e, Worker *w)
 {
     size_t used = 0;
@@ -320,8 +320,8 @@ static void look_for_answer(External *e, Worker *w)
         settle(e, w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
 }
 
-/* A process that ends after its answers, as one that starts itself anew now and then, may be asked once more before it is
- * gone: no fault of the design, which another process gets. */
+/* A process that ends after its answers, as one that starts itself anew now and then, may be asked once more before
+ * it is gone: no fault of the design, which another process gets. */
 static void take_end(External *e, Worker *w)
 {
     const int was_leaving =

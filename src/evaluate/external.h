@@ -28,8 +28,8 @@ typedef struct {
     double f[];     /* (n_obj) as the worker gave them */
 } ExternalAnswer;
 
-/* command: words apart by blanks; '...' and "..." keep blanks, a backslash outside '...' keeps the next character. lower
- * and upper: one number for all variables, or a list. */
+/* command: words apart by blanks; '...' and "..." keep blanks, a backslash outside '...' keeps the next character.
+ * lower and upper: one number for all variables, or a list. */
 Status external_open(Problem *p, const ProblemOptions *options, size_t n_workers, Err *err);
 
 #endif

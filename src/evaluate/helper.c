@@ -39,7 +39,7 @@ static void message_make(Message *m, Order *order)
         .msg_iov = &m->part, .msg_iovlen = 1, .msg_control = m->beside.bytes, .msg_controllen = sizeof m->beside.bytes};
 }
 
-/* -- the helper's whole life: it may have come of a program with threads, so only system calls ------------------------ */
+/* -- the helper's whole life: it may have come of a program with threads, so only system calls --------------------- */
 
 /* In the child, which shares the memory of the helper. Returns where a call fails. */
 static void become(char *const words[], const int ends[2], pid_t parent)
@@ -116,7 +116,7 @@ static _Noreturn void live(const Helper *h, int from)
     _exit(0);
 }
 
-/* -- the program ------------------------------------------------------------------------------------------------------ */
+/* -- the program --------------------------------------------------------------------------------------------------- */
 
 static void forget_process(Helper *h)
 {

@@ -1,5 +1,5 @@
-/* evaluate/helper.h -- a process of our own that starts worker processes, and kills them with all that they have started
- * when we end, however that is: by a signal, out of memory, kill -9.
+/* evaluate/helper.h -- a process of our own that starts worker processes, and kills them with all that they have
+ * started when we end, however that is: by a signal, out of memory, kill -9.
  *
  * It has one end of a pair of sockets; the other one closes with us. Every worker has a process group of its own, which
  * gets SIGKILL then. Where the helper itself is killed the kernel kills the workers: Linux sends a child the signal of

@@ -3,8 +3,8 @@
  *   g = (value - limit) / |limit| for <=, the negative of it for >=; limit 0 counts as 1
  *
  * Threads  limits_apply reads only
- * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both, or one that is given
- *          twice, or one that excludes what is better and has none on the other side */
+ * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both, or one
+ *          that is given twice, or one that excludes what is better and has none on the other side */
 #ifndef IMTET_EVALUATE_LIMITS_H
 #define IMTET_EVALUATE_LIMITS_H
 

@@ -2,8 +2,9 @@
  * table. Any of them may be an objective (search.objectives) or be limited (search.limits).
  *
  * Internally every objective is minimised, f = sense * value, while every file and every table shows the natural value.
- * What needs forces or the filter is computed where it is asked for (sim.forces, or because it is searched for or limited);
- * elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas: docs/theory.md.
+ * What needs forces or the filter is computed where it is asked for (sim.forces, or because it is searched for or
+ * limited); elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas:
+ * docs/theory.md.
  *
  * A new one goes to the end, so that runs from before it can be read.
  *
@@ -116,8 +117,8 @@ MeasureSet measures_limited(const char *limits);
 /* Whether a building of n_floors can have anything but 0 there. */
 int measure_exists(int k, int n_floors);
 
-/* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has none
- * fails with its reason. */
+/* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has
+ * none fails with its reason. */
 void measures_settle(SimResult *r, MeasureSet set);
 
 /* What a run comes to as an evaluation. */

@@ -49,7 +49,8 @@ typedef struct {
 
 typedef struct {
     Status (*simulate)(void *self, size_t worker, const Task *task, Err *err);
-    /* From the first n parts, in the order of their numbers: outcome, f, sd, extra, seconds, replicates of e; x is there. */
+    /* From the first n parts, in the order of their numbers: outcome, f, sd, extra, seconds, replicates of e; x is
+     * there. */
     void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
 } Simulator;
@@ -63,7 +64,8 @@ typedef struct {
 
 typedef struct {
     int (*go_on)(void *user); /* asked from any thread before each task; 0: nothing more is begun. NULL: 1 */
-    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL: nothing */
+    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL:
+     * nothing */
     Status (*done)(const Evaluation *e, void *user, Err *err);
     void *user;
 } Observer;

@@ -181,7 +181,7 @@ static size_t find(const Queue *q, const double x[])
     return i;
 }
 
-/* -- the client ----------------------------------------------------------------------------------------------------- */
+/* -- the client ---------------------------------------------------------------------------------------------------- */
 
 static int is_same_design(const Queue *q, const Evaluation *row, const double x[])
 {

@@ -9,8 +9,8 @@
  *
  *   QUEUE_AS_ASKED     queue_next gives designs in the order of asking: a batch is asked for, then taken. Numbered
  *                      n_before + 1, ... as they are asked for; independent of the number of workers
- *   QUEUE_AS_ARRIVED   in the order in which they are finished, and numbered so: no worker waits for the slowest. With one
- *                      worker both orders are one
+ *   QUEUE_AS_ARRIVED   in the order in which they are finished, and numbered so: no worker waits for the slowest.
+ *                      With one worker both orders are one
  *
  * Known      evaluations that were made before the program was interrupted (queue_know) are not simulated again: as
  *            asked, a design with the same number and x has its evaluation at once; as arrived, they come first, in

@@ -2,8 +2,9 @@
  *
  *   replicate 0 is the design, replicate k has every gap changed: max(gap (1 + REPLICATE_CHANGE z) + tolerance z', 0),
  *   z and z' standard normal from the stream (seed, k): the same errors for every design, so that differences between
- *   designs are theirs. With sim.uncertain it is also built otherwise (AsBuilt): restitution r + sd z, a factor exp(s z - s^2/2),
- *   s^2 = log(1 + sd^2), of mean 1 and standard deviation sd, for stiffnesses and damping ratios; a stream of their own
+ *   designs are theirs. With sim.uncertain it is also built otherwise (AsBuilt): restitution r + sd z, a factor exp(s
+ *   z - s^2/2), s^2 = log(1 + sd^2), of mean 1 and standard deviation sd, for stiffnesses and damping ratios; a
+ *   stream of their own
  *
  *   of one record   mean and standard deviation (n - 1) over the replicates (base/stat.h)
  *   worst           of several records: the mean of the record that is worst in that result, with its deviation
@@ -11,9 +12,9 @@
  *   mean_plus_sd    all replicates of all records: mean and standard deviation on the bad side of it
  *   quantile        of all replicates of all records, on the bad side, linear between ranks
  *
- * Two standard deviations that differ by orders of magnitude have two names. Predictability: no tolerance, nothing uncertain;
- * replicates differ by chaos alone (after some hundreds of impacts even the smallest change may have made another run of it).
- * As built: gap tolerance or sim.uncertain. A design with a replicate that failed has failed.
+ * Two standard deviations that differ by orders of magnitude have two names. Predictability: no tolerance, nothing
+ * uncertain; replicates differ by chaos alone (after some hundreds of impacts even the smallest change may have made
+ * another run of it). As built: gap tolerance or sim.uncertain. A design with a replicate that failed has failed.
  *
  * Threads  pure functions */
 #ifndef IMTET_EVALUATE_REPLICATES_H

@@ -29,8 +29,8 @@ Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *r
 Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err);
 void scenario_close(Scenario *w);
 
-/* The options of a run with twice the steps, by which the error of another one is estimated (analysis/estimate.h); 0: this
- * engine has none. */
+/* The options of a run with twice the steps, by which the error of another one is estimated (analysis/estimate.h); 0:
+ * this engine has none. */
 int estimate_options(const SimOptions *o, SimOptions *finer);
 
 #endif

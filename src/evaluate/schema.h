@@ -47,7 +47,8 @@ void schema_limited(const Schema *schema, const double extra[], double values[])
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);
 
-/* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with that status. */
+/* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with
+ * that status. */
 Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
                              Err *err);
 /* The same among objectives and further measures: *k counts on behind n_obj. */

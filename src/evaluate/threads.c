@@ -68,7 +68,7 @@ static Status threads_start(void **self, Queue *q, Err *err)
 
 const Executor EXECUTOR_THREADS = {threads_start, NULL, threads_join};
 
-/* -- the client itself ---------------------------------------------------------------------------------------------- */
+/* -- the client itself --------------------------------------------------------------------------------------------- */
 
 static Status client_start(void **self, Queue *q, Err *err)
 {

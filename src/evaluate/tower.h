@@ -2,12 +2,12 @@
  *
  *   design     by design.variables (scene/design.h); t_top > t_base is repaired by swapping the two
  *   objectives those of search.objectives, extra the other measures (evaluate/measures.h)
- *   parts      n_replicates x n_records (evaluate/replicates.h), each its Measured numbers; replicate k of repeat r is the
- *              replicate r n_replicates + k of the design
+ *   parts      n_replicates x n_records (evaluate/replicates.h), each its Measured numbers; replicate k of repeat r
+ *              is the replicate r n_replicates + k of the design
  *   cheap      where there are several replicates: the first one of every record
  *   variant    any other simulation that is asked for: SimTask
- *   scenes     a search has one for each record, all of them open. A sweep (tower_open_scenes) may have thousands, and a
- *              design is judged under one of them: a worker has the one at hand open. Every record is read once
+ *   scenes     a search has one for each record, all of them open. A sweep (tower_open_scenes) may have thousands,
+ *              and a design is judged under one of them: a worker has the one at hand open. Every record is read once
  *
  * Life cycle tower_open -> tower_simulate, or a search on the problem ... -> problem_close
  * Threads    every worker has an integrator of its own for every scene that it has open */

@@ -5,19 +5,19 @@
  *             error of F (moga/noise.h; 0 without replicates), and an estimate: F, or what the surrogate corrects it to
  *             (surrogate_estimate)
  *   screened  a design of which only the cheap level is known (KIND_SCREENED): never on the front; F is what the whole
- *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design, and
- *             the row before is none any more (replicates 0)
+ *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design,
+ *             and the row before is none any more (replicates 0)
  *   usable    a design all of whose evaluations succeeded with finite numbers
  *   on_front  usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
  *
  * Up to date after each insertion without replicates; after one with replicates pareto_archive_update_noise is due.
  *
- * A new design is compared with few others (moga/nd_tree.h); with all of the front once there are replicates, whose standard
- * errors change what dominates what.
+ * A new design is compared with few others (moga/nd_tree.h); with all of the front once there are replicates, whose
+ * standard errors change what dominates what.
  *
  * Life cycle  pareto_archive_init -> pareto_archive_insert (pareto_archive_update_noise) ... -> pareto_archive_free
- * Memory      without replicates F, G and estimate are Y, H and Y, and S, sd and error are NULL. Grows by doubling, of many
- *             rows by a quarter: pointers move
+ * Memory      without replicates F, G and estimate are Y, H and Y, and S, sd and error are NULL. Grows by doubling,
+ *             of many rows by a quarter: pointers move
  * Threads     one writer */
 #ifndef IMTET_MOGA_ARCHIVE_H
 #define IMTET_MOGA_ARCHIVE_H
@@ -69,8 +69,8 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
 /* Room for n rows in all, for what is known to come. */
 Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
 
-/* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end; before
- * any other. */
+/* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end;
+ * before any other. */
 Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
                               unsigned char kind, size_t generation, int on_front, Err *err);
 

@@ -7,8 +7,8 @@
 #include "base/clones.h"
 #include "base/random.h"
 
-/* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which samples are not
- * below that level. What a design dominates is in all sets of its own levels, which few others are. */
+/* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which
+ * samples are not below that level. What a design dominates is in all sets of its own levels, which few others are. */
 enum {
     LEVELS = 128,
     FEW = 2,

@@ -6,8 +6,8 @@
 
 #include "moga/dominance.h"
 
-/* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as objectives
- * and one, but no more than this. Jaszkiewicz and Lust, section V. */
+/* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as
+ * objectives and one, but no more than this. Jaszkiewicz and Lust, section V. */
 enum { LEAF_MAX = 40, CHILDREN_MAX = 8 };
 
 /* Bounds of a node stand with its parent, points of a leaf in it: what is looked at lies together. */
@@ -250,8 +250,8 @@ static size_t nearest_child(const NdTree *t, const Node *q, const double f[])
     return nearest;
 }
 
-/* Points of a leaf that are far from each other, the first among them, of no more than it has when it grows; returns how
- * many. Equal ones are not far. */
+/* Points of a leaf that are far from each other, the first among them, of no more than it has when it grows; returns
+ * how many. Equal ones are not far. */
 static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN_MAX])
 {
     const size_t m = t->n_obj;

@@ -26,8 +26,8 @@ static const double *tournament(const Population *p, Random *random)
     return p->X + (b_wins ? b : a) * p->n_var;
 }
 
-/* Appends n children of the present members; a share of the pairs is mutated over the whole box. Pair j of step has its own
- * streams. */
+/* Appends n children of the present members; a share of the pairs is mutated over the whole box. Pair j of step has
+ * its own streams. */
 static void breed(Search *s, Population *population, size_t n, uint32_t step, double far)
 {
     const Problem *p = s->problem;
@@ -80,8 +80,8 @@ static void add_evolved(Search *s)
             population_append(&s->offspring.members, &s->pool, i);
 }
 
-/* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the criteria
- * share them. */
+/* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the
+ * criteria share them. */
 static void add_descended(Search *s, double hypervolume)
 {
     const Problem *p = s->problem;
@@ -102,10 +102,11 @@ static void add_descended(Search *s, double hypervolume)
     }
 }
 
-/* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the golden
- * section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. As far as objectives have waves; late
- * in a search also where the surrogate is right about all that it has seen: a converged search sees nothing of what lies
- * elsewhere. Their number is rounded at random, or a small share would never come to a whole one. */
+/* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the
+ * golden section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. As far as objectives
+ * have waves; late in a search also where the surrogate is right about all that it has seen: a converged search sees
+ * nothing of what lies elsewhere. Their number is rounded at random, or a small share would never come to a whole
+ * one. */
 static void add_probes(Search *s)
 {
     const Problem *p = s->problem;

@@ -48,8 +48,8 @@ static size_t evaluations_left(const Search *s)
     return end > asked ? end - asked : 0;
 }
 
-/* Further replicates among n evaluations at most: share * max(0, n - REPLICATE_AFTER n_var). Before that, new designs are
- * worth more. */
+/* Further replicates among n evaluations at most: share * max(0, n - REPLICATE_AFTER n_var). Before that, new designs
+ * are worth more. */
 static double search_replicates(size_t n, double share, size_t n_var)
 {
     return share * fmax((double)n - (double)(REPLICATE_AFTER * n_var), 0.0);

@@ -1,14 +1,16 @@
 /* moga/screening.c -- screening: most designs are evaluated by the cheap level of the problem alone.
  *
- * The whole evaluation is predicted from the cheap one, output by output, over the designs that have both, y = a + b y_cheap
- * by least squares, and the predictions stand in the archive. Of the designs on the front of results and predictions those
- * that add most to the front of the whole evaluations are finished: evaluated as a whole, to the same bytes as if asked for
- * at once, of the first replicates the other simulations alone. A row of the cheap level is never on the front of the
- * archive. One design is finished for SCREENED_PER_FINISHED, LEVEL_PAIRS after the initial sample, most at the end.
+ * The whole evaluation is predicted from the cheap one, output by output, over the designs that have both, y = a + b
+ * y_cheap by least squares, and the predictions stand in the archive. Of the designs on the front of results and
+ * predictions those that add most to the front of the whole evaluations are finished: evaluated as a whole, to the
+ * same bytes as if asked for at once, of the first replicates the other simulations alone. A row of the cheap level
+ * is never on the front of the archive. One design is finished for SCREENED_PER_FINISHED, LEVEL_PAIRS after the
+ * initial sample, most at the end.
  *
- * The levels agree while Kendall's tau, mean over the objectives, is LEVEL_TAU_MIN at least: of the pairs of designs that
- * the whole evaluation tells apart; those that the cheap level does not tell apart speak neither for it nor against it, so
- * that tau of a constant is 0. Where they do not agree the initial sample is finished and nothing is screened any more.
+ * The levels agree while Kendall's tau, mean over the objectives, is LEVEL_TAU_MIN at least: of the pairs of designs
+ * that the whole evaluation tells apart; those that the cheap level does not tell apart speak neither for it nor
+ * against it, so that tau of a constant is 0. Where they do not agree the initial sample is finished and nothing is
+ * screened any more.
  *
  * Sources  Kennedy and O'Hagan, Biometrika 87 (2000) 1-13 (autoregression between levels)
  * Threads  one */
@@ -193,7 +195,7 @@ const void *screening_parts(const Search *s, const double x[])
     return i < s->screening.n ? s->screening.design[i].parts : NULL;
 }
 
-/* -- what the cheap level says of the whole evaluation ---------------------------------------------------------------- */
+/* -- what the cheap level says of the whole evaluation ------------------------------------------------------------- */
 
 /* Output k of design i by the cheap level, and of its row in the archive. */
 static double cheap_value(const Search *s, size_t i, size_t k)
@@ -275,8 +277,8 @@ static int order_of(double a, double b)
     return (a > b) - (a < b);
 }
 
-/* Kendall's tau of objective k, of the pairs that the whole evaluation tells apart: one that the cheap level does not tell
- * apart counts as half of an agreement and half of its contrary. NAN: there is no such pair. */
+/* Kendall's tau of objective k, of the pairs that the whole evaluation tells apart: one that the cheap level does not
+ * tell apart counts as half of an agreement and half of its contrary. NAN: there is no such pair. */
 static double agreement_of(const Search *s, size_t k)
 {
     const Screening *q = &s->screening;
@@ -356,7 +358,7 @@ static void predict(Search *s)
             pareto_archive_predicted(&s->archive, q->design[i].row);
 }
 
-/* -- the front ------------------------------------------------------------------------------------------------------ */
+/* -- the front ----------------------------------------------------------------------------------------------------- */
 
 /* Of whole evaluations and predictions together. */
 static Status find_front(Search *s, Err *err)

@@ -21,14 +21,14 @@
  *       validation  some trusted predictions, first those that have been trusted for long
  *       variation   from INFILL_ALONE evaluations per variable on a few children of variation with the greatest
  *                   predicted gain, and most of the batch while these gain more
- *       probes      times the share of objectives with waves, or whole after INFILL_ALONE evaluations per variable where
- *                   every objective has an R2 above PROBE_R2: a share that grows while probes are better than predicted and
- *                   falls where they are not (control.h). What a surrogate knows of one valley says nothing of the others,
- *                   and what is gained at once is no measure of it
+ *       probes      times the share of objectives with waves, or whole after INFILL_ALONE evaluations per variable
+ *                   where every objective has an R2 above PROBE_R2: a share that grows while probes are better than
+ *                   predicted and falls where they are not (control.h). What a surrogate knows of one valley says
+ *                   nothing of the others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted; variation gets the share that fails
- *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by the
- *     cheap level, and in full for those that promise most (screening.c)
+ *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by
+ *     the cheap level, and in full for those that promise most (screening.c)
  *   6 Control (control.h)
  *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone;
  *       credits of generators and criteria

@@ -57,7 +57,8 @@ typedef struct {
     size_t *repeat;               /* (n_max) replicates that the design has already */
 } Batch;
 
-/* What a design carries through the queue: was_predicted, criterion, its kind before it was screened, predicted (n_obj). */
+/* What a design carries through the queue: was_predicted, criterion, its kind before it was screened, predicted
+ * (n_obj). */
 enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_KIND, NOTE_PREDICTED };
 
 /* Grows with the archive. */
@@ -177,8 +178,8 @@ Status search_fit_surrogate(Search *s, Err *err);
 void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);
 
-/* offspring.c: with the surrogate where it is in use, else as many children of variation as a batch takes; or by variation
- * alone, a whole population of children. step: of the random stream. */
+/* offspring.c: with the surrogate where it is in use, else as many children of variation as a batch takes; or by
+ * variation alone, a whole population of children. step: of the random stream. */
 void offspring_make(Search *s, int variation_alone);
 void offspring_survive(Search *s, Population *p, uint32_t step);
 

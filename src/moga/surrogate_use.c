@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* The front to be improved; where nothing is feasible yet, the population. Plain search does not look at it, but for the
- * choice of designs to be replicated. */
+/* The front to be improved; where nothing is feasible yet, the population. Plain search does not look at it, but for
+ * the choice of designs to be replicated. */
 void search_measure_front(Search *s)
 {
     if (s->config->surrogate == SURROGATE_OFF && !s->problem->is_noisy)

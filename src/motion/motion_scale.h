@@ -1,4 +1,5 @@
-/* motion/motion_scale.h -- opens a record, and what is done to it: its base line and filters, and how strong it is made.
+/* motion/motion_scale.h -- opens a record, and what is done to it: its base line and filters, and how strong it is
+ * made.
  *
  * Base line and filters of a recorded acceleration, on request (motion.baseline, highpass_hz,
  * lowpass_hz); the default leaves a record as it is.
@@ -32,8 +33,8 @@
  *                               SDS, T0 = 0.2 TS
  *   from=0.2 to=2               [s] the periods of the fit
  *
- * Errors   STATUS_BAD_DATA: a cutoff beyond half the sampling rate, fewer samples than the base line has coefficients, a
- *          motion of zeros, one that does not move an oscillator of that period, an absurd scale
+ * Errors   STATUS_BAD_DATA: a cutoff beyond half the sampling rate, fewer samples than the base line has
+ *          coefficients, a motion of zeros, one that does not move an oscillator of that period, an absurd scale
  * Threads  no state */
 #ifndef IMTET_MOTION_MOTION_SCALE_H
 #define IMTET_MOTION_MOTION_SCALE_H

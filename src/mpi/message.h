@@ -11,8 +11,8 @@
  *   LEAVE                                               ->  ends
  *                                                       <-  LEFT
  *
- * epoch: of the queue that the tasks are of; what comes late from an earlier one is dropped. Plain bytes: all ranks are the
- * same program on the same kind of machine.
+ * epoch: of the queue that the tasks are of; what comes late from an earlier one is dropped. Plain bytes: all ranks
+ * are the same program on the same kind of machine.
  *
  * Threads  MPI is called by one thread at a time (MPI_THREAD_SERIALIZED) */
 #ifndef IMTET_MPI_MESSAGE_H
@@ -28,7 +28,8 @@ enum { TAG_OPEN = 1, TAG_OPENED, TAG_TASK, TAG_DONE, TAG_ALIVE, TAG_STOP, TAG_LE
 
 enum { HOST_MAX = 64 };
 
-/* A rank with tasks sends something so often; one that did not for SILENT_S of rank 0's own running time is given up. */
+/* A rank with tasks sends something so often; one that did not for SILENT_S of rank 0's own running time is given
+ * up. */
 static const double ALIVE_S = 2.0, SILENT_S = 20.0;
 
 typedef struct {
@@ -71,7 +72,8 @@ static inline int is_done_message(const DoneMessage *m, size_t n, size_t part_si
            n == sizeof *m + (m->status == STATUS_OK ? part_size : WHY_BYTES);
 }
 
-/* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing comes. */
+/* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing
+ * comes. */
 static inline double longer_pause(double pause, double longest)
 {
     return pause * 1.5 < longest ? pause * 1.5 : longest;

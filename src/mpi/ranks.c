@@ -63,7 +63,7 @@ static void rest(double seconds)
     nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);
 }
 
-/* -- receiving ------------------------------------------------------------------------------------------------------- */
+/* -- receiving ----------------------------------------------------------------------------------------------------- */
 
 static void give(Ranks *r, Ticket *t, Status status, const Err *why)
 {
@@ -143,7 +143,7 @@ static int receive_all(Ranks *r)
     return moved;
 }
 
-/* -- sending --------------------------------------------------------------------------------------------------------- */
+/* -- sending ------------------------------------------------------------------------------------------------------- */
 
 static size_t depth_of(const Ranks *r)
 {
@@ -214,7 +214,7 @@ static int deal(Ranks *r)
     return n;
 }
 
-/* -- ranks that do not answer, and the end --------------------------------------------------------------------------- */
+/* -- ranks that do not answer, and the end ------------------------------------------------------------------------- */
 
 static void tell_stop(Ranks *r)
 {
@@ -282,7 +282,7 @@ static void *exchange(void *user)
     return NULL;
 }
 
-/* -- life ------------------------------------------------------------------------------------------------------------ */
+/* -- life ---------------------------------------------------------------------------------------------------------- */
 
 static Status check_opened(Ranks *r, int from, const OpenedMessage *m, Err *err)
 {

@@ -63,7 +63,7 @@ static void say(Service *s, int tag, const void *bytes, size_t n)
     pthread_mutex_unlock(&s->talking);
 }
 
-/* -- tasks ----------------------------------------------------------------------------------------------------------- */
+/* -- tasks --------------------------------------------------------------------------------------------------------- */
 
 static int may_go_on(void *user)
 {
@@ -125,7 +125,7 @@ static void *work(void *user)
     return NULL;
 }
 
-/* -- the problem ----------------------------------------------------------------------------------------------------- */
+/* -- the problem --------------------------------------------------------------------------------------------------- */
 
 static void close_problem(Service *s)
 {
@@ -207,7 +207,7 @@ static Status answer_open(Service *s, const OpenMessage *m, Err *err)
     return STATUS_OK;
 }
 
-/* -- messages -------------------------------------------------------------------------------------------------------- */
+/* -- messages ------------------------------------------------------------------------------------------------------ */
 
 /* The next message, to be freed: NULL: there is none. A task is the second half of a job. */
 static Status receive(Service *s, Job **out, int *tag, Err *err)
@@ -266,7 +266,7 @@ static size_t n_busy(Service *s)
     return n;
 }
 
-/* -- life ------------------------------------------------------------------------------------------------------------ */
+/* -- life ---------------------------------------------------------------------------------------------------------- */
 
 static void rest(double seconds)
 {

@@ -1,8 +1,8 @@
 /* rbf/kernel.h -- the inner loops of the interpolant: distances, kernel values, their derivatives and sums.
  *
  * Compiled once for any machine and once for wide vectors, chosen when the program starts; on one machine the same
- * numbers always give the same bits. Centres lie variable by variable, S (n_dim + 1, stride), warped and scaled, |s|^2 in
- * the last row; stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
+ * numbers always give the same bits. Centres lie variable by variable, S (n_dim + 1, stride), warped and scaled,
+ * |s|^2 in the last row; stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
  *
  * Threads  pure functions. */
 #ifndef IMTET_RBF_KERNEL_H
@@ -29,8 +29,8 @@ void kernel_warp_by_u(size_t n, const double log_u[], const double log_v[], doub
 /* The last row of S, for n centres. */
 void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[]);
 
-/* r2[p][i] = |s|^2 + |x|^2 - 2 s.x, squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim, RBF_BLOCK) warped
- * and scaled like the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
+/* r2[p][i] = |s|^2 + |x|^2 - 2 s.x, squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim,
+ * RBF_BLOCK) warped and scaled like the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
                       double r2[RBF_BLOCK][KERNEL_CHUNK]);
 
@@ -50,8 +50,8 @@ double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double
 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
                     double q[RBF_BLOCK][KERNEL_CHUNK], double *G);
 
-/* factor[p][i] = 1 - share + share / n_dim sum_d psi(|x_d - u_d| / reach) of point p and centre first + i, neither warped
- * nor scaled; psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1. count and x as above. */
+/* factor[p][i] = 1 - share + share / n_dim sum_d psi(|x_d - u_d| / reach) of point p and centre first + i, neither
+ * warped nor scaled; psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1. count and x as above. */
 void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first, size_t count,
                      double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK]);
 

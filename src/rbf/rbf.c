@@ -258,8 +258,9 @@ static void standardise(const Rbf *m, Output *o, const double f[])
     o->scale = square > 0.0 ? sqrt(square) : 1.0;
 }
 
-/* A w + P b = y, standardised, and the leave-one-out errors; 0: not all of it is finite. A centre that alone determines a
- * coefficient of the tail, as where all others have the same value of a variable, leaves no error to compute. */
+/* A w + P b = y, standardised, and the leave-one-out errors; 0: not all of it is finite. A centre that alone
+ * determines a coefficient of the tail, as where all others have the same value of a variable, leaves no error to
+ * compute. */
 static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
@@ -491,8 +492,8 @@ static void slope_chunk(const Rbf *m, const Output *o, size_t n, size_t first, s
     kernel_project(m->n_dim, m->stride, o->S, first, count, q, s->G);
 }
 
-/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; the additive part
- * and the tail. J of point p goes to J[p n_out n_dim]. */
+/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; the additive
+ * part and the tail. J of point p goes to J[p n_out n_dim]. */
 static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
                          double J[])
 {

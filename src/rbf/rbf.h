@@ -20,9 +20,9 @@
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
- * Errors      near-equal centres raise the nugget until the matrix factors; centres that do not determine the tail make it
- *             constant; an output that cannot be fitted all the same is left out: its mean stands for it, explained is 0.
- *             BAD_DATA: a value is not finite
+ * Errors      near-equal centres raise the nugget until the matrix factors; centres that do not determine the tail
+ *             make it constant; an output that cannot be fitted all the same is left out: its mean stands for it,
+ *             explained is 0. BAD_DATA: a value is not finite
  * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
  *             Rasmussen and Williams, Gaussian Processes for Machine Learning (2006) ch. 2 and 5 (kernels, tail,
  *             likelihood)
@@ -46,10 +46,12 @@ enum { RBF_DIM_MAX = 512 };
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
 void rbf_free(Rbf *m); /* NULL is fine */
 
-/* Fits F at X with the present forms and scales; variances are nugget times noise (n, n_out), NULL: 1; rbf_create starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
+/* Fits F at X with the present forms and scales; variances are nugget times noise (n, n_out), NULL: 1; rbf_create
+ * starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
-/* The same with forms and scales tuned first, starting from the present ones, on at most 250 of the centres, evenly spread. */
+/* The same with forms and scales tuned first, starting from the present ones, on at most 250 of the centres, evenly
+ * spread. */
 Status rbf_tune(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
 /* F (n, n_out) at X (n, n_dim), and the errors E (n, n_out), which may be NULL. RBF_BLOCK points cost little more than

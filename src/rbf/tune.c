@@ -212,8 +212,8 @@ static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, dou
         k->min_error = best;
 }
 
-/* The first time every form is tried; later the present one and, in turn, one challenger without an additive part and one
- * with it. */
+/* The first time every form is tried; later the present one and, in turn, one challenger without an additive part and
+ * one with it. */
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;

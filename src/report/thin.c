@@ -11,8 +11,8 @@ static double value_of(const Run *run, size_t row, size_t column)
     return column < n_obj ? run_f(run, row)[column] : run_x(run, row)[column - n_obj];
 }
 
-/* Into rows (n_front), which hold NOT_TAKEN for the other designs of the front: the lowest and the highest value of every
- * column, polished designs, and those that are to be kept. */
+/* Into rows (n_front), which hold NOT_TAKEN for the other designs of the front: the lowest and the highest value of
+ * every column, polished designs, and those that are to be kept. */
 static void take_wanted(const Run *run, size_t n_kept, const size_t kept[], size_t rows[])
 {
     const size_t n = run->n_front, *front = run->front;

@@ -53,7 +53,8 @@ static void draw_element(const Drawing *d, const Frame *f, const FrameElement *e
         }
 }
 
-/* A triangle where the ground holds z, a bar beside it where it holds x alone; filled where it holds the rotation too. */
+/* A triangle where the ground holds z, a bar beside it where it holds x alone; filled where it holds the rotation
+ * too. */
 static void draw_support(const Drawing *d, const FrameNode *n)
 {
     const double x = px(d, n->x), y = py(d, n->z);

@@ -1,7 +1,8 @@
 /* scene/core_beam.h -- the light, stiff core as a cantilever with one node per floor.
  *
  * One beam element per storey (scene/beam.h), constant section inside it, consistent mass, clamped at the ground, the
- * rotations condensed. Thickness, and with `effective` areas and inertia, vary linearly with the storey number j = 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
+ * rotations condensed. Thickness, and with `effective` areas and inertia, vary linearly with the storey number j =
+ * 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
  *
  *   box        A = B^2 - (B-2t)^2,  I = (B^4 - (B-2t)^4)/12,  shear area 20 (1+nu) / (48 + 39 nu) A   (Cowper 1966)
  *   plate      A = b t,             I = b t^3/12,             shear area 5/6 A

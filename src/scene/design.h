@@ -1,13 +1,15 @@
-/* scene/design.h -- the design variables: which there are, what a design x of them is, and designs read from a CSV file.
+/* scene/design.h -- the design variables: which there are, what a design x of them is, and designs read from a CSV
+ * file.
  *
  *   design.variables = gaps, thickness                gap_01_m..gap_NN_m, t_base_m, t_top_m        the paper's
  *   design.gap_zones = 5                              gap_zone_1_m..gap_zone_5_m in place of a gap per floor
- *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. | bumper_zone_1_log10_n_m..
+ *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. |
+ *                  bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
- * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales linearly.
- * Zone z of Z has the floors from z n/Z to (z + 1) n/Z. A gap is the same on both sides of the core.
+ * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales
+ * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. A gap is the same on both sides of the core.
  *
  *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m            a file: one column per variable in this order
  *   0.05,...,0.05,0.012,0.0064                        any number of rows

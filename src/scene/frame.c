@@ -90,8 +90,8 @@ static int by_height(const void *a, const void *b)
     return p->node - q->node;
 }
 
-/* What is not yet numbered, from the bottom up, which keeps the band narrow. kept (by displacement; NULL: none): masters,
- * the others are slaves. */
+/* What is not yet numbered, from the bottom up, which keeps the band narrow. kept (by displacement; NULL: none):
+ * masters, the others are slaves. */
 static Status number_the_rest(Numbering *u, const char *kept, Err *err)
 {
     const Frame *f = u->frame;

@@ -9,7 +9,8 @@
  *
  * Elements are beam-columns: axial stiffness EA/l, bending by scene/beam.h (shear where shear_area_m2 is given), pinned
  * ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
- * sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary inertia at nodes.
+ * sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary inertia
+ * at nodes.
  *
  * Floors are the heights given in column floor; without it the heights at which a level element ends in nodes that may
  * move sideways. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
@@ -19,9 +20,9 @@
  *
  * summed element by element, Kss factored as a band. A mechanism is refused with the node that moves.
  *
- * Ground: the load is -M r a, r the motion with the ground, of which T 1 misses r - T 1 where columns bend at their feet.
- * Mass that moves in this shape (heavy columns, splices) is not moved by the ground as M 1 of the condensed M, so that
- * the shape is one more degree of freedom, K-orthogonal to T, unless T' M (r - T 1) is below 0.1 % of the load.
+ * Ground: the load is -M r a, r the motion with the ground, of which T 1 misses r - T 1 where columns bend at their
+ * feet. Mass that moves in this shape (heavy columns, splices) is not moved by the ground as M 1 of the condensed M,
+ * so that the shape is one more degree of freedom, K-orthogonal to T, unless T' M (r - T 1) is below 0.1 % of the load.
  *
  * Full model: the floors, then every other displacement that has mass; where nodes.csv names some (keep_x..), these
  * alone. What is removed is condensed as above, which is exact where it has no mass.

@@ -37,8 +37,8 @@ typedef struct {
 
 typedef Tcl_Obj *const Words[];
 
-/* The functions that take words return whether all is well; if not the model is refused, whether the script catches it or
- * not. */
+/* The functions that take words return whether all is well; if not the model is refused, whether the script catches
+ * it or not. */
 __attribute__((format(printf, 2, 3))) static int refuse(Reader *r, const char *format, ...)
 {
     static const char WHERE[] =
@@ -382,8 +382,8 @@ static int take_unknown(Reader *r, int n, Words w)
     return refuse(r, "'%.60s' is not among the commands that are read (docs/building.md)", Tcl_GetString(w[n > 1]));
 }
 
-/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, the model
- * is complete and the script ends there. */
+/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, the
+ * model is complete and the script ends there. */
 static int run_file(Reader *r, const char *path)
 {
     Tcl_Obj *name = Tcl_NewStringObj(path, -1);

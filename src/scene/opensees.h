@@ -7,10 +7,10 @@
  *           SECTION TRANSF; truss TAG i j A MATERIAL; each [-mass m] [-cMass] [-release 0|1|2|3]
  *
  * as in the OpenSees command manual (opensees.berkeley.edu), run by a safe interpreter of Tcl with limits of time and
- * commands, so that loops, procedures and expressions are Tcl's own. A later mass of a node replaces an earlier one, and
- * an element's mass is lumped at its ends unless -cMass is given, as there. Loads, analysis and output are skipped and
- * named in Frame.note, puts does nothing, source reads below the model's folder. Whatever else is refused with its file
- * and line, whether the script catches it or not.
+ * commands, so that loops, procedures and expressions are Tcl's own. A later mass of a node replaces an earlier one,
+ * and an element's mass is lumped at its ends unless -cMass is given, as there. Loads, analysis and output are
+ * skipped and named in Frame.note, puts does nothing, source reads below the model's folder. Whatever else is refused
+ * with its file and line, whether the script catches it or not.
  *
  * Units      an OpenSees model says none: the caller does
  * Ownership  opensees_read allocates the Frame, frame_free releases it, after a failure too

@@ -2,10 +2,12 @@
  *
  * Craig-Bampton (AIAA J. 6 (1968) 1313): floors f, the others i, ground motion r
  *
- *   T = [1 0; Psi Phi],   Psi = -Kii^-1 Kif,   Kii phi_k = mu_k^2 Mii phi_k  the lowest of them,   K' = T' K T,  M' = T' M T
+ *   T = [1 0; Psi Phi],   Psi = -Kii^-1 Kif,   Kii phi_k = mu_k^2 Mii phi_k  the lowest of them,   K' = T' K T,  M' =
+ *   T' M T
  *
- * With no phi it is Guyan reduction, with all of them the full model. One more shape is what span T misses of r, so that a
- * ground at rest relative to the building accelerates every floor by a, as in the full model, whatever is left out.
+ * With no phi it is Guyan reduction, with all of them the full model. One more shape is what span T misses of r, so
+ * that a ground at rest relative to the building accelerates every floor by a, as in the full model, whatever is left
+ * out.
  *
  * Threads  no state */
 #ifndef IMTET_SCENE_REDUCTION_H

@@ -5,8 +5,8 @@
 #include "settings/settings.h"
 #include "settings/table.h"
 
-/* keys, parted by blanks: one that ends in . or _ stands for all that begin so. They are read where `other` has the value,
- * with ! in front of it where it has any other. */
+/* keys, parted by blanks: one that ends in . or _ stands for all that begin so. They are read where `other` has the
+ * value, with ! in front of it where it has any other. */
 static const struct {
     const char *keys, *other, *value;
 } WAITING[] = {

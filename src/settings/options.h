@@ -1,5 +1,6 @@
-/* settings/options.h -- the options of all modules together: what a settings file says. How it is read, checked and written:
- * settings.h. A module takes its own options; who passes all of them on declares `typedef struct Settings Settings;`.
+/* settings/options.h -- the options of all modules together: what a settings file says. How it is read, checked and
+ * written: settings.h. A module takes its own options; who passes all of them on declares `typedef struct Settings
+ * Settings;`.
  *
  * Ownership  a plain value without pointers: copy it freely */
 #ifndef IMTET_SETTINGS_OPTIONS_H

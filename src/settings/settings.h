@@ -21,9 +21,9 @@
 void settings_defaults(Settings *s);
 
 /* Reads an INI file over what s holds. All faults are reported, not only the first: one line each into `faults`
- * ("FILE:LINE:COLUMN: key: what is wrong and what to do"), whose number is returned through n_faults; err has the first.
- * Relative paths are taken from the folder of the INI file if such a file is there, else from the working directory.
- * A file has 1 MiB at most. faults may be NULL. */
+ * ("FILE:LINE:COLUMN: key: what is wrong and what to do"), whose number is returned through n_faults; err has the
+ * first. Relative paths are taken from the folder of the INI file if such a file is there, else from the working
+ * directory. A file has 1 MiB at most. faults may be NULL. */
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
 
 /* The same from text in memory, of a run that was saved. `path` names it in messages and is
@@ -52,11 +52,12 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 
-/* Calls `idle` for every setting that is not the same in both and does nothing in `is` because of another one's value; the
- * text says which. */
+/* Calls `idle` for every setting that is not the same in both and does nothing in `is` because of another one's
+ * value; the text says which. */
 void settings_idle(const Settings *was, const Settings *is, SettingFn idle, void *user);
 
-/* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or levels. */
+/* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or
+ * levels. */
 int settings_screens(const Settings *s);
 
 /* The rules that tie settings together. */
@@ -66,8 +67,8 @@ Status settings_check(const Settings *s, Err *err);
 const char *settings_key(int i);   /* "section.key"; NULL behind the last */
 const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path the names that are no file; or NULL */
 
-/* A valid INI file; described: each key after its meaning, unit and range; basic: those alone that a first study touches
- * and those that are no default. */
+/* A valid INI file; described: each key after its meaning, unit and range; basic: those alone that a first study
+ * touches and those that are no default. */
 typedef enum { SETTINGS_PLAIN, SETTINGS_DESCRIBED, SETTINGS_BASIC } SettingsForm;
 void settings_write(const Settings *s, FILE *out, SettingsForm form);
 

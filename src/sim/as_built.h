@@ -1,11 +1,11 @@
 /* sim/as_built.h -- a scene as it was built: options and building with what differs from the design.
  *
- *   restitution r + dr within 0.05 to 1; Young's modulus of the contact, and the bumper's stiffness, times a factor; Young's
- *   modulus of the core times one; K of the building times one, its frequencies with the root of it, mode shapes and damping
- *   ratios kept; damping ratios of building and core times one each
+ *   restitution r + dr within 0.05 to 1; Young's modulus of the contact, and the bumper's stiffness, times a factor;
+ *   Young's modulus of the core times one; K of the building times one, its frequencies with the root of it, mode
+ *   shapes and damping ratios kept; damping ratios of building and core times one each
  *
- * Ownership  store: memory of the building's copy, allocated at the first call and used again; the caller frees it. What
- *            is not changed is borrowed from the building
+ * Ownership  store: memory of the building's copy, allocated at the first call and used again; the caller frees it.
+ *            What is not changed is borrowed from the building
  * Threads    no state */
 #ifndef IMTET_SIM_AS_BUILT_H
 #define IMTET_SIM_AS_BUILT_H

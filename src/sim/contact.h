@@ -14,11 +14,13 @@
  *
  * With a bumper, a spring k_b on the face that is hit, p = p_h + p_b is shared between steel and bumper so that
  *
- *   F_el = k p_h^1.5 = k_b p_b,   F = F_el (1 + (a s + a_b (1 - s)) p'/v0) + s c p',   s = dp_h/dp = k_b / (k_b + 1.5 k sqrt(p_h))
+ *   F_el = k p_h^1.5 = k_b p_b,   F = F_el (1 + (a s + a_b (1 - s)) p'/v0) + s c p',   s = dp_h/dp = k_b / (k_b + 1.5
+ *   k sqrt(p_h))
  *
- * with c from F_el/p in place of k sqrt(p), and a_b such that a bumper alone rebounds like a linear spring and dashpot of
- * damping ratio zeta_b, e = exp(-pi zeta_b / sqrt(1 - zeta_b^2)). Each part loses its own share of the energy that passes
- * through it; the force has no state of its own, begins at zero and is never tensile. docs/theory.md says why.
+ * with c from F_el/p in place of k sqrt(p), and a_b such that a bumper alone rebounds like a linear spring and
+ * dashpot of damping ratio zeta_b, e = exp(-pi zeta_b / sqrt(1 - zeta_b^2)). Each part loses its own share of the
+ * energy that passes through it; the force has no state of its own, begins at zero and is never tensile.
+ * docs/theory.md says why.
  *
  * The law would be tensile when separation is faster than v0/a: tension is clamped at zero, and the energy that the
  * clamp removes is reported. v0 is never taken smaller than v0_floor.

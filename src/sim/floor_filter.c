@@ -142,7 +142,8 @@ typedef struct {
     const double *u, *ground;
 } Entry;
 
-/* With each row of displacements the acceleration of the row before is known, and the filter's input two rows before. */
+/* With each row of displacements the acceleration of the row before is known, and the filter's input two rows
+ * before. */
 static inline __attribute__((always_inline)) void forward_vectors(const int vectors, const Filter *filter,
                                                                   const Entry *e, size_t at, double state[], double y[])
 {
@@ -204,8 +205,8 @@ CLONED static int may_rise(size_t rows, size_t width, const double y[], double n
     return any != 0;
 }
 
-/* Both passes of rows 0..block + 1 of y from all its rows; the largest magnitude among 1..block of every column, and its
- * row. */
+/* Both passes of rows 0..block + 1 of y from all its rows; the largest magnitude among 1..block of every column, and
+ * its row. */
 static inline __attribute__((always_inline)) void backward_vectors(const int vectors, const Filter *filter, size_t rows,
                                                                    size_t block, size_t width, const double y[],
                                                                    double z[], double top[], double top_row[])
@@ -339,7 +340,8 @@ int floor_filter_is_below(const FloorFilter *f, const double acceleration[])
     return !above;
 }
 
-/* After the last row the floors go on as they went, as long as the filter lags behind, and then the ground stands still. */
+/* After the last row the floors go on as they went, as long as the filter lags behind, and then the ground stands
+ * still. */
 static void run_out(FloorFilter *f)
 {
     const size_t width = f->width;

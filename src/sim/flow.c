@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-/* The two highest integrals by power series in h, y_k = h^k sum_j G_j / (j + k)!, where G_j = g_{j+1} h^j of the derivatives
- * of g at 0 obeys G_{j+1} = -2 zeta w h G_j - (w h)^2 G_{j-1}, G_0 = 1; the others by the recursion from above, which
- * loses no digits here. */
+/* The two highest integrals by power series in h, y_k = h^k sum_j G_j / (j + k)!, where G_j = g_{j+1} h^j of the
+ * derivatives of g at 0 obeys G_{j+1} = -2 zeta w h G_j - (w h)^2 G_{j-1}, G_0 = 1; the others by the recursion from
+ * above, which loses no digits here. */
 static void by_series(double omega, double zeta, double h, double y[FLOW_INTEGRALS])
 {
     enum { TERMS = 26, HIGH = FLOW_INTEGRALS - 1 };

@@ -10,8 +10,8 @@
 #include "base/units.h"
 
 /* Eight outputs, followed together:
- *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base shear,
- *           overturning moment
+ *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base
+ *           shear, overturning moment
  *   slow    building: V_1, the overturning moment, V_2..V_n; velocities of the floors */
 typedef double v8 __attribute__((vector_size(64)));
 typedef int64_t m8 __attribute__((vector_size(64)));

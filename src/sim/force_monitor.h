@@ -6,22 +6,23 @@
  *
  * and likewise of the core; overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs
  * belongs to mode i. K is of the floors alone, also where the building's model has more degrees of freedom: what the
- * others carry acts on the floors as statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j
- * (mode acceleration method). Peaks are taken from points that the engine gives in the order of time, with a parabola
- * through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of a component of
- * frequency w.
+ * others carry acts on the floors as statics distribute it. Core modes that an engine left out follow
+ * quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j (mode acceleration method). Peaks are taken from points
+ * that the engine gives in the order of time, with a parabola through three of them wherever the middle one is the
+ * largest: spaced by h they miss (w h)^4 / 400 of a component of frequency w.
  *
  *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
  *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
- *   plate buckling          k pi^2 E / (12 (1 - nu^2)) (t/b)^2, k = 4: a long wall of clear width b = B - 2t between its
- *                           neighbours, simply supported, without stiffeners, in uniform compression; elastic
+ *   plate buckling          k pi^2 E / (12 (1 - nu^2)) (t/b)^2, k = 4: a long wall of clear width b = B - 2t between
+ *                           its neighbours, simply supported, without stiffeners, in uniform compression; elastic
  *
  * Contacts: the engine says when one begins, what it did in a step, and when it ends.
  *
- * Life cycle  force_monitor_create -> (force_monitor_set -> force_monitor_start -> points, contacts -> force_monitor_report)
+ * Life cycle  force_monitor_create -> (force_monitor_set -> force_monitor_start -> points, contacts ->
+ *             force_monitor_report)
  * Threads     one monitor per simulation under way
- * Source      R. W. Clough, J. Penzien, Dynamics of Structures (1993), ch. 12; S. Timoshenko, J. Gere, Theory of Elastic
- *             Stability (1961), section 9.2 */
+ * Source      R. W. Clough, J. Penzien, Dynamics of Structures (1993), ch. 12; S. Timoshenko, J. Gere, Theory of
+ *             Elastic Stability (1961), section 9.2 */
 #ifndef IMTET_SIM_FORCE_MONITOR_H
 #define IMTET_SIM_FORCE_MONITOR_H
 
@@ -57,13 +58,14 @@ typedef struct {
 } ForcePoint;
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
 
-/* Points may be left out where no peak can rise, by the energies of the modes e_i = q_i'^2 + w_i^2 q_i^2. With any E_i > 0,
+/* Points may be left out where no peak can rise, by the energies of the modes e_i = q_i'^2 + w_i^2 q_i^2. With any
+ * E_i > 0,
  *
  *   |sum_i r_i q_i| <= sqrt(sum_i r_i^2 E_i / w_i^2) sqrt(sum_i e_i / E_i)                       (Cauchy-Schwarz)
  *
- * and it is sharp where E_i are the largest e_i of the run; the first mode, which swings longest, apart from the others.
- * energies: E_i [2 J] of nb building modes and of the core's, when they have risen. may_rise: can any output exceed its
- * peak by so much? The next points follow those of which it can, up to the next look. */
+ * and it is sharp where E_i are the largest e_i of the run; the first mode, which swings longest, apart from the
+ * others. energies: E_i [2 J] of nb building modes and of the core's, when they have risen. may_rise: can any output
+ * exceed its peak by so much? The next points follow those of which it can, up to the next look. */
 enum { REACH_BUILDING_1, REACH_BUILDING, REACH_CORE_1, REACH_CORE, REACH_FORCE, REACH_GROUND, N_REACHES };
 typedef struct {
     double

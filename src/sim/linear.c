@@ -11,8 +11,8 @@
 #include "sim/peak_monitor.h"
 
 /* Stretches (straight loads, one sample of the motion each) are crossed in blocks, so that products of matrices do the
- * work; a block has at most so many numbers of output. Of a large system it always has all its stretches: products of few
- * columns would take twice the time. */
+ * work; a block has at most so many numbers of output. Of a large system it always has all its stretches: products of
+ * few columns would take twice the time. */
 enum { BLOCK_NUMBERS = 1 << 16, BLOCK_STRETCHES = 32, LARGE = 64 /* coordinates */ };
 
 /* Rows of the outputs of a state. */
@@ -250,7 +250,8 @@ static void find_starts(Linear *d, int count, const double a[], const double slo
     }
 }
 
-/* count stretches from t on, each of `length`, whole ones or what is left of one, during which the ground acceleration is a + slope (time since its start). */
+/* count stretches from t on, each of `length`, whole ones or what is left of one, during which the ground
+ * acceleration is a + slope (time since its start). */
 static void cross(Linear *d, double t, double length, int is_whole, int count, const double a[], const double slope[])
 {
     const int parts = (int)ceil(length / d->run->step), out = d->rows.n, n_q = n_coordinates(d);

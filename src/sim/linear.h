@@ -1,4 +1,5 @@
-/* sim/linear.h -- linear structures under a ground motion: the same core without impacts, and what else its mass could do.
+/* sim/linear.h -- linear structures under a ground motion: the same core without impacts, and what else its mass
+ * could do.
  *
  *   rigid  floors and core rigidly connected (zero gap): M + Mc, K + Kc, C + Cc
  *   tmd    a tuned mass damper at the roof, with the mass of the core: k_t = m_t w_t^2, c_t = 2 zeta_t m_t w_t
@@ -8,11 +9,11 @@
  *
  *   z' = [0 W; -W -D] z + [0; -Gamma] a,   D = P' diag(loss) P,   rate = P y'
  *
- * Every row of P is the rate of something that dissipates loss rate^2: modes of the building and of the core by their own
- * damping (q' and 2 zeta w), dashpots (their relative velocity and c). D is full. Over a step the load is a straight line,
- * and the step is exact: (z, a, a') is multiplied by the exponential of one matrix (C. F. Van Loan, IEEE Trans. Autom.
- * Control 23 (1978) 395); the only error is where we look. Energies are integrated by the trapezoidal rule with its end
- * correction (Euler-Maclaurin), straight stretch by straight stretch:
+ * Every row of P is the rate of something that dissipates loss rate^2: modes of the building and of the core by their
+ * own damping (q' and 2 zeta w), dashpots (their relative velocity and c). D is full. Over a step the load is a
+ * straight line, and the step is exact: (z, a, a') is multiplied by the exponential of one matrix (C. F. Van Loan,
+ * IEEE Trans. Autom. Control 23 (1978) 395); the only error is where we look. Energies are integrated by the
+ * trapezoidal rule with its end correction (Euler-Maclaurin), straight stretch by straight stretch:
  *   int f dt = h (f_0/2 + f_1 + ... + f_n/2) + h^2/12 (f_0' - f_n') + O(h^4) (f_0''' - f_n''')
  * Peaks: sim/peak_monitor.h.
  *
@@ -39,8 +40,8 @@ typedef struct {
     void *store;
 } LinearSystem;
 
-/* n_modes: of building and of core, the lowest, each; a mode that is left out moves with the ground. LINEAR_RIGID has all
- * of them. The core gives the tuned mass; device is not read for LINEAR_RIGID. */
+/* n_modes: of building and of core, the lowest, each; a mode that is left out moves with the ground. LINEAR_RIGID has
+ * all of them. The core gives the tuned mass; device is not read for LINEAR_RIGID. */
 Status linear_system_make(LinearSystem *s, LinearKind kind, const SceneOptions *o, const Building *b,
                           const CoreBeam *core, const LinearDevice *device, int n_modes, Err *err);
 void linear_system_free(LinearSystem *s);

@@ -41,8 +41,8 @@ static void set_modal_losses(LinearSystem *s, const SceneOptions *o, const Build
 
 /* -- rigidly connected --------------------------------------------------------------------------------------------- */
 
-/* Rows first .. first+size-1 of P: phi' M Psi, from row-major phi and M (size, size) of the first degrees of freedom; psi
- * (m, m) row-major. */
+/* Rows first .. first+size-1 of P: phi' M Psi, from row-major phi and M (size, size) of the first degrees of freedom;
+ * psi (m, m) row-major. */
 static void project(LinearSystem *s, int first, int size, const double phi[], const double M[], const double psi[])
 {
     const int m = s->m;

@@ -45,8 +45,8 @@ typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.q
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 
-/* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of restitution [-],
- * and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
+/* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of
+ * restitution [-], and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
 typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, damping;
 } UncertainOptions;

@@ -32,8 +32,8 @@ typedef void (*SimContactFn)(const SimContact *contact, void *user);
 
 enum { SIDES = 2 }; /* of the core: [0] u > v, [1] u < v */
 
-/* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes, NAN where the scene has
- * no such part. Storeys and floors from 0. */
+/* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes, NAN where the scene
+ * has no such part. Storeys and floors from 0. */
 typedef struct {
     double contact_force_n[SIDES][FLOORS_MAX], contact_impulse_ns[SIDES][FLOORS_MAX];
     double indentation_m[SIDES][FLOORS_MAX];
@@ -103,8 +103,8 @@ static inline int beyond_contact_law(const SimResult *r)
     return r->indentation_ratio > INDENTATION_RATIO_MAX;
 }
 
-/* The state at one instant: modes 0..n_building-1 are the building's, the others the core's, each group padded with idle
- * ones. Energies since the start, as in SimResult; what the mode q has is (q'^2 + omega^2 q^2) / 2. */
+/* The state at one instant: modes 0..n_building-1 are the building's, the others the core's, each group padded with
+ * idle ones. Energies since the start, as in SimResult; what the mode q has is (q'^2 + omega^2 q^2) / 2. */
 typedef struct {
     double t, spacing; /* [s]; from one sample to the next */
     double ground;     /* [m/s2] */

@@ -336,8 +336,9 @@ static Status run_engine(SimWorker *w, SimResult *result, Err *err)
     return STATUS_OK;
 }
 
-/* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface steel
- * (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections 4.2, 6.1 */
+/* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface
+ * steel (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections
+ * 4.2, 6.1 */
 static const double YIELD_PRESSURE = 1.6;
 
 static void set_contact_figures(const ContactOptions *o, SimResult *r)

@@ -34,10 +34,10 @@ typedef struct SimWorker SimWorker;
 /* Of the input: the largest energy-balance error of a run that counts. */
 double sim_energy_balance_max(const SimOptions *o);
 
-/* Steps per contact that a tolerance needs, a relative error: 2 (0.01 / tolerance)^(2/3), so that J3 and the shares, which
- * converge last, err by less in 95 % of the windows of docs/promise.md: 2e-2, 7e-3 and 2e-3 were measured at 1, 2 and 4
- * steps. Core modes, tolerances of a step and the end of the contacts follow the steps (sim/fast/fast.h). The presets are
- * names: standard of 0.01, coarse of about 0.05. 0: as the preset says. */
+/* Steps per contact that a tolerance needs, a relative error: 2 (0.01 / tolerance)^(2/3), so that J3 and the shares,
+ * which converge last, err by less in 95 % of the windows of docs/promise.md: 2e-2, 7e-3 and 2e-3 were measured at 1,
+ * 2 and 4 steps. Core modes, tolerances of a step and the end of the contacts follow the steps (sim/fast/fast.h). The
+ * presets are names: standard of 0.01, coarse of about 0.05. 0: as the preset says. */
 double sim_steps_per_contact(const SimOptions *o);
 
 Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err);
@@ -60,16 +60,16 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err);
 void sim_worker_free(SimWorker *worker); /* NULL is fine */
 
-/* Every run from now on shows its states to sample, NULL: none does; spacing as EngineOptions.sample_spacing. It does not
- * find SimResult.peak_filtered_g then. */
+/* Every run from now on shows its states to sample, NULL: none does; spacing as EngineOptions.sample_spacing. It does
+ * not find SimResult.peak_filtered_g then. */
 void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, void *user);
 
 /* Displacements u (n_floors) [m] of the floors at a sample. */
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[]);
 
-/* Floors and nodes of the core: relative to the ground [m], [m/s]; accelerations of the floors absolute [m/s2]. The core
- * by the modes that the engine follows, 0 where there is none. Of the linear scenes the velocities are NAN, and the core
- * moves with the floors. */
+/* Floors and nodes of the core: relative to the ground [m], [m/s]; accelerations of the floors absolute [m/s2]. The
+ * core by the modes that the engine follows, 0 where there is none. Of the linear scenes the velocities are NAN, and
+ * the core moves with the floors. */
 typedef struct {
     double u[FLOORS_MAX], u_dot[FLOORS_MAX], u_ddot[FLOORS_MAX], core[FLOORS_MAX], core_dot[FLOORS_MAX];
 } FloorMotion;
@@ -85,8 +85,8 @@ Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
 /* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 
-/* Parameters of a device are searched for on less of the scene: the lowest modes of building and of core, longer steps [s],
- * the first part of the motion [s]; only SCENE_TMD and SCENE_LINKS. */
+/* Parameters of a device are searched for on less of the scene: the lowest modes of building and of core, longer
+ * steps [s], the first part of the motion [s]; only SCENE_TMD and SCENE_LINKS. */
 typedef struct {
     int n_modes;
     double step, duration;
