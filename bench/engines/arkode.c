@@ -148,8 +148,7 @@ static int prepare(Ode *o, SUNLinearSolver *linear)
 Status engine_arkode_imex(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                           Err *err)
 {
-    Ode o = {
-        .model = model, .motion = motion, .options = options, .solver = &ARKODE, .locate = 1, .panel = 6e-3 /* [s] */};
+    Ode o = {.model = model, .motion = motion, .options = options, .solver = &ARKODE, .panel = 6e-3 /* [s] */};
     SUNLinearSolver linear = NULL;
     Status status;
     memset(result, 0, sizeof *result);

@@ -51,7 +51,8 @@ unsigned measures_need(MeasureSet set)
     return needs;
 }
 
-int measure_exists(int k, int n_floors)
+/* Whether a building of n_floors can have anything but 0 there. */
+static int measure_exists(int k, int n_floors)
 {
     return k != MEASURE_ED5_10 || n_floors == 0 || n_floors >= 5;
 }

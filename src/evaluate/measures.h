@@ -114,9 +114,6 @@ const char *measures_missing(const MeasureOrder *order, const char *objectives, 
 /* Those that search.limits limits; words that are no measures are passed over. */
 MeasureSet measures_limited(const char *limits);
 
-/* Whether a building of n_floors can have anything but 0 there. */
-int measure_exists(int k, int n_floors);
-
 /* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has
  * none fails with its reason. */
 void measures_settle(SimResult *r, MeasureSet set);

@@ -44,7 +44,6 @@ typedef struct {
     int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
     void *user;                   /* of may_go_on */
     size_t slot;                  /* the queue's, as are those below */
-    double taken;                 /* [s] */
 } Task;
 
 typedef struct {

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/carve.h"
-#include "base/clock.h"
 
 typedef enum { PENDING, FINISHED, KNOWN } Place; /* KNOWN: as arrived, its evaluation is among those from before */
 
@@ -45,8 +44,6 @@ struct Queue {
     Status status;
     size_t rank; /* of the task that ended it */
     Err why;
-    double busy;
-    size_t n_done;
     const Executor *executor;
     void *executing;
     pthread_mutex_t lock, finishing;
@@ -362,15 +359,6 @@ void queue_know(Queue *q, size_t n, const Evaluation rows[])
     pthread_mutex_unlock(&q->lock);
 }
 
-double queue_busy(Queue *q, size_t *n_designs)
-{
-    pthread_mutex_lock(&q->lock);
-    const double busy = q->busy;
-    *n_designs = q->n_done;
-    pthread_mutex_unlock(&q->lock);
-    return busy;
-}
-
 Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
                       unsigned char ok[], Err *err)
 {
@@ -422,8 +410,7 @@ static void hand_out(Queue *q, Slot *s, Task *task)
                    .size = q->problem->part_size,
                    .may_go_on = may_go_on,
                    .user = q,
-                   .slot = s->index,
-                   .taken = clock_seconds()};
+                   .slot = s->index};
     q->n_under_way++;
 }
 
@@ -479,7 +466,6 @@ static void finish(Queue *q, Slot *s)
     pthread_mutex_lock(&q->lock);
     s->place = FINISHED;
     s->arrival = q->n_arrived++;
-    q->n_done++;
     if (status != STATUS_OK)
         end(q, SIZE_MAX, status, why.text);
     pthread_cond_signal(&q->news);
@@ -491,7 +477,6 @@ void queue_give(Queue *q, const Task *task, Status status, const Err *why)
 {
     pthread_mutex_lock(&q->lock);
     Slot *s = q->pool[task->slot];
-    q->busy += clock_seconds() - task->taken;
     if (status != STATUS_OK)
         end(q, status == STATUS_STOPPED ? SIZE_MAX : s->sequence * q->problem->n_parts + task->part, status, why->text);
     else

@@ -67,9 +67,6 @@ void queue_withdraw(Queue *q);
 /* n rows, borrowed, before the first design is asked for; as asked: ascending ids. */
 void queue_know(Queue *q, size_t n, const Evaluation rows[]);
 
-/* Worker-seconds in tasks, and in how many designs. */
-double queue_busy(Queue *q, size_t *n_designs);
-
 /* A batch: X (n, n_var) asked for, all of it waited for; minimised F (n, n_obj), G (n, n_con), ok (n). Nothing may be
  * pending. repeat (n): as in Asked, NULL: 0. */
 Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],

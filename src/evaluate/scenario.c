@@ -46,17 +46,6 @@ Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *re
     return status;
 }
 
-Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err)
-{
-    memset(w, 0, sizeof *w);
-    w->options = *o;
-    w->motion = (Motion){.n = 2, .dt_s = 0.01, .name = "at rest", .format = "none"};
-    w->motion.accel = calloc(w->motion.n, sizeof *w->motion.accel);
-    if (!w->motion.accel)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a motion of %zu samples", w->motion.n);
-    return build(w, err);
-}
-
 void scenario_close(Scenario *w)
 {
     scene_free(w->scene);

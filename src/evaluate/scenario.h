@@ -25,8 +25,6 @@ Status scenario_open_read(Scenario *w, const SceneOptions *o, const MotionOption
 /* motion_scale of a copy. */
 Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err);
 
-/* The same at rest, for questions that no ground motion answers (frequencies). */
-Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err);
 void scenario_close(Scenario *w);
 
 /* The options of a run with twice the steps, by which the error of another one is estimated (analysis/estimate.h); 0:

@@ -506,11 +506,6 @@ SimWorker *tower_worker(const Tower *t, size_t record, size_t worker)
     return t->worker[record * t->n_workers + worker];
 }
 
-ReplicatePlan tower_plan(const Tower *t)
-{
-    return t->plan;
-}
-
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */
 
 static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)

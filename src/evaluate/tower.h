@@ -48,7 +48,6 @@ size_t tower_n_records(const Tower *t);
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i);                /* of a search; 0: motion.record */
 SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* likewise, while no queue uses it */
-ReplicatePlan tower_plan(const Tower *t);
 
 /* The ground motion of a scene, for motion_free. */
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);

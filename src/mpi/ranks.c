@@ -104,7 +104,6 @@ static void take_result(Ranks *r, int from, size_t n)
     if (t->rank == 0)
         return;
     memcpy(m->status == STATUS_OK ? t->task.result : (void *)why.text, m->part, n - sizeof *m);
-    t->task.taken = clock_seconds() - m->seconds;
     r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * m->seconds : m->seconds;
     give(r, t, (Status)m->status, &why);
 }

@@ -144,7 +144,7 @@ size_t run_evaluations(const Run *run, size_t first)
     return sum / cost.whole;
 }
 
-int run_has_polished(const Run *run)
+static int run_has_polished(const Run *run)
 {
     return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
 }

@@ -99,7 +99,6 @@ int run_is_screened(const Run *run); /* search.fidelity acts */
  * spreads are taken as screened. */
 size_t run_evaluations(const Run *run, size_t first);
 
-int run_has_polished(const Run *run);
 size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */
 
 /* As if nothing had been polished: the front is that of the search. */

@@ -57,7 +57,6 @@ Status cvode_run(const CvodeMethod *method, void *solver, const SimModel *model,
              .motion = motion,
              .options = options,
              .solver = &CVODE,
-             .locate = 1,
              .with_energies = method->with_energies,
              .stop_at_samples = method->stop_at_samples,
              .panel = method->panel};

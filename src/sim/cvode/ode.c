@@ -24,7 +24,7 @@ int ode_size(const Ode *o)
 
 int ode_n_roots(const Ode *o)
 {
-    return o->locate && o->model->nc > 0 ? o->model->n : 0;
+    return o->model->nc > 0 ? o->model->n : 0;
 }
 
 /* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
@@ -158,8 +158,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     for (int i = 0; i < model->m; i++)
         fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
     o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
-    o->contacts =
-        (Contacts){.model = model, .by_overlap = !o->locate, .log = o->options->onsets, .forces = o->options->forces};
+    o->contacts = (Contacts){.model = model, .log = o->options->onsets, .forces = o->options->forces};
     if (o->contacts.forces)
         force_monitor_start(o->contacts.forces, model->nc);
     energy_account_start(&o->account, model);
@@ -291,32 +290,11 @@ static int start_anew(Ode *o, double t, double t_stop)
 }
 
 /* For the approach speeds of gaps that close unseen in the next step. */
-static void remember_start(Ode *o, double t)
-{
-    const SimModel *model = o->model;
-    Contacts *c = &o->contacts;
-    const double *y = ode_values(o->y);
-    c->t_before = t;
-    memcpy(c->q_before, y, sizeof *y * (size_t)model->m);
-    memcpy(c->v_before, y + model->m, sizeof *y * (size_t)model->m);
-    ode_structure(model, y, y + model->m, c->a_before);
-    contacts_add(c, y, y + model->m, c->a_before);
-    for (int i = 0; i < model->m; i++)
-        c->a_before[i] -= model->gamma[i] * ground(o, t);
-}
-
 /* Contacts at the end of a step, `found` those whose root was: 1 where the integrator has to start anew. */
 static int switch_contacts(Ode *o, double t, const int found[])
 {
-    double w[FLOORS_MAX];
     const double *y = ode_values(o->y);
-    if (o->model->nc == 0)
-        return 0;
-    if (o->locate)
-        return contacts_switch(&o->contacts, t, y, y + o->model->m, found);
-    floors_from_modes(o->model, 0, o->model->m, y, w);
-    contacts_settle(&o->contacts, w);
-    return 0;
+    return o->model->nc > 0 ? contacts_switch(&o->contacts, t, y, y + o->model->m, found) : 0;
 }
 
 typedef struct {
@@ -326,7 +304,7 @@ typedef struct {
 static void floors_now(const Ode *o, Floors *f)
 {
     const SimModel *model = o->model;
-    if (!o->locate || model->nc == 0)
+    if (model->nc == 0)
         return;
     floors_from_modes(model, 0, model->m, ode_values(o->y), f->w);
     floors_from_modes(model, 0, model->m, ode_values(o->y) + model->m, f->w_dot);
@@ -401,8 +379,6 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         const double t_before = *t;
         if (o->stuck >= STUCK_MAX)
             return RUN_ENGINE_FAILED;
-        if (!o->locate)
-            remember_start(o, t_before);
         const int flag = o->solver->step(o, t_stop, t);
         if (flag < 0) /* it has tried again with shorter steps before it says so */
             return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;

@@ -36,8 +36,8 @@ struct Ode {
     const Motion *motion;
     const EngineOptions *options;
     const OdeSolver *solver;
-    int with_energies, locate, stop_at_samples; /* locate 0: contacts by overlap */
-    double panel;                               /* [s] at most: peaks and quadrature between the ends of long steps */
+    int with_energies, stop_at_samples;
+    double panel; /* [s] at most: peaks and quadrature between the ends of long steps */
     double rtol;
 
     Contacts contacts;
