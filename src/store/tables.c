@@ -300,6 +300,7 @@ typedef struct {
     EvaluationTable room; /* of one row */
     EvaluationFn take;
     void *user;
+    int has_replicates;
 } Reading;
 
 static int take_numbers(sqlite3_stmt *row, int at, size_t n, double values[])
@@ -328,7 +329,8 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     int at = take_numbers(row, N_FIXED, s->n_var, to->x);
     at = take_numbers(row, at, s->n_obj, to->f);
     at = take_numbers(row, at, s->n_extra, to->extra);
-    take_numbers(row, at + 1, s->n_obj, to->sd);
+    if (r->has_replicates)
+        take_numbers(row, at + 1, s->n_obj, to->sd);
     if ((uint64_t)sqlite3_column_int64(row, DIGEST) != (digest_row(s, e) ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
     evaluation_set_outcome(to, outcome, to->reason);
@@ -338,10 +340,12 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 Status rows_each(Database *db, const Schema *s, const char *where, EvaluationFn take, void *user, Err *err)
 {
     char sql[200];
+    double has_replicates;
     Evaluation *row;
-    Reading r = {db, s, evaluation_table(s->n_var, s->n_obj, s->n_extra), take, user};
-    snprintf(sql, sizeof sql,
-             "SELECT * FROM evaluation LEFT JOIN replicates ON replicates.evaluation = id WHERE %s ORDER BY id", where);
+    TRY(database_number(db, "SELECT EXISTS (SELECT * FROM replicates)", 0, &has_replicates, err));
+    Reading r = {db, s, evaluation_table(s->n_var, s->n_obj, s->n_extra), take, user, has_replicates > 0.0};
+    snprintf(sql, sizeof sql, "SELECT * FROM evaluation%s WHERE %s ORDER BY id",
+             r.has_replicates ? " LEFT JOIN replicates ON replicates.evaluation = id" : "", where);
     Status status = evaluation_table_add(&r.room, &row, err);
     if (status == STATUS_OK)
         status = evaluation_table_give_room(row, err);
