@@ -75,9 +75,8 @@ static double largest_difference(int n, const double A[], const double B[])
     return difference / largest;
 }
 
-static void test_the_20_storey_frame_condenses_to_the_built_in_matrices(void **state)
+TEST(the_20_storey_frame_condenses_to_the_built_in_matrices)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     Building built_in = load(&o);
     snprintf(o.model, sizeof o.model, "configs/sac20/frame");
@@ -118,9 +117,8 @@ static BuildingOptions write_column(const char *name, int parts, const char *she
     return o;
 }
 
-static void test_a_column_deflects_as_a_cantilever(void **state)
+TEST(a_column_deflects_as_a_cantilever)
 {
-    (void)state;
     const double kGA = 2.1e11 / 2.5 * 5e-4;
     for (int shears = 0; shears < 2; shears++) {
         const BuildingOptions o = write_column("column", 2, shears ? "5e-4" : "0");
@@ -137,9 +135,8 @@ static void test_a_column_deflects_as_a_cantilever(void **state)
     }
 }
 
-static void test_a_column_of_consistent_mass_vibrates_as_a_cantilever(void **state)
+TEST(a_column_of_consistent_mass_vibrates_as_a_cantilever)
 {
-    (void)state;
     const BuildingOptions o = write_column("column", 1, "0");
     Building b = load(&o);
     const double L = STOREY * N, beta_l[] = {1.875104069, 4.694091133, 7.854757438}; /* cos x cosh x = -1 */
@@ -171,9 +168,8 @@ static double portal_stiffness(double beam_I)
     return 24 * EIc / (h * h * h) * (12 * rho + 1) / (12 * rho + 4);
 }
 
-static void test_a_portal_frame_has_its_textbook_stiffness(void **state)
+TEST(a_portal_frame_has_its_textbook_stiffness)
 {
-    (void)state;
     const double beams[] = {1e-5, 1e-4, 3e-3};
     for (int i = 0; i < 3; i++) {
         BuildingOptions o = write_portal("portal", beams[i], "1", "0,0");
@@ -191,9 +187,8 @@ static void test_a_portal_frame_has_its_textbook_stiffness(void **state)
 }
 
 /* Hinged columns: 3EI_c/h^3 each under a rigid beam, by the base's fixity or by the element's pin. */
-static void test_a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same(void **state)
+TEST(a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same)
 {
-    (void)state;
     BuildingOptions by_base = write_portal("by_base", 10, "0", "0,0"), by_pin = write_portal("by_pin", 10, "1", "1,0");
     Building a = load(&by_base), b = load(&by_pin);
     assert_close(a.K[0], 2 * 3 * 2e11 * 1e-4 / 64, 1e-4);
@@ -202,9 +197,8 @@ static void test_a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same(void *
     building_free(&b);
 }
 
-static void test_a_mechanism_is_refused_with_its_node(void **state)
+TEST(a_mechanism_is_refused_with_its_node)
 {
-    (void)state;
     BuildingOptions o = write_portal("swings", 1e-4, "0", "1,1");
     expect_refusal_of(&o, "mechanism");
     o = write_portal("loose", 1e-4, "1", "0,0");
@@ -221,9 +215,8 @@ static void test_a_mechanism_is_refused_with_its_node(void **state)
     expect_refusal_of(&o, "node E (x 9 m, z 4 m)");
 }
 
-static void test_tied_nodes_move_together(void **state)
+TEST(tied_nodes_move_together)
 {
-    (void)state;
     BuildingOptions o = write_portal("tied", 1e-4, "1", "0,0");
     write_file(&o, "sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,50,1e-4,2e11\nbeam,1e-9,1e-4,2e11\n");
     Building rigid = load(&o);
@@ -236,9 +229,8 @@ static void test_tied_nodes_move_together(void **state)
     building_free(&rigid);
 }
 
-static void test_faults_of_a_frame_name_file_line_and_what_to_do(void **state)
+TEST(faults_of_a_frame_name_file_line_and_what_to_do)
 {
-    (void)state;
     static const struct {
         const char *file, *text, *wanted;
     } BAD[] = {
@@ -278,9 +270,8 @@ static void test_faults_of_a_frame_name_file_line_and_what_to_do(void **state)
 
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
 
-static void test_storeys_that_shear_have_the_frequencies_of_a_chain(void **state)
+TEST(storeys_that_shear_have_the_frequencies_of_a_chain)
 {
-    (void)state;
     static const char *const HEADS[] = {"height_m,mass_kg,stiffness_n_m", "height_m;mass_t;stiffness_kn_m"};
     const double k = 3e8, m = 2.5e5;
     for (int form = 0; form < 2; form++) {
@@ -300,9 +291,8 @@ static void test_storeys_that_shear_have_the_frequencies_of_a_chain(void **state
     }
 }
 
-static void test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever(void **state)
+TEST(storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever)
 {
-    (void)state;
     const double EI_building = 4e12, k = 5e8, h = 3, L = N * h;
     for (int shears = 0; shears < 2; shears++) {
         BuildingOptions o = folder_of(shears ? "both" : "bending");
@@ -321,9 +311,8 @@ static void test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever(v
     }
 }
 
-static void test_faults_of_storeys_are_named(void **state)
+TEST(faults_of_storeys_are_named)
 {
-    (void)state;
     BuildingOptions o = folder_of("bad_storeys");
     write_file(&o, "storeys.csv", "height_m,mass_kg\n3,1e5\n");
     expect_refusal_of(&o, "has no column stiffness_n_m");
@@ -337,9 +326,8 @@ static void test_faults_of_storeys_are_named(void **state)
     expect_refusal_of(&o, "storeys.csv:2: decimal points and decimal commas are mixed");
 }
 
-static void test_a_folder_holds_one_kind_of_model(void **state)
+TEST(a_folder_holds_one_kind_of_model)
 {
-    (void)state;
     BuildingOptions o = folder_of("kinds");
     expect_refusal_of(&o, "holds no building: K.csv and M.csv, or storeys.csv, or nodes.csv");
     write_file(&o, "M.csv", "1\n");
@@ -349,9 +337,8 @@ static void test_a_folder_holds_one_kind_of_model(void **state)
     expect_refusal_of(&o, "holds nodes.csv and storeys.csv, two kinds of model");
 }
 
-static void test_heights_may_be_listed_storey_by_storey(void **state)
+TEST(heights_may_be_listed_storey_by_storey)
 {
-    (void)state;
     BuildingOptions o = folder_of("matrices");
     write_file(&o, "K.csv", "2e8,-1e8\n-1e8,1e8\n");
     write_file(&o, "M.csv", "2e5,0\n0,2e5\n");
@@ -370,9 +357,8 @@ static void test_heights_may_be_listed_storey_by_storey(void **state)
 
 /* ---- P-delta -------------------------------------------------------------------------------------------------- */
 
-static void test_p_delta_softens_the_tower_to_its_known_frequency(void **state)
+TEST(p_delta_softens_the_tower_to_its_known_frequency)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     Building b = load(&o);
     assert_close(b.omega[0] / (2 * M_PI), 0.2643, 2e-4);
@@ -383,9 +369,8 @@ static void test_p_delta_softens_the_tower_to_its_known_frequency(void **state)
     building_free(&b);
 }
 
-static void test_p_delta_of_one_storey_is_the_inverted_pendulum(void **state)
+TEST(p_delta_of_one_storey_is_the_inverted_pendulum)
 {
-    (void)state;
     BuildingOptions o = folder_of("pendulum");
     const double k = 2e6, m = 1e5, h = 4;
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n%g,%g,%g\n", h, m, k);
@@ -416,9 +401,8 @@ static int stands(int n, double weight, double bending)
     return standing;
 }
 
-static void test_a_column_buckles_at_eulers_load(void **state)
+TEST(a_column_buckles_at_eulers_load)
 {
-    (void)state;
     const double bending = 8e9, euler = M_PI * M_PI * bending / (4 * 24 * 24);
     double before = 1;
     for (int n = 4; n <= 32; n *= 2) {
@@ -436,9 +420,8 @@ static void test_a_column_buckles_at_eulers_load(void **state)
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */
 
-static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
+TEST(rayleigh_damping_goes_through_its_two_modes)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.damping_model = DAMPING_RAYLEIGH;
     o.damping = LIST_OF(0.02);
@@ -458,9 +441,8 @@ static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
     expect_refusal_of(&o, "'1, 2, 3' has 3 modes; Rayleigh damping takes two");
 }
 
-static void test_a_list_of_damping_gives_each_mode_its_ratio(void **state)
+TEST(a_list_of_damping_gives_each_mode_its_ratio)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.damping = LIST_OF(0.01, 0.02, 0.05);
     Building b = load(&o);
@@ -471,9 +453,8 @@ static void test_a_list_of_damping_gives_each_mode_its_ratio(void **state)
 }
 
 /* As many floors as there may be, with impacts: sets of floors, pads and designs have room for all of them. */
-static void test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines(void **state)
+TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
 {
-    (void)state;
     if (SANITIZED) /* long, and the code is that of fewer floors */
         skip();
     const BuildingOptions o = folder_of("tall");
@@ -507,9 +488,8 @@ static void test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines
 enum { FULL = 106 };
 static const long ALL_MODES = 100000;
 
-static void test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices(void **state)
+TEST(the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices)
 {
-    (void)state;
     static double omega[FULL], phi[FULL * FULL];
     BuildingOptions o = scene_defaults().building;
     Table K, M;
@@ -533,9 +513,8 @@ static void test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_it
     building_free(&b);
 }
 
-static void test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass(void **state)
+TEST(a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass)
 {
-    (void)state;
     BuildingOptions o = write_column("free", 1, "0");
     o.modes = ALL_MODES;
     Building b = load(&o);
@@ -573,9 +552,8 @@ static double missed_frequencies(const Building *b, const Building *full)
     return missed;
 }
 
-static void test_craig_bampton_converges_to_the_full_model_from_above(void **state)
+TEST(craig_bampton_converges_to_the_full_model_from_above)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.modes = ALL_MODES;
     Building full = load(&o);
@@ -599,9 +577,8 @@ static void test_craig_bampton_converges_to_the_full_model_from_above(void **sta
     building_free(&full);
 }
 
-static void test_whatever_is_kept_the_ground_moves_every_floor_as_one(void **state)
+TEST(whatever_is_kept_the_ground_moves_every_floor_as_one)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     for (o.modes = 0; o.modes <= 128; o.modes = 2 * o.modes + 4) {
         Building b = load(&o);
@@ -618,9 +595,8 @@ static void test_whatever_is_kept_the_ground_moves_every_floor_as_one(void **sta
 }
 
 /* r is in the span of the floors and the shape that they miss, so that r' M r is the full model's. */
-static void test_the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model(void **state)
+TEST(the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model)
 {
-    (void)state;
     BuildingOptions o = write_column("heavy", 4, "0");
     double mass[2] = {0}, swing[2];
     for (int i = 0; i < 2; i++) {
@@ -637,9 +613,8 @@ static void test_the_ground_moves_mass_between_the_floors_as_it_does_in_the_full
 }
 
 /* Columns that weigh five times the beam: floors that move by M 1 miss a fifth of J1. */
-static void test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines(void **state)
+TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
 {
-    (void)state;
     enum { PARTS = 8 };
     const BuildingOptions o = folder_of("columns");
     char nodes[1024] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\n", elements[1024] = "element,node_i,node_j,section\n";
@@ -701,9 +676,8 @@ static void test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_eng
     free(said);
 }
 
-static void test_vertical_modes_of_the_full_model_resemble_none_of_the_floors(void **state)
+TEST(vertical_modes_of_the_full_model_resemble_none_of_the_floors)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.modes = ALL_MODES;
     Building b = load(&o);
@@ -721,9 +695,8 @@ static void test_vertical_modes_of_the_full_model_resemble_none_of_the_floors(vo
     building_free(&b);
 }
 
-static void test_p_delta_and_damping_reach_the_full_model(void **state)
+TEST(p_delta_and_damping_reach_the_full_model)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.modes = ALL_MODES;
     o.p_delta = SWITCH_ON;
@@ -741,9 +714,8 @@ static void test_p_delta_and_damping_reach_the_full_model(void **state)
     building_free(&b);
 }
 
-static void test_only_a_frame_has_more_than_its_floors(void **state)
+TEST(only_a_frame_has_more_than_its_floors)
 {
-    (void)state;
     BuildingOptions o = scene_defaults().building;
     o.modes = 3;
     snprintf(o.model, sizeof o.model, "appendix");
@@ -751,9 +723,8 @@ static void test_only_a_frame_has_more_than_its_floors(void **state)
 }
 
 /* Both engines on the full model, and the rigid pair's base shear and energies with it. */
-static void test_the_full_model_is_simulated_alike_by_two_engines(void **state)
+TEST(the_full_model_is_simulated_alike_by_two_engines)
 {
-    (void)state;
     if (SANITIZED) /* long, and the code is that of fewer modes */
         skip();
     char design[1024] = "";
@@ -793,9 +764,8 @@ static int count(const char *text, const char *word)
     return n;
 }
 
-static void test_a_building_is_summed_up_and_drawn(void **state)
+TEST(a_building_is_summed_up_and_drawn)
 {
-    (void)state;
     json_t *o = json_of("building configs/sac20/frame --svg @/frame.svg --json");
     const BuildingOptions options = scene_defaults().building;
     Building b = load(&options);
@@ -820,9 +790,8 @@ static void test_a_building_is_summed_up_and_drawn(void **state)
     building_free(&b);
 }
 
-static void test_a_drawing_shows_names_as_text_and_storeys_as_a_stick(void **state)
+TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
 {
-    (void)state;
     const BuildingOptions o = write_portal("named", 1e-4, "1", "0,0");
     write_file(&o, "elements.csv", "element,node_i,node_j,section\n<b>,A,C,column\n2,B,D,column\n3,C,D,beam\n");
     free(output_of("building @/named --svg @/named.svg"));
@@ -838,9 +807,8 @@ static void test_a_drawing_shows_names_as_text_and_storeys_as_a_stick(void **sta
     expect(66, "nowhere/K.csv", "building nowhere");
 }
 
-static void test_modes_have_shapes_that_are_listed(void **state)
+TEST(modes_have_shapes_that_are_listed)
 {
-    (void)state;
     json_t *m = json_of("building configs/quick.ini --json");
     const json_t *shapes = json_object_get(m, "building_shapes"), *share = json_object_get(m, "building_mass_share");
     double sum = 0;
@@ -865,39 +833,5 @@ static void test_modes_have_shapes_that_are_listed(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_20_storey_frame_condenses_to_the_built_in_matrices),
-        cmocka_unit_test(test_a_column_deflects_as_a_cantilever),
-        cmocka_unit_test(test_a_column_of_consistent_mass_vibrates_as_a_cantilever),
-        cmocka_unit_test(test_a_portal_frame_has_its_textbook_stiffness),
-        cmocka_unit_test(test_a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same),
-        cmocka_unit_test(test_a_mechanism_is_refused_with_its_node),
-        cmocka_unit_test(test_tied_nodes_move_together),
-        cmocka_unit_test(test_faults_of_a_frame_name_file_line_and_what_to_do),
-        cmocka_unit_test(test_storeys_that_shear_have_the_frequencies_of_a_chain),
-        cmocka_unit_test(test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever),
-        cmocka_unit_test(test_faults_of_storeys_are_named),
-        cmocka_unit_test(test_a_folder_holds_one_kind_of_model),
-        cmocka_unit_test(test_heights_may_be_listed_storey_by_storey),
-        cmocka_unit_test(test_p_delta_softens_the_tower_to_its_known_frequency),
-        cmocka_unit_test(test_p_delta_of_one_storey_is_the_inverted_pendulum),
-        cmocka_unit_test(test_a_column_buckles_at_eulers_load),
-        cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
-        cmocka_unit_test(test_a_list_of_damping_gives_each_mode_its_ratio),
-        cmocka_unit_test(test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines),
-        cmocka_unit_test(test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices),
-        cmocka_unit_test(test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass),
-        cmocka_unit_test(test_craig_bampton_converges_to_the_full_model_from_above),
-        cmocka_unit_test(test_whatever_is_kept_the_ground_moves_every_floor_as_one),
-        cmocka_unit_test(test_the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model),
-        cmocka_unit_test(test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines),
-        cmocka_unit_test(test_vertical_modes_of_the_full_model_resemble_none_of_the_floors),
-        cmocka_unit_test(test_p_delta_and_damping_reach_the_full_model),
-        cmocka_unit_test(test_only_a_frame_has_more_than_its_floors),
-        cmocka_unit_test(test_the_full_model_is_simulated_alike_by_two_engines),
-        cmocka_unit_test(test_a_building_is_summed_up_and_drawn),
-        cmocka_unit_test(test_modes_have_shapes_that_are_listed),
-        cmocka_unit_test(test_a_drawing_shows_names_as_text_and_storeys_as_a_stick),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -76,9 +76,8 @@ static void expect_fault(const char *wanted, const char *arguments)
     expect(65, wanted, command);
 }
 
-static void test_deviations_and_objectives_that_make_no_sense_are_noticed(void **state)
+TEST(deviations_and_objectives_that_make_no_sense_are_noticed)
 {
-    (void)state;
     write_building(1, 1, 0);
     expect_warnings("sim.gap_tolerance_m", "--set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
     expect_warnings("search.objectives", "--set search.objectives=j1_m,bumper_strain");
@@ -92,9 +91,8 @@ static void test_deviations_and_objectives_that_make_no_sense_are_noticed(void *
     expect_fault("search.limits: '<=5' is not NAME<=NUMBER", "--set 'search.limits=<=5'");
 }
 
-static void test_a_sound_building_is_in_order_with_its_figures(void **state)
+TEST(a_sound_building_is_in_order_with_its_figures)
 {
-    (void)state;
     write_building(1, 1, 0);
     expect_warnings("", "");
     char *text = output_of("check @/six.ini");
@@ -123,9 +121,8 @@ static int times(const char *text, const char *word)
 }
 
 /* On standard error, each once; standard output is the JSON alone. */
-static void test_simulate_and_optimize_say_what_check_finds_implausible(void **state)
+TEST(simulate_and_optimize_say_what_check_finds_implausible)
 {
-    (void)state;
     static const char *const COMMANDS[] = {"simulate @/six.ini --design @/mm.csv --json",
                                            "optimize @/six.ini --max-evals 8 --set search.initial=8 --out @/six-run"};
     char path[512];
@@ -159,9 +156,8 @@ static void test_simulate_and_optimize_say_what_check_finds_implausible(void **s
     }
 }
 
-static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
+TEST(units_that_are_wrong_are_refused_or_guessed)
 {
-    (void)state;
     write_building(1e-3, 1, 0);
     expect_fault("set building.units to what the files are in: kN_m_kg (", "");
     expect_fault("floors of 3e+05 kg), MN_m_t (", "");
@@ -189,9 +185,8 @@ static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
 }
 
 /* Kilonewtons and tonnes together leave every period as it is: only the files can say so. */
-static void test_units_are_taken_from_the_comments_of_the_files(void **state)
+TEST(units_are_taken_from_the_comments_of_the_files)
 {
-    (void)state;
     static const struct {
         const char *K, *M;
         double stiffness, mass;
@@ -222,17 +217,15 @@ static void test_units_are_taken_from_the_comments_of_the_files(void **state)
     free(output_of("building @/units0 --set building.units=kN_m_t"));
 }
 
-static void test_floors_from_the_top_down_are_noticed(void **state)
+TEST(floors_from_the_top_down_are_noticed)
 {
-    (void)state;
     write_building(1, 1, 1);
     expect_warnings("building.model", "");
     expect_text("bottom floor first", "");
 }
 
-static void test_damping_peak_and_gaps_beyond_reason_are_noticed(void **state)
+TEST(damping_peak_and_gaps_beyond_reason_are_noticed)
 {
-    (void)state;
     write_building(1, 1, 0);
     expect_warnings("building.damping", "--set building.damping=3");
     expect_warnings("core.damping", "--set core.damping=0.25");
@@ -244,25 +237,22 @@ static void test_damping_peak_and_gaps_beyond_reason_are_noticed(void **state)
     expect_warnings("--design", "--design @/wide.csv");
 }
 
-static void test_a_core_beyond_the_motions_samples_is_noticed(void **state)
+TEST(a_core_beyond_the_motions_samples_is_noticed)
 {
-    (void)state;
     write_building(1, 1, 0);
     expect_warnings("motion.record",
                     "--set motion.stretch=50 --set sim.duration_s=0.5"); /* a sample each second: 0.5 Hz */
 }
 
-static void test_a_squat_core_without_shear_is_noticed(void **state)
+TEST(a_squat_core_without_shear_is_noticed)
 {
-    (void)state;
     write_building(1, 1, 0);
     expect_warnings("core.theory", "--set core.theory=euler_bernoulli --set core.width_m=7");
     expect_warnings("", "--set core.width_m=7");
 }
 
-static void test_faults_come_as_json_too(void **state)
+TEST(faults_come_as_json_too)
 {
-    (void)state;
     Said s;
     write_building(1, 1, 0);
     run(&s, "check @/six.ini --json --set search.sead=3 --record nowhere.csv");
@@ -274,9 +264,8 @@ static void test_faults_come_as_json_too(void **state)
 }
 
 /* One mass: the base shear is the spectral acceleration, as a share of g. */
-static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **state)
+TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
 {
-    (void)state;
     double omega = 9, M = 1e5, K = 81e5, zeta = 0.03, storey = 4, psa;
     const double period = 2 * M_PI / omega;
     const SceneOptions s = scene_defaults();
@@ -302,9 +291,8 @@ static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **
     motion_free(&m);
 }
 
-static void test_a_study_of_the_most_floors_ends_with_its_baselines(void **state)
+TEST(a_study_of_the_most_floors_ends_with_its_baselines)
 {
-    (void)state;
     char storeys[64 * (FLOORS_MAX + 1)] = "height_m,mass_kg,stiffness_n_m\n";
     for (int s = 0; s < FLOORS_MAX; s++)
         strcat(storeys, "3.5,1e5,2e8\n");
@@ -323,19 +311,5 @@ static void test_a_study_of_the_most_floors_ends_with_its_baselines(void **state
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_study_of_the_most_floors_ends_with_its_baselines),
-        cmocka_unit_test(test_deviations_and_objectives_that_make_no_sense_are_noticed),
-        cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
-        cmocka_unit_test(test_simulate_and_optimize_say_what_check_finds_implausible),
-        cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),
-        cmocka_unit_test(test_units_are_taken_from_the_comments_of_the_files),
-        cmocka_unit_test(test_floors_from_the_top_down_are_noticed),
-        cmocka_unit_test(test_damping_peak_and_gaps_beyond_reason_are_noticed),
-        cmocka_unit_test(test_a_core_beyond_the_motions_samples_is_noticed),
-        cmocka_unit_test(test_a_squat_core_without_shear_is_noticed),
-        cmocka_unit_test(test_faults_come_as_json_too),
-        cmocka_unit_test(test_the_base_shear_of_one_mass_is_its_spectral_acceleration),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -37,9 +37,8 @@ static void write_designs(const char *name, int n, const double gap[], const dou
 
 /* ---------------------------------------------------------------------------------------------- help and usage --- */
 
-static void test_every_command_explains_itself_with_an_example_first(void **state)
+TEST(every_command_explains_itself_with_an_example_first)
 {
-    (void)state;
     static const char *const COMMANDS[] = {"",         "optimize", "simulate", "evaluate", "export",
                                            "building", "spectrum", "new",      "check",    "settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
@@ -56,9 +55,8 @@ static void test_every_command_explains_itself_with_an_example_first(void **stat
 }
 
 /* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
-static void test_this_build_gives_the_stored_answers(void **state)
+TEST(this_build_gives_the_stored_answers)
 {
-    (void)state;
     json_t *all = json_of("check --self --json"), *check;
     size_t i, n_zero = 0;
     assert_true(json_is_true(json_object_get(all, "trusted")));
@@ -78,9 +76,8 @@ static void test_this_build_gives_the_stored_answers(void **state)
     free(line);
 }
 
-static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void **state)
+TEST(a_misunderstood_command_line_ends_with_2_and_a_suggestion)
 {
-    (void)state;
     expect(2, "no command", "");
     expect(2, "did you mean optimize?", "optimise configs/quick.ini");
     expect(2, "did you mean --design?", "simulate configs/quick.ini --desing none");
@@ -101,9 +98,8 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     expect(66, "holds no run", "choose results");
 }
 
-static void test_bad_settings_and_data_end_with_65(void **state)
+TEST(bad_settings_and_data_end_with_65)
 {
-    (void)state;
     expect(65, "did you mean motion.stretch?", "building configs/quick.ini --set motion.strech=2");
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
     expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --set sim.engine=magic");
@@ -118,9 +114,8 @@ static void test_bad_settings_and_data_end_with_65(void **state)
 }
 
 /* One note on standard error; the answer is that of the present name. */
-static void test_old_commands_run_under_their_new_names(void **state)
+TEST(old_commands_run_under_their_new_names)
 {
-    (void)state;
     const double gap[1] = {0.01}, wall[1] = {0.02};
     write_designs("one.csv", 1, gap, wall, wall);
     static const char ARGUMENTS[] = "configs/quick.ini --design @/one.csv --json --set sim.duration_s=2";
@@ -146,9 +141,8 @@ static void shows(const char *arguments)
     forget(&s);
 }
 
-static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
+TEST(whatever_takes_a_motion_shows_how_it_is_scaled)
 {
-    (void)state;
     shows("spectrum builtin:kobe-like");
     shows("simulate configs/quick.ini --design none --set sim.duration_s=1");
     shows("optimize configs/quick.ini --out @/scaled --set sim.duration_s=20 --set search.initial=4 --max-evals 4 "
@@ -157,9 +151,8 @@ static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
 }
 
 /* On standard error; the answer stays what it is. */
-static void test_a_setting_without_effect_is_named(void **state)
+TEST(a_setting_without_effect_is_named)
 {
-    (void)state;
     expect(0, "note: core.masses_kg has no effect: it is read where core.section = effective",
            "simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.masses_kg=3");
     char keeps[sizeof place.folder + 8];
@@ -178,9 +171,8 @@ static void test_a_setting_without_effect_is_named(void **state)
     expect(2, "holds 2 designs", "simulate configs/quick.ini --sensitivity --design @/two.csv");
 }
 
-static void test_standard_output_and_every_setting_belong_to_one(void **state)
+TEST(standard_output_and_every_setting_belong_to_one)
 {
-    (void)state;
     const double gap[1] = {0.01}, wall[1] = {0.02};
     write_designs("one.csv", 1, gap, wall, wall);
 #define ONE "simulate configs/quick.ini --set sim.duration_s=20 --design @/one.csv "
@@ -197,9 +189,8 @@ static void test_standard_output_and_every_setting_belong_to_one(void **state)
     free(text);
 }
 
-static void test_missing_inputs_end_with_66(void **state)
+TEST(missing_inputs_end_with_66)
 {
-    (void)state;
     expect(66, "nowhere.ini", "building nowhere.ini");
     expect(66, "nowhere.csv", "simulate configs/quick.ini --design nowhere.csv");
     expect(66, "nowhere.csv", "simulate configs/quick.ini --design none --record nowhere.csv");
@@ -208,9 +199,8 @@ static void test_missing_inputs_end_with_66(void **state)
     expect(66, "nowhere", "evaluate nowhere --design 1 --record builtin:kobe-like");
 }
 
-static void test_output_that_cannot_be_written_ends_with_74(void **state)
+TEST(output_that_cannot_be_written_ends_with_74)
 {
-    (void)state;
     expect(74, "/dev/full", "spectrum builtin:kobe-like --csv /dev/full");
     expect(74, "/no/such/folder/a.csv", "spectrum builtin:kobe-like --csv @/no/such/folder/a.csv");
     expect(74, "standard output", "settings >/dev/full");
@@ -221,9 +211,8 @@ static void test_output_that_cannot_be_written_ends_with_74(void **state)
 /* -------------------------------------------------------------------------------------------- settings and check ---
  */
 
-static void test_the_printed_settings_are_the_default_file_and_in_order(void **state)
+TEST(the_printed_settings_are_the_default_file_and_in_order)
 {
-    (void)state;
     char *printed = output_of("settings"), *kept = text_of("configs/default.ini");
     if (strcmp(printed, kept) != 0)
         fail_msg("they differ; if the settings were meant to change: imtet settings > configs/default.ini");
@@ -234,9 +223,8 @@ static void test_the_printed_settings_are_the_default_file_and_in_order(void **s
     free(kept);
 }
 
-static void test_check_names_every_fault_at_once(void **state)
+TEST(check_names_every_fault_at_once)
 {
-    (void)state;
     write_in_place("many.ini", "[motion]\nrecord = not-there.csv\npga_g = nan\nstretc = 3\n[core]\nsection = tube\n"
                                "[building]\nmodel = /not/there\n");
     Said s;
@@ -258,9 +246,8 @@ static void test_check_names_every_fault_at_once(void **state)
 /* ------------------------------------------------------------------------------------------------- one-shot answers
  * --- */
 
-static void test_modes_take_the_wall_from_a_design(void **state)
+TEST(modes_take_the_wall_from_a_design)
 {
-    (void)state;
     write_designs("wall.csv", 1, (double[]){0.01}, (double[]){0.012}, (double[]){0.0064});
     char *plain = output_of("building configs/quick.ini"),
          *given = output_of("building configs/quick.ini --design @/wall.csv");
@@ -269,9 +256,8 @@ static void test_modes_take_the_wall_from_a_design(void **state)
     free(given);
 }
 
-static void test_the_spectrum_is_the_same_as_json_and_as_csv(void **state)
+TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 {
-    (void)state;
     Err err = {0};
     Table t;
     json_t *o = json_of("spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1 --json --csv @/spectrum.csv");
@@ -288,9 +274,8 @@ static void test_the_spectrum_is_the_same_as_json_and_as_csv(void **state)
 }
 
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
-static void test_the_histories_reach_the_figures_of_the_motion(void **state)
+TEST(the_histories_reach_the_figures_of_the_motion)
 {
-    (void)state;
     Err err = {0};
     Table t;
     json_t *o = json_of("spectrum tests/motion/jma.csv --channel EW --json --history @/history.csv");
@@ -315,9 +300,8 @@ static void test_the_histories_reach_the_figures_of_the_motion(void **state)
     json_decref(o);
 }
 
-static void test_the_picture_of_a_motion_is_whole_or_not_there(void **state)
+TEST(the_picture_of_a_motion_is_whole_or_not_there)
 {
-    (void)state;
     if (system("command -v gnuplot >/dev/null") == 0) {
         free(output_of("spectrum tests/motion/one.esm --svg @/motion.svg"));
         char *svg = read_in_place("motion.svg");
@@ -337,9 +321,8 @@ static void test_the_picture_of_a_motion_is_whole_or_not_there(void **state)
 /* A short stretch of shaking: enough for some hundred impacts, short enough for a test. */
 #define SHORT " --set motion.stretch=1 --set sim.duration_s=8 "
 
-static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state)
+TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 {
-    (void)state;
     write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
     json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
@@ -374,9 +357,8 @@ static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state
     json_decref(list);
 }
 
-static void test_no_output_replaces_a_file_that_is_read_a_run_or_another_output(void **state)
+TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
 {
-    (void)state;
     write_in_place("own.ini", "[sim]\nduration_s = 5\n");
     write_in_place("own.sqlite", "SQLite format 3");
     expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
@@ -388,9 +370,8 @@ static void test_no_output_replaces_a_file_that_is_read_a_run_or_another_output(
 }
 
 /* Whoever writes it, and whether the command line, the settings, a folder or a link names it. */
-static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names(void **state)
+TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
 {
-    (void)state;
     static const char *const FOLDERS[] = {"held", "records", "tower"};
     static const char *const OPTIONS[] = {"--csv", "--svg", "--history"};
     for (size_t i = 0; i < sizeof FOLDERS / sizeof FOLDERS[0]; i++) {
@@ -430,9 +411,8 @@ static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_na
     free(output_of("building @/tower --svg @/tower/drawn.svg"));
 }
 
-static void test_a_top_heavy_design_is_simulated_with_a_warning(void **state)
+TEST(a_top_heavy_design_is_simulated_with_a_warning)
 {
-    (void)state;
     write_designs("top.csv", 1, (double[]){0.002}, (double[]){0.006}, (double[]){0.012});
     Said s;
     run(&s, "simulate configs/quick.ini" SHORT "--design @/top.csv");
@@ -466,9 +446,8 @@ static void write_five_floors(double k, double m)
                                "0.01,0.02,0.03,0.04,0.05,0.012,0.0064\n");
 }
 
-static void test_a_building_of_five_floors_goes_all_the_way(void **state)
+TEST(a_building_of_five_floors_goes_all_the_way)
 {
-    (void)state;
     const double k = 4e8, m = 6e5;
     write_five_floors(k, m);
     free(output_of("check @/five.ini"));
@@ -496,28 +475,5 @@ static void test_a_building_of_five_floors_goes_all_the_way(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_command_explains_itself_with_an_example_first),
-        cmocka_unit_test(test_this_build_gives_the_stored_answers),
-        cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
-        cmocka_unit_test(test_bad_settings_and_data_end_with_65),
-        cmocka_unit_test(test_old_commands_run_under_their_new_names),
-        cmocka_unit_test(test_whatever_takes_a_motion_shows_how_it_is_scaled),
-        cmocka_unit_test(test_a_setting_without_effect_is_named),
-        cmocka_unit_test(test_standard_output_and_every_setting_belong_to_one),
-        cmocka_unit_test(test_missing_inputs_end_with_66),
-        cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
-        cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),
-        cmocka_unit_test(test_check_names_every_fault_at_once),
-        cmocka_unit_test(test_modes_take_the_wall_from_a_design),
-        cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),
-        cmocka_unit_test(test_the_histories_reach_the_figures_of_the_motion),
-        cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),
-        cmocka_unit_test(test_simulate_gives_the_same_numbers_as_json_and_as_csv),
-        cmocka_unit_test(test_no_output_replaces_a_file_that_is_read_a_run_or_another_output),
-        cmocka_unit_test(test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names),
-        cmocka_unit_test(test_a_top_heavy_design_is_simulated_with_a_warning),
-        cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -45,9 +45,8 @@ static double j1_of(const char *word)
     return j1;
 }
 
-static void test_a_design_is_the_same_by_every_name(void **state)
+TEST(a_design_is_the_same_by_every_name)
 {
-    (void)state;
     char word[100];
     free(output_of("choose @/run --csv @/chosen.csv"));
     const double knee = j1_of("@/run:knee");
@@ -59,9 +58,8 @@ static void test_a_design_is_the_same_by_every_name(void **state)
     }
 }
 
-static void test_a_row_of_a_design_file_is_taken_by_its_number(void **state)
+TEST(a_row_of_a_design_file_is_taken_by_its_number)
 {
-    (void)state;
     char header[400] = "", row[2][200] = {"", ""}, text[1200];
     for (int j = 0; j < 20; j++) {
         sprintf(header + strlen(header), "gap_%02d_m,", j + 1);
@@ -78,9 +76,8 @@ static void test_a_row_of_a_design_file_is_taken_by_its_number(void **state)
     expect(65, "is chosen by its row", SIMULATE "@/two.csv:knee");
 }
 
-static void test_designs_off_the_front_stay_addressable(void **state)
+TEST(designs_off_the_front_stay_addressable)
 {
-    (void)state;
     char word[400];
     snprintf(word, sizeof word, "@/run:%ld", known.off);
     assert_same_number(j1_of(word), known.off_j1);
@@ -94,9 +91,8 @@ static void test_designs_off_the_front_stay_addressable(void **state)
     free(output_of(word));
 }
 
-static void test_evaluate_without_a_record_takes_those_of_the_run(void **state)
+TEST(evaluate_without_a_record_takes_those_of_the_run)
 {
-    (void)state;
     char *own = output_of("evaluate @/run --design knee"),
          *named = output_of("evaluate @/run --design knee --record builtin:kobe-like");
     assert_string_equal(own, named);
@@ -109,9 +105,8 @@ static void test_evaluate_without_a_record_takes_those_of_the_run(void **state)
     json_decref(o);
 }
 
-static void test_evaluate_takes_a_design_from_elsewhere(void **state)
+TEST(evaluate_takes_a_design_from_elsewhere)
 {
-    (void)state;
     json_t *o = json_of("evaluate @/both --design @/run:knee --json"),
            *own = json_of("evaluate @/run --design knee --json");
     const json_t *there = json_array_get(json_object_get(o, "records"), 0);
@@ -124,9 +119,8 @@ static void test_evaluate_takes_a_design_from_elsewhere(void **state)
     expect(65, "is no design of", "polish @/both --design @/run:knee");
 }
 
-static void test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation(void **state)
+TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
 {
-    (void)state;
     json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
     const json_t *record = json_array_get(json_object_get(o, "records"), 0);
     assert_less(0, number(json_object_get(record, "links"), "link_ns_m"));
@@ -143,9 +137,8 @@ static void test_evaluate_compares_with_devices_and_replicates_have_a_named_devi
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set sim.uncertain=damping=0.1");
 }
 
-static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee(void **state)
+TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee)
 {
-    (void)state;
     json_t *o = json_of("evaluate @/run --design knee --json"), *one = json_of(SIMULATE "@/run:knee");
     const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
     const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
@@ -166,9 +159,8 @@ static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows
     free(said);
 }
 
-static void test_choose_names_the_extremes_and_writes_them(void **state)
+TEST(choose_names_the_extremes_and_writes_them)
 {
-    (void)state;
     json_t *o = json_of("choose @/run --json --weights j1_m=1"), *list = json_object_get(o, "designs");
     assert_int_equal(json_array_size(list), 1 + 7 + 1);
     char word[100];
@@ -188,9 +180,8 @@ static void test_choose_names_the_extremes_and_writes_them(void **state)
 }
 
 /* Half of the front by a result that is no objective; the ids chosen are those within. */
-static void test_choose_limits_any_result_of_a_run(void **state)
+TEST(choose_limits_any_result_of_a_run)
 {
-    (void)state;
     Run h;
     Err err = {0};
     char path[PATH_MAX], words[100];
@@ -213,9 +204,8 @@ static void test_choose_limits_any_result_of_a_run(void **state)
     expect(69, "this run has no base_shear_n of its designs", "choose @/run --max base_shear_n=1");
 }
 
-static void test_words_that_name_nothing_are_refused_with_what_is_there(void **state)
+TEST(words_that_name_nothing_are_refused_with_what_is_there)
 {
-    (void)state;
     expect(65, "the nearest id is 24", SIMULATE "@/run:999");
     expect(65, "did you mean knee", SIMULATE "@/run:nee");
     expect(65, "there are j1_m, j2_m", SIMULATE "@/run:best_j1");
@@ -224,9 +214,8 @@ static void test_words_that_name_nothing_are_refused_with_what_is_there(void **s
     expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
 }
 
-static void test_a_noisy_run_is_not_polished(void **state)
+TEST(a_noisy_run_is_not_polished)
 {
-    (void)state;
     write_in_place("noisy.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\nnoise = 0.05\n[search]\n"
                                 "max_evals = 60\ninitial = 30\npopulation = 20\n");
     free(output_of("optimize @/noisy.ini --out @/noisy"));
@@ -235,18 +224,5 @@ static void test_a_noisy_run_is_not_polished(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_design_is_the_same_by_every_name),
-        cmocka_unit_test(test_a_row_of_a_design_file_is_taken_by_its_number),
-        cmocka_unit_test(test_designs_off_the_front_stay_addressable),
-        cmocka_unit_test(test_evaluate_without_a_record_takes_those_of_the_run),
-        cmocka_unit_test(test_evaluate_takes_a_design_from_elsewhere),
-        cmocka_unit_test(test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation),
-        cmocka_unit_test(test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee),
-        cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
-        cmocka_unit_test(test_choose_limits_any_result_of_a_run),
-        cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
-        cmocka_unit_test(test_a_noisy_run_is_not_polished),
-    };
-    return cmocka_run_group_tests_name("designs", tests, make_run, clear_place);
+    return RUN_TESTS(make_run, clear_place);
 }

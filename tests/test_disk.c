@@ -10,9 +10,8 @@
 
 /* -- other processes, full disks, damage --------------------------------------------------------------------------- */
 
-static void test_a_second_process_is_refused_with_the_first_ones_number(void **state)
+TEST(a_second_process_is_refused_with_the_first_ones_number)
 {
-    (void)state;
     char wanted[64];
     LockHolder holder;
     char path[PATH_MAX];
@@ -52,9 +51,8 @@ static void assert_nothing_lost(const char *folder, const Run *before)
 }
 
 /* No file may grow beyond some blocks: as a full disk, but without one. */
-static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **state)
+TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 {
-    (void)state;
     Said s;
     Run before;
     Err err = {0};
@@ -88,9 +86,8 @@ static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **s
 }
 
 /* A disk of 300 kB, where this user may mount one. */
-static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **state)
+TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
 {
-    (void)state;
     char disk[PATH_MAX], run_of_disk[PATH_MAX];
     Said s;
     Run saved;
@@ -113,9 +110,8 @@ static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **
 }
 
 /* Disks that are full at some moment of a quick run: given more room, it goes on at once and to the same end. */
-static void test_a_run_on_a_disk_that_was_full_goes_on_at_once(void **state)
+TEST(a_run_on_a_disk_that_was_full_goes_on_at_once)
 {
-    (void)state;
     static const char OFF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 3\n"
                               "objectives = 2\n[search]\npopulation = 6\ninitial = 16\nmax_evals = 90\nthreads = 1\n";
     char disk[PATH_MAX], size[32];
@@ -142,9 +138,8 @@ static void test_a_run_on_a_disk_that_was_full_goes_on_at_once(void **state)
     }
 }
 
-static void test_a_folder_that_is_read_only_is_named(void **state)
+TEST(a_folder_that_is_read_only_is_named)
 {
-    (void)state;
     char folder[PATH_MAX], run_there[PATH_MAX];
     Run saved;
     Err err = {0};
@@ -182,9 +177,8 @@ static size_t simulated_in(const char *name)
 }
 
 /* Killed, then put where nothing can be written, with and without what SQLite shares between processes (-shm). */
-static void test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal(void **state)
+TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
 {
-    (void)state;
     static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                                  "objectives = 2\n[search]\ninitial = 100\nmax_evals = 120\n";
     char folder[PATH_MAX], command[1024], path[PATH_MAX];
@@ -214,9 +208,8 @@ static void test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal(voi
     assert_true(n > 2 && n_all == n && n_two == n);
 }
 
-static void test_a_database_that_somebody_keeps_locked_is_busy(void **state)
+TEST(a_database_that_somebody_keeps_locked_is_busy)
 {
-    (void)state;
     sqlite3 *other;
     char path[PATH_MAX];
     free(output_of("optimize @/textbook.ini --max-evals 20 --out @/busy"));
@@ -238,9 +231,8 @@ static void overwrite(const char *name, long offset, const char *bytes, size_t n
     assert_int_equal(fclose(f), 0);
 }
 
-static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
+TEST(damage_is_found_on_opening_whatever_was_hit)
 {
-    (void)state;
     static const char JUNK[4096] = "junk";
     char command[512], path[PATH_MAX];
     struct stat size;
@@ -280,9 +272,8 @@ static long peak_kib(void)
 }
 
 /* Somebody's file that would compute rows without end or of a gigabyte is refused, and costs no memory. */
-static void test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size(void **state)
+TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
 {
-    (void)state;
     static const char *const CHANGES[] = {
         "ALTER TABLE evaluation RENAME TO was; CREATE VIEW evaluation AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
         "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 "
@@ -316,9 +307,8 @@ static void test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size(
     assert_less(peak_kib(), usual + 64 * 1024);
 }
 
-static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **state)
+TEST(a_run_is_named_by_its_database_or_through_the_root_too)
 {
-    (void)state;
     char command[PATH_MAX + 128], path[PATH_MAX];
     free(output_of("optimize @/textbook.ini --max-evals 30 --out @/named"));
     free(output_of("status @/named/run.sqlite"));
@@ -329,9 +319,8 @@ static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **s
 }
 
 /* The first files that are opened must not get the numbers of standard output and error. */
-static void test_who_closes_the_standard_streams_finds_nothing_of_them_in_the_run(void **state)
+TEST(who_closes_the_standard_streams_finds_nothing_of_them_in_the_run)
 {
-    (void)state;
     Said s;
     free(output_of("optimize @/textbook.ini --max-evals 30 --out @/open"));
     run(&s, "optimize @/textbook.ini --max-evals 30 --out @/shut <&- >&- 2>&-");
@@ -344,9 +333,8 @@ static void test_who_closes_the_standard_streams_finds_nothing_of_them_in_the_ru
     free(log);
 }
 
-static void test_readers_need_the_database_alone_and_the_files_come_back(void **state)
+TEST(readers_need_the_database_alone_and_the_files_come_back)
 {
-    (void)state;
     char command[512];
     free(output_of("optimize @/textbook.ini --max-evals 30 --set problem.noise=0 --out @/alone"));
     char *front = read_in_place("alone/front.csv"), *all = all_of("alone");
@@ -378,19 +366,5 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_second_process_is_refused_with_the_first_ones_number),
-        cmocka_unit_test(test_a_run_that_can_write_no_more_says_so_and_goes_on_later),
-        cmocka_unit_test(test_a_full_disk_is_named_and_what_was_stored_stays_readable),
-        cmocka_unit_test(test_a_run_on_a_disk_that_was_full_goes_on_at_once),
-        cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
-        cmocka_unit_test(test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal),
-        cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),
-        cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
-        cmocka_unit_test(test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size),
-        cmocka_unit_test(test_a_run_is_named_by_its_database_or_through_the_root_too),
-        cmocka_unit_test(test_who_closes_the_standard_streams_finds_nothing_of_them_in_the_run),
-        cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
-    };
-    return cmocka_run_group_tests_name("disk", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -130,9 +130,8 @@ static void sweep_memory(const Deed *deed)
     free(wanted);
 }
 
-static void test_without_memory_the_program_says_so_or_gives_the_same_result(void **state)
+TEST(without_memory_the_program_says_so_or_gives_the_same_result)
 {
-    (void)state;
     if (SANITIZED) /* its malloc belongs to the sanitizer */
         skip();
     for (int i = 0; i < N_DEEDS; i++)
@@ -214,9 +213,8 @@ static void sweep_writes(const Deed *deed, const Refusal *r)
     free(wanted);
 }
 
-static void test_a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front(void **state)
+TEST(a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front)
 {
-    (void)state;
     static const Deed EXPORT = {"export @/done --csv @/run", "run"}, STUDY = {STUDY("@/run"), "run/front.csv"};
     if (SANITIZED || !can_trace())
         skip();
@@ -239,9 +237,5 @@ static int make_run(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_memory_the_program_says_so_or_gives_the_same_result),
-        cmocka_unit_test(test_a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front),
-    };
-    return cmocka_run_group_tests(tests, make_run, clear_place);
+    return RUN_TESTS(make_run, clear_place);
 }

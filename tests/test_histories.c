@@ -40,9 +40,8 @@ static void write_design(void)
 #endif
 #define WINDOW "configs/quick.ini --design @/design.csv --set sim.duration_s=22.01 --set sim.accuracy=fine "
 
-static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
+TEST(forces_of_a_history_are_those_of_the_contact_law)
 {
-    (void)state;
     write_design();
     json_t *o = json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
     const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
@@ -81,9 +80,8 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
     table_free((Table *)&contacts);
 }
 
-static void test_histories_of_both_engines_agree_before_the_horizon(void **state)
+TEST(histories_of_both_engines_agree_before_the_horizon)
 {
-    (void)state;
     if (SANITIZED) /* long; test_forces and test_engines go through cvode */
         skip();
     free(output_of("simulate " WINDOW "--set sim.engine=cvode --history @/cvode.csv --every " EVERY));
@@ -103,9 +101,8 @@ static void test_histories_of_both_engines_agree_before_the_horizon(void **state
     table_free((Table *)&b);
 }
 
-static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **state)
+TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 {
-    (void)state;
     json_t *o = json_of("simulate " WINDOW "--json");
     const Table h = table_of("fast.csv");
     double u = 0, drift = 0, accel = 0, input = 0, error = 0;
@@ -155,14 +152,13 @@ static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **stat
     table_free((Table *)&h);
 }
 
-static void test_options_of_time_files_are_checked_before_the_simulation(void **state)
+TEST(options_of_time_files_are_checked_before_the_simulation)
 {
     static const char *const WRONG[][2] = {
         {"--history @/x.csv --every nan", "--every"},       {"--history @/x.csv --every 1e-9", "rows"},
         {"--history @/none/x.csv", "none/x.csv"},           {"--contacts @/none/x.csv", "none/x.csv"},
         {"--rigid --contacts @/x.csv", "--contacts needs"}, {"--floor-spectra @/none/x.csv", "none/x.csv"},
     };
-    (void)state;
     write_design();
     for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++) {
         Said said;
@@ -231,9 +227,8 @@ static void add_sums(const SimSample *s, void *user)
     at[4] = s->ground;
 }
 
-static void test_the_base_shear_is_what_inertia_and_damping_need(void **state)
+TEST(the_base_shear_is_what_inertia_and_damping_need)
 {
-    (void)state;
     Err err = {0};
     Motion motion = {0};
     Scene *scene;
@@ -313,9 +308,8 @@ static double sine(double t, double hz)
     return envelope * sin(w * t) / (w * w);
 }
 
-static void test_a_sine_keeps_the_gain_of_butterworth(void **state)
+TEST(a_sine_keeps_the_gain_of_butterworth)
 {
-    (void)state;
     const double h = floor_filter_spacing(CUTOFF), shares[] = {0.1, 0.3, 0.5, 0.7, 0.9, 1};
     for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
         const double gain = 1 / (1 + pow(shares[i], 8));
@@ -333,9 +327,8 @@ static double kink(double t, double t0)
 }
 
 /* A spike of 1 m/s, however short, is the filter's response to an impulse: int G df = 2 fc (pi/8) / sin(pi/8). */
-static void test_an_impact_between_two_samples_is_the_response_to_an_impulse(void **state)
+TEST(an_impact_between_two_samples_is_the_response_to_an_impulse)
 {
-    (void)state;
     const double h = floor_filter_spacing(CUTOFF), wanted = 2 * CUTOFF * (M_PI / 8) / sin(M_PI / 8);
     for (int i = 0; i < 10; i++) {
         assert_close(filtered_peak(h, kink, 2 + 0.1 * i * h, 0), wanted, 0.03);
@@ -349,9 +342,8 @@ static double nothing(double t, double parameter)
     return 0 * parameter;
 }
 
-static void test_what_stands_still_feels_the_ground(void **state)
+TEST(what_stands_still_feels_the_ground)
 {
-    (void)state;
     const double felt = filtered_peak(1e-3, nothing, 0, 3.7);
     assert_true(felt >= 3.7 && felt < 1.2 * 3.7); /* overshoots where it sets in */
 }
@@ -374,9 +366,8 @@ static void add_sample(const SimSample *s, void *user)
     all->samples++;
 }
 
-static void test_samples_that_are_left_out_change_no_filtered_peak(void **state)
+TEST(samples_that_are_left_out_change_no_filtered_peak)
 {
-    (void)state;
     Err err = {0};
     Motion motion = {0};
     Scene *scene;
@@ -418,9 +409,8 @@ static void test_samples_that_are_left_out_change_no_filtered_peak(void **state)
 
 /* On a building that is as stiff as rock the floor does as the ground: a sine of 1 Hz in resonance with an oscillator of 5 %
  * damping, 1 / (2 zeta) = 10 times the acceleration, and the acceleration itself far above. */
-static void test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum(void **state)
+TEST(a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum)
 {
-    (void)state;
     char *folder = in_place("stiff"), *path = in_place("sine.csv");
     assert_int_equal(mkdir(folder, 0777), 0);
     write_in_place("stiff/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,1,40000000\n4,1,40000000\n");
@@ -490,9 +480,8 @@ static long impacts_with(double gap, const char *law, const char *engine)
 }
 
 /* The gap is what lies between the two bodies at a sample, where nothing has touched before. */
-static void test_an_impact_that_begins_at_a_sample_counts_once(void **state)
+TEST(an_impact_that_begins_at_a_sample_counts_once)
 {
-    (void)state;
     static const int SAMPLES[] = {38, 101, 142, 203};
     static const char *const LAWS[] = {"paper", "jankowski"}, *const ENGINES[] = {"fast", "cvode"};
     write_one_floor();
@@ -515,18 +504,5 @@ static void test_an_impact_that_begins_at_a_sample_counts_once(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_forces_of_a_history_are_those_of_the_contact_law),
-        cmocka_unit_test(test_histories_of_both_engines_agree_before_the_horizon),
-        cmocka_unit_test(test_a_history_reaches_the_peaks_and_its_energies_add_up),
-        cmocka_unit_test(test_options_of_time_files_are_checked_before_the_simulation),
-        cmocka_unit_test(test_the_base_shear_is_what_inertia_and_damping_need),
-        cmocka_unit_test(test_a_sine_keeps_the_gain_of_butterworth),
-        cmocka_unit_test(test_an_impact_between_two_samples_is_the_response_to_an_impulse),
-        cmocka_unit_test(test_what_stands_still_feels_the_ground),
-        cmocka_unit_test(test_samples_that_are_left_out_change_no_filtered_peak),
-        cmocka_unit_test(test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum),
-        cmocka_unit_test(test_an_impact_that_begins_at_a_sample_counts_once),
-    };
-    return cmocka_run_group_tests_name("histories", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -5,9 +5,8 @@
 
 #include "cmd/manual.h"
 
-static void test_every_command_has_a_page_with_all_its_options(void **state)
+TEST(every_command_has_a_page_with_all_its_options)
 {
-    (void)state;
     for (int i = 0; command_at(i); i++) {
         const Command *c = command_at(i);
         char arguments[64], option[64];
@@ -27,9 +26,8 @@ static void test_every_command_has_a_page_with_all_its_options(void **state)
     free(all);
 }
 
-static void test_help_of_a_command_is_the_same_both_ways(void **state)
+TEST(help_of_a_command_is_the_same_both_ways)
 {
-    (void)state;
     char *first = output_of("help simulate"), *second = output_of("simulate --help"), *all = output_of("help");
     assert_string_equal(first, second);
     assert_int_equal(strncmp(all, "example: imtet ", 15), 0);
@@ -43,9 +41,8 @@ static void test_help_of_a_command_is_the_same_both_ways(void **state)
     expect(2, "one command at most", "help simulate building");
 }
 
-static void test_the_version_says_what_the_program_was_built_from(void **state)
+TEST(the_version_says_what_the_program_was_built_from)
 {
-    (void)state;
     json_t *o = json_of("--version --json");
     char *line = output_of("--version"), wanted[128];
     snprintf(wanted, sizeof wanted, "imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
@@ -63,9 +60,8 @@ static void test_the_version_says_what_the_program_was_built_from(void **state)
     free(second);
 }
 
-static void test_the_nearest_is_suggested_everywhere(void **state)
+TEST(the_nearest_is_suggested_everywhere)
 {
-    (void)state;
     expect(65, "did you mean builtin:kobe-like?", "spectrum builtin:koobe-like");
     expect(66, "did you mean builtin:kobe-like?", "spectrum bulitin:kobe-like");
     expect(66, "did you mean configs/quick.ini?", "check configs/quik.ini");
@@ -83,9 +79,8 @@ static void test_the_nearest_is_suggested_everywhere(void **state)
     expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
 }
 
-static void test_an_empty_front_is_refused_with_its_reason_everywhere(void **state)
+TEST(an_empty_front_is_refused_with_its_reason_everywhere)
 {
-    (void)state;
     static const char WHY[] = "search.limits: none of ";
     expect(69, WHY, "optimize @/two.ini --out @/hollow --set 'search.limits=f1<=-1'");
     expect(69, WHY, "choose @/hollow");
@@ -114,9 +109,8 @@ static void expect_offer(const char *words, const char *wanted)
     free(offer);
 }
 
-static void test_bash_offers_commands_options_keys_and_words(void **state)
+TEST(bash_offers_commands_options_keys_and_words)
 {
-    (void)state;
     expect_offer("opti", "optimize\n");
     expect_offer("help spec", "spectrum\n");
     expect_offer("simulate --des", "--design\n");
@@ -135,9 +129,8 @@ static void test_bash_offers_commands_options_keys_and_words(void **state)
 }
 
 /* Every row of the table in the documentation is a status of the program and the other way round. */
-static void test_the_exit_codes_are_those_of_the_documentation(void **state)
+TEST(the_exit_codes_are_those_of_the_documentation)
 {
-    (void)state;
     char row[16], *page = text_of("docs/exit-codes.md");
     int n_rows = 0;
     for (const char *at = page; (at = strstr(at, "\n| ")); at++)
@@ -151,9 +144,8 @@ static void test_the_exit_codes_are_those_of_the_documentation(void **state)
     free(page);
 }
 
-static void test_a_study_without_one_good_simulation_ends_with_70(void **state)
+TEST(a_study_without_one_good_simulation_ends_with_70)
 {
-    (void)state;
     expect(70, "none of 8 simulations succeeded", "optimize @/fails.ini --out @/fails --threads 1");
 }
 
@@ -170,15 +162,5 @@ static int make_studies(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_command_has_a_page_with_all_its_options),
-        cmocka_unit_test(test_help_of_a_command_is_the_same_both_ways),
-        cmocka_unit_test(test_the_version_says_what_the_program_was_built_from),
-        cmocka_unit_test(test_the_nearest_is_suggested_everywhere),
-        cmocka_unit_test(test_an_empty_front_is_refused_with_its_reason_everywhere),
-        cmocka_unit_test(test_bash_offers_commands_options_keys_and_words),
-        cmocka_unit_test(test_the_exit_codes_are_those_of_the_documentation),
-        cmocka_unit_test(test_a_study_without_one_good_simulation_ends_with_70),
-    };
-    return cmocka_run_group_tests(tests, make_studies, clear_place);
+    return RUN_TESTS(make_studies, clear_place);
 }

@@ -36,9 +36,8 @@ static void must_read(const char *text, MotionUnit unit, const char *format)
     motion_free(&m);
 }
 
-static void test_units_are_found_in_names_and_comments(void **state)
+TEST(units_are_found_in_names_and_comments)
 {
-    (void)state;
     must_read("time_s,accel_m_s2\n0.00,1\n0.02,2\n0.04,-3\n0.06,0\n", UNIT_FROM_FILE, "csv");
     must_read("# made by hand, units: m/s^2\r\n0.00,1\r\n0.02,2\r\n\r\n0.04,-3\r\n0.06,0", UNIT_FROM_FILE, "csv");
     must_read("t [s], a [cm/s2]\n0,100\n0.02,200\n0.04,-300\n0.06,0\n", UNIT_FROM_FILE, "csv");
@@ -52,9 +51,8 @@ static void test_units_are_found_in_names_and_comments(void **state)
         UNIT_FROM_FILE, "csv");
 }
 
-static void test_both_forms_of_a_peer_header_are_read(void **state)
+TEST(both_forms_of_a_peer_header_are_read)
 {
-    (void)state;
     static const char *const npts[] = {"NPTS=     4, DT=   .0200 SEC", "    4    0.0200    NPTS, DT"};
     char text[512];
     for (int i = 0; i < 2; i++)
@@ -69,9 +67,8 @@ static void test_both_forms_of_a_peer_header_are_read(void **state)
         }
 }
 
-static void test_a_setting_may_not_contradict_the_file(void **state)
+TEST(a_setting_may_not_contradict_the_file)
 {
-    (void)state;
     Motion m;
     Err err;
     assert_int_equal(parse(&m, "time_s,accel_m_s2\n0,1\n1,2\n", UNIT_G, &err), STATUS_BAD_DATA);
@@ -79,9 +76,8 @@ static void test_a_setting_may_not_contradict_the_file(void **state)
     assert_null(m.accel);
 }
 
-static void test_times_printed_with_few_digits_are_uniform(void **state)
+TEST(times_printed_with_few_digits_are_uniform)
 {
-    (void)state;
     enum { N = 4001 };
     static const struct {
         double dt;
@@ -107,9 +103,8 @@ static void test_times_printed_with_few_digits_are_uniform(void **state)
     free(text);
 }
 
-static void test_a_sample_missing_anywhere_is_noticed(void **state)
+TEST(a_sample_missing_anywhere_is_noticed)
 {
-    (void)state;
     enum { N = 500 };
     char text[N * 20];
     for (int gone = 1; gone < N - 1; gone += 7) {
@@ -127,9 +122,8 @@ static void test_a_sample_missing_anywhere_is_noticed(void **state)
     }
 }
 
-static void test_every_bad_file_is_refused_with_its_reason(void **state)
+TEST(every_bad_file_is_refused_with_its_reason)
 {
-    (void)state;
     static const struct {
         const char *file, *says;
     } BAD[] = {
@@ -173,9 +167,8 @@ static void test_every_bad_file_is_refused_with_its_reason(void **state)
     }
 }
 
-static void test_a_file_that_is_not_there_is_missing(void **state)
+TEST(a_file_that_is_not_there_is_missing)
 {
-    (void)state;
     Motion m;
     Err err;
     assert_int_equal(motion_load(&m, "tests/bad/motion/nowhere.csv", UNIT_FROM_FILE, &err), STATUS_MISSING);
@@ -184,9 +177,8 @@ static void test_a_file_that_is_not_there_is_missing(void **state)
     motion_free(&m);
 }
 
-static void test_the_benchmark_records_are_read(void **state)
+TEST(the_benchmark_records_are_read)
 {
-    (void)state;
     static const struct {
         const char *file;
         size_t n;
@@ -231,18 +223,16 @@ static void says(double pga_g, double stretch, const char *wanted)
     motion_free(&m);
 }
 
-static void test_the_peak_of_a_motion_is_shown_with_its_scaling(void **state)
+TEST(the_peak_of_a_motion_is_shown_with_its_scaling)
 {
-    (void)state;
     says(0, 1, "peak 0.5 g");
     says(0.3, 1, "peak 0.3 g (0.5 g x 0.6, time x 1)");
     says(0, 3.1, "peak 0.5 g (0.5 g x 1, time x 3.1)");
     says(0.43, 3.1, "peak 0.43 g (0.5 g x 0.86, time x 3.1)");
 }
 
-static void test_prepare_scales_the_peak_and_stretches_time(void **state)
+TEST(prepare_scales_the_peak_and_stretches_time)
 {
-    (void)state;
     Motion m;
     Err err;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4\n1,2\n", UNIT_FROM_FILE, &err), &err);
@@ -258,9 +248,8 @@ static void test_prepare_scales_the_peak_and_stretches_time(void **state)
     motion_free(&m);
 }
 
-static void test_a_motion_of_zeros_is_none(void **state)
+TEST(a_motion_of_zeros_is_none)
 {
-    (void)state;
     Motion m;
     Err err;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,0\n0.5,0\n1,0\n", UNIT_FROM_FILE, &err), &err);
@@ -274,9 +263,8 @@ static void test_a_motion_of_zeros_is_none(void **state)
 /* ---- spectrum ------------------------------------------------------------------------------------------------- */
 
 /* A step of acceleration a overshoots its static answer by exp(-zeta pi / sqrt(1 - zeta^2)). */
-static void test_a_constant_acceleration_overshoots_as_the_closed_form_says(void **state)
+TEST(a_constant_acceleration_overshoots_as_the_closed_form_says)
 {
-    (void)state;
     double a[2] = {1.7, 1.7};
     const Motion m = {.accel = a, .n = 2, .dt_s = 100};
     static const double T[] = {0.03, 0.7, 3, 40, 199};
@@ -290,9 +278,8 @@ static void test_a_constant_acceleration_overshoots_as_the_closed_form_says(void
 }
 
 /* A rectangular pulse shorter than half a period: the undamped peak comes afterwards, 2 a sin(pi t_d / T). */
-static void test_the_peak_after_the_end_of_the_motion_counts(void **state)
+TEST(the_peak_after_the_end_of_the_motion_counts)
 {
-    (void)state;
     double a[2] = {2, 2}, psa;
     const Motion m = {.accel = a, .n = 2, .dt_s = 0.1};
     const double T = 0.9;
@@ -301,9 +288,8 @@ static void test_the_peak_after_the_end_of_the_motion_counts(void **state)
 }
 
 /* u = -a / (w^2 - q^2) (sin qt - q/w sin wt) for a ground acceleration a sin qt, undamped, from rest. */
-static void test_a_harmonic_motion_gives_the_textbook_response(void **state)
+TEST(a_harmonic_motion_gives_the_textbook_response)
 {
-    (void)state;
     enum { N = 8001 };
     static double a[N];
     const double q = 2 * PI, dt = 1e-3;
@@ -363,9 +349,8 @@ static double runge_kutta_peak(const Motion *m, double w, double zeta, int sub)
     return largest;
 }
 
-static void test_an_irregular_motion_agrees_with_fine_runge_kutta(void **state)
+TEST(an_irregular_motion_agrees_with_fine_runge_kutta)
 {
-    (void)state;
     enum { N = 400 };
     double a[N];
     irregular(a, N, 0.02);
@@ -384,9 +369,8 @@ static void test_an_irregular_motion_agrees_with_fine_runge_kutta(void **state)
 }
 
 /* Many half cycles inside one interval: u = -(b (t - sin(wt) / w)) / w^2 on a ramp, and its like after a jump. */
-static void test_a_stiff_undamped_oscillator_is_followed_between_samples(void **state)
+TEST(a_stiff_undamped_oscillator_is_followed_between_samples)
 {
-    (void)state;
     for (int k = 1; k < 60; k++) {
         double a[3] = {1, 0.2 + 0.05 * k, -0.7}, psa;
         const Motion m = {.accel = a, .n = 3, .dt_s = 1};
@@ -397,10 +381,9 @@ static void test_a_stiff_undamped_oscillator_is_followed_between_samples(void **
 }
 
 /* Oscillators are advanced four at a time. */
-static void test_the_answer_of_a_period_does_not_depend_on_those_beside_it(void **state)
+TEST(the_answer_of_a_period_does_not_depend_on_those_beside_it)
 {
     enum { N = 11 };
-    (void)state;
     double T[N], psa[N], alone;
     Motion m = {.n = 4000, .dt_s = 0.01, .accel = malloc(4000 * sizeof(double))};
     for (size_t i = 0; i < m.n; i++)
@@ -417,10 +400,9 @@ static void test_the_answer_of_a_period_does_not_depend_on_those_beside_it(void 
     motion_free(&m);
 }
 
-static void test_the_spectrum_of_a_long_motion_takes_seconds(void **state)
+TEST(the_spectrum_of_a_long_motion_takes_seconds)
 {
     enum { N = 121 };
-    (void)state;
     double T[N], psa[N];
     uint32_t random = 7;
     Motion m = {.n = 400000, .dt_s = 0.005, .accel = malloc(400000 * sizeof(double))};
@@ -434,9 +416,8 @@ static void test_the_spectrum_of_a_long_motion_takes_seconds(void **state)
     motion_free(&m);
 }
 
-static void test_short_and_long_periods_reach_their_limits(void **state)
+TEST(short_and_long_periods_reach_their_limits)
 {
-    (void)state;
     enum { N = 1200 };
     double a[N];
     irregular(a, N, 0.02);
@@ -461,9 +442,8 @@ static void test_short_and_long_periods_reach_their_limits(void **state)
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 
-static void test_figures_of_a_triangle_pulse(void **state)
+TEST(figures_of_a_triangle_pulse)
 {
-    (void)state;
     double a[] = {0, -3, 0};
     const double dt = 0.25;
     const Motion m = {.accel = a, .n = 3, .dt_s = dt};
@@ -477,9 +457,8 @@ static void test_figures_of_a_triangle_pulse(void **state)
     assert_close(f.duration_s, 2 * dt, 0);
 }
 
-static void test_figures_of_a_constant(void **state)
+TEST(figures_of_a_constant)
 {
-    (void)state;
     double a[] = {2, 2, 2, 2, 2};
     const Motion m = {.accel = a, .n = 5, .dt_s = 1};
     MotionFigures f;
@@ -492,9 +471,8 @@ static void test_figures_of_a_constant(void **state)
 }
 
 /* a = 1 - 4t: v = t - 2t^2 peaks at 1/8 with t = 1/4; d = t^2/2 - 2t^3/3 peaks at 1/24 with t = 1/2. */
-static void test_figures_see_peaks_between_samples(void **state)
+TEST(figures_see_peaks_between_samples)
 {
-    (void)state;
     double a[] = {1, -1.4};
     const Motion m = {.accel = a, .n = 2, .dt_s = 0.6};
     MotionFigures f;
@@ -506,29 +484,5 @@ static void test_figures_see_peaks_between_samples(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units_are_found_in_names_and_comments),
-        cmocka_unit_test(test_both_forms_of_a_peer_header_are_read),
-        cmocka_unit_test(test_a_setting_may_not_contradict_the_file),
-        cmocka_unit_test(test_times_printed_with_few_digits_are_uniform),
-        cmocka_unit_test(test_a_sample_missing_anywhere_is_noticed),
-        cmocka_unit_test(test_every_bad_file_is_refused_with_its_reason),
-        cmocka_unit_test(test_a_file_that_is_not_there_is_missing),
-        cmocka_unit_test(test_the_benchmark_records_are_read),
-        cmocka_unit_test(test_the_peak_of_a_motion_is_shown_with_its_scaling),
-        cmocka_unit_test(test_prepare_scales_the_peak_and_stretches_time),
-        cmocka_unit_test(test_a_motion_of_zeros_is_none),
-        cmocka_unit_test(test_a_constant_acceleration_overshoots_as_the_closed_form_says),
-        cmocka_unit_test(test_the_peak_after_the_end_of_the_motion_counts),
-        cmocka_unit_test(test_a_harmonic_motion_gives_the_textbook_response),
-        cmocka_unit_test(test_an_irregular_motion_agrees_with_fine_runge_kutta),
-        cmocka_unit_test(test_a_stiff_undamped_oscillator_is_followed_between_samples),
-        cmocka_unit_test(test_the_answer_of_a_period_does_not_depend_on_those_beside_it),
-        cmocka_unit_test(test_the_spectrum_of_a_long_motion_takes_seconds),
-        cmocka_unit_test(test_short_and_long_periods_reach_their_limits),
-        cmocka_unit_test(test_figures_of_a_triangle_pulse),
-        cmocka_unit_test(test_figures_of_a_constant),
-        cmocka_unit_test(test_figures_see_peaks_between_samples),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -36,9 +36,8 @@ static int surely(const Cloud *c, size_t a, size_t b)
     return dominates_surely(M, c->F + a * M, c->error + a * M, c->F + b * M, c->error + b * M);
 }
 
-static void test_without_errors_surely_is_plainly(void **state)
+TEST(without_errors_surely_is_plainly)
 {
-    (void)state;
     Cloud c;
     for (uint32_t seed = 0; seed < 20; seed++) {
         cloud(seed, 0, &c);
@@ -48,9 +47,8 @@ static void test_without_errors_surely_is_plainly(void **state)
     }
 }
 
-static void test_surely_is_a_strict_partial_order_whatever_the_errors(void **state)
+TEST(surely_is_a_strict_partial_order_whatever_the_errors)
 {
-    (void)state;
     Cloud c;
     size_t pairs = 0;
     for (uint32_t seed = 0; seed < 20; seed++) {
@@ -93,9 +91,8 @@ static NoiseModel fit_of(double deviation, double share)
 }
 
 /* The estimate of a deviation from 400 repeats has a standard error of 1 / root(800) of it. */
-static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(void **state)
+TEST(a_constant_deviation_and_a_share_of_the_value_are_told_apart)
 {
-    (void)state;
     const NoiseModel constant = fit_of(0.1, 0.0), share = fit_of(0.0, 0.03), none = fit_of(0.0, 0.0);
     assert_false(constant.is_relative);
     assert_close(constant.sd, 0.1, 0.12);
@@ -109,9 +106,8 @@ static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(vo
 
 /* Truth 0, an answer with the error 1, a prediction that is off by tau: of both the mean weighted with 1/variance is
  * off by tau^2 / (1 + tau^2) in the mean square, without the limit of one error. */
-static void test_estimates_are_as_near_as_answer_and_prediction_allow(void **state)
+TEST(estimates_are_as_near_as_answer_and_prediction_allow)
 {
-    (void)state;
     enum { MANY = 4000 };
     static double e[MANY], answer[MANY], error[MANY], estimate[MANY];
     static size_t rows[MANY];
@@ -136,9 +132,8 @@ static void test_estimates_are_as_near_as_answer_and_prediction_allow(void **sta
     }
 }
 
-static void test_what_has_no_error_is_taken_as_it_is(void **state)
+TEST(what_has_no_error_is_taken_as_it_is)
 {
-    (void)state;
     const size_t rows[] = {0, 1};
     const double mean[] = {1.0 / 3.0, 5.0}, e[] = {0.2, 0.0};
     double estimate[2];
@@ -168,9 +163,8 @@ static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
     pareto_archive_update_noise(a);
 }
 
-static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **state)
+TEST(a_design_has_the_mean_and_the_deviation_of_its_answers)
 {
-    (void)state;
     Archive a;
     insert_noisy(&a, 5, 0);
     assert_int_equal(a.n_replicates, 60);
@@ -197,9 +191,8 @@ static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **s
     pareto_archive_free(&a);
 }
 
-static void test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come(void **state)
+TEST(the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come)
 {
-    (void)state;
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive a, b;
         size_t n_front = 0;
@@ -222,9 +215,8 @@ static void test_the_front_is_what_nobody_dominates_surely_in_whatever_order_ans
     }
 }
 
-static void test_a_design_that_was_lucky_once_falls_out(void **state)
+TEST(a_design_that_was_lucky_once_falls_out)
 {
-    (void)state;
     Archive a;
     Err err = {0};
     const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
@@ -237,9 +229,8 @@ static void test_a_design_that_was_lucky_once_falls_out(void **state)
     pareto_archive_free(&a);
 }
 
-static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **state)
+TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
 {
-    (void)state;
     Archive a;
     Err err = {0};
     const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
@@ -369,9 +360,8 @@ static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen 
 
 static Seen seen, again;
 
-static void test_repeats_are_simulations_of_the_budget_and_no_more_than_their_share(void **state)
+TEST(repeats_are_simulations_of_the_budget_and_no_more_than_their_share)
 {
-    (void)state;
     World w = world(0.05, 1);
     const SearchConfig c = config(1, 0.4);
     size_t repeats = 0, most = 0;
@@ -389,9 +379,8 @@ static void test_repeats_are_simulations_of_the_budget_and_no_more_than_their_sh
     forget(&seen);
 }
 
-static void test_what_answers_the_same_each_time_is_soon_left_alone(void **state)
+TEST(what_answers_the_same_each_time_is_soon_left_alone)
 {
-    (void)state;
     World w = world(0.0, 1), plain = world(0.0, 0);
     const SearchConfig c = config(1, 0.4);
     run(&w, &c, NULL, &seen);
@@ -420,9 +409,8 @@ static double optimism(const Seen *s, double noise)
     return sum / n;
 }
 
-static void test_repeats_take_most_of_the_optimism_out_of_the_front(void **state)
+TEST(repeats_take_most_of_the_optimism_out_of_the_front)
 {
-    (void)state;
     double believed = 0.0, tried = 0.0;
     for (uint32_t seed = 1; seed <= 4; seed++) {
         World w = world(0.1, 1);
@@ -440,9 +428,8 @@ static void test_repeats_take_most_of_the_optimism_out_of_the_front(void **state
 }
 
 /* So much noise that estimates are in use. */
-static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(void **state)
+TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
 {
-    (void)state;
     World w = world(0.3, 1);
     SearchConfig c = config(3, 0.6);
     c.surrogate = SURROGATE_ON;
@@ -477,9 +464,8 @@ static double square_off(const Archive *a, const double f[])
     return square;
 }
 
-static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void **state)
+TEST(estimates_of_a_surface_are_nearer_to_the_truth_than_means)
 {
-    (void)state;
     enum { FIRST = 90, ALL = 120 };
     World w = world(0.05, 1);
     double X[ALL * VAR], F[ALL * OBJ];
@@ -522,21 +508,5 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_without_errors_surely_is_plainly),
-        cmocka_unit_test(test_surely_is_a_strict_partial_order_whatever_the_errors),
-        cmocka_unit_test(test_a_constant_deviation_and_a_share_of_the_value_are_told_apart),
-        cmocka_unit_test(test_estimates_are_as_near_as_answer_and_prediction_allow),
-        cmocka_unit_test(test_what_has_no_error_is_taken_as_it_is),
-        cmocka_unit_test(test_a_design_has_the_mean_and_the_deviation_of_its_answers),
-        cmocka_unit_test(test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come),
-        cmocka_unit_test(test_a_design_that_was_lucky_once_falls_out),
-        cmocka_unit_test(test_a_design_with_an_answer_that_failed_is_no_longer_used),
-        cmocka_unit_test(test_repeats_are_simulations_of_the_budget_and_no_more_than_their_share),
-        cmocka_unit_test(test_what_answers_the_same_each_time_is_soon_left_alone),
-        cmocka_unit_test(test_repeats_take_most_of_the_optimism_out_of_the_front),
-        cmocka_unit_test(test_estimates_of_a_surface_are_nearer_to_the_truth_than_means),
-        cmocka_unit_test(test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -54,9 +54,8 @@ static void run_designs(const Settings *settings, long threads, Replicated *out)
     problem_close(&p);
 }
 
-static void test_one_replicate_under_one_record_is_the_simulation_itself(void **state)
+TEST(one_replicate_under_one_record_is_the_simulation_itself)
 {
-    (void)state;
     const Settings s = short_scene("none", 1, "0");
     Replicated out;
     run_designs(&s, 1, &out);
@@ -67,9 +66,8 @@ static void test_one_replicate_under_one_record_is_the_simulation_itself(void **
         }
 }
 
-static void test_of_several_records_the_worst_or_the_mean_counts(void **state)
+TEST(of_several_records_the_worst_or_the_mean_counts)
 {
-    (void)state;
     Settings one = short_scene("none", 1, "0"), other = one, both = short_scene("builtin:sylmar-like", 1, "0");
     Replicated a, b, worst, mean;
     snprintf(other.motion.record, sizeof other.motion.record, "builtin:sylmar-like");
@@ -88,9 +86,8 @@ static void test_of_several_records_the_worst_or_the_mean_counts(void **state)
 
 /* Wide gap errors spread the answers; tiny changes hardly do within a short time where gaps are wide, as in the last
  * design; the core's mass never. */
-static void test_replicates_with_gap_errors_have_mean_and_deviation(void **state)
+TEST(replicates_with_gap_errors_have_mean_and_deviation)
 {
-    (void)state;
     const Settings tiny = short_scene("none", 4, "0"), wide = short_scene("none", 4, "0.01");
     Replicated a, b, again;
     run_designs(&tiny, 1, &a);
@@ -106,9 +103,8 @@ static void test_replicates_with_gap_errors_have_mean_and_deviation(void **state
     }
 }
 
-static void test_without_contact_there_is_no_spread(void **state)
+TEST(without_contact_there_is_no_spread)
 {
-    (void)state;
     double x[N_VAR];
     Settings s = short_scene("none", 4, "0");
     Problem p;
@@ -126,9 +122,8 @@ static void test_without_contact_there_is_no_spread(void **state)
 }
 
 /* Replicates 0..3 and, asked for again, 4..7 are other ones; the rule of each is a function of seed and number alone. */
-static void test_a_design_asked_for_again_gets_further_replicates(void **state)
+TEST(a_design_asked_for_again_gets_further_replicates)
 {
-    (void)state;
     double X[DESIGNS * N_VAR], first[N_VAR], fifth[N_VAR];
     const Settings s = short_scene("none", 4, "0.01");
     Problem p;
@@ -175,9 +170,8 @@ static SimResult run_scene(const Settings *s, const AsBuilt *built)
     return r;
 }
 
-static void test_a_structure_as_built_is_the_scene_whose_settings_say_so(void **state)
+TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 {
-    (void)state;
     const Settings s = short_scene("none", 1, "0");
     const SimResult designed = run_scene(&s, NULL);
     for (int k = 0; k < 5; k++) {
@@ -211,9 +205,8 @@ static void test_a_structure_as_built_is_the_scene_whose_settings_say_so(void **
     }
 }
 
-static void test_a_stiffer_building_vibrates_faster_by_the_root_of_it(void **state)
+TEST(a_stiffer_building_vibrates_faster_by_the_root_of_it)
 {
-    (void)state;
     Building b, out;
     Err err = {0};
     double *store = NULL;
@@ -231,9 +224,8 @@ static void test_a_stiffer_building_vibrates_faster_by_the_root_of_it(void **sta
     building_free(&b);
 }
 
-static void test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as_designed(void **state)
+TEST(what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as_designed)
 {
-    (void)state;
     enum { DRAWS = 20000 };
     const UncertainOptions u = {.restitution = 0.1, .core_stiffness = 0.3, .damping = 0.5};
     double sum[3] = {0}, squares[3] = {0};
@@ -254,9 +246,8 @@ static void test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as
     }
 }
 
-static void test_rules_over_all_replicates_have_their_closed_values(void **state)
+TEST(rules_over_all_replicates_have_their_closed_values)
 {
-    (void)state;
     const ReplicatePlan plus = {.rule = ROBUST_MEAN_PLUS_SD}, quantile = {.rule = ROBUST_QUANTILE, .quantile = 0.9};
     double v[5] = {3, 1, 5, 2, 4}, sd;
     assert_close(robust_pooled(&plus, 1, 5, v, &sd), 3 + sqrt(2.5), 1e-14);
@@ -267,9 +258,8 @@ static void test_rules_over_all_replicates_have_their_closed_values(void **state
     assert_close(robust_pooled(&plus, 1, 1, v, &sd), 1, 1e-14);
 }
 
-static void test_the_two_deviations_of_replicates_have_two_names(void **state)
+TEST(the_two_deviations_of_replicates_have_two_names)
 {
-    (void)state;
     const UncertainOptions none = {0}, some = {.damping = 0.1};
     assert_string_equal(spread_word(0, &none), "predictability");
     assert_string_equal(spread_word(0.005, &none), "as built");
@@ -277,9 +267,8 @@ static void test_the_two_deviations_of_replicates_have_two_names(void **state)
 }
 
 /* A study under mean_plus_sd has mean and deviation of the replicates that are simulated one by one. */
-static void test_mean_plus_sd_is_that_of_the_single_simulations(void **state)
+TEST(mean_plus_sd_is_that_of_the_single_simulations)
 {
-    (void)state;
     enum { REPLICATES = 4 };
     Settings s = short_scene("none", REPLICATES, "0.01");
     Replicated out;
@@ -341,9 +330,8 @@ static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[
     free(text);
 }
 
-static void test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance(void **state)
+TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
 {
-    (void)state;
     static const char TOLERANCE[] = "--set sim.gap_tolerance_m=0.02 --set motion.records=builtin:elcentro-like";
     double mean[3][PAPER_OBJECTIVES], sd[3][PAPER_OBJECTIVES];
     char words[800], path[PATH_MAX];
@@ -375,9 +363,8 @@ static char *csv_of(const char *set)
     return output_of(words);
 }
 
-static void test_replicates_and_records_follow_one_rule_however_they_are_asked_for(void **state)
+TEST(replicates_and_records_follow_one_rule_however_they_are_asked_for)
 {
-    (void)state;
     write_design();
     char *by_option = csv_of("--replicates 3 --set sim.gap_tolerance_m=0.02");
     char *by_set = csv_of("--set sim.replicates=3 --set sim.gap_tolerance_m=0.02");
@@ -397,20 +384,5 @@ static void test_replicates_and_records_follow_one_rule_however_they_are_asked_f
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_replicate_under_one_record_is_the_simulation_itself),
-        cmocka_unit_test(test_of_several_records_the_worst_or_the_mean_counts),
-        cmocka_unit_test(test_replicates_with_gap_errors_have_mean_and_deviation),
-        cmocka_unit_test(test_without_contact_there_is_no_spread),
-        cmocka_unit_test(test_a_design_asked_for_again_gets_further_replicates),
-        cmocka_unit_test(test_a_structure_as_built_is_the_scene_whose_settings_say_so),
-        cmocka_unit_test(test_a_stiffer_building_vibrates_faster_by_the_root_of_it),
-        cmocka_unit_test(test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as_designed),
-        cmocka_unit_test(test_rules_over_all_replicates_have_their_closed_values),
-        cmocka_unit_test(test_the_two_deviations_of_replicates_have_two_names),
-        cmocka_unit_test(test_mean_plus_sd_is_that_of_the_single_simulations),
-        cmocka_unit_test(test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance),
-        cmocka_unit_test(test_replicates_and_records_follow_one_rule_however_they_are_asked_for),
-    };
-    return cmocka_run_group_tests_name("replicates", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

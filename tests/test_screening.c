@@ -211,24 +211,21 @@ static void assert_same_search(void)
 }
 
 /* observe has looked at every view. */
-static void test_no_screened_design_is_on_the_front(void **state)
+TEST(no_screened_design_is_on_the_front)
 {
-    (void)state;
     assert_true(seen.views > 5 && seen.n_screened > 90 && seen.n_finished > 15);
     assert_int_equal(seen.n, seen.n_screened + seen.n_finished);
 }
 
-static void test_every_simulation_is_made_once_and_counts_as_its_part_of_an_evaluation(void **state)
+TEST(every_simulation_is_made_once_and_counts_as_its_part_of_an_evaluation)
 {
-    (void)state;
     assert_int_equal(world.n_tasks, seen.n_screened * CHEAP + seen.n_finished * (PARTS - CHEAP));
     assert_int_equal(seen.n_evaluations, world.n_tasks / PARTS);
     assert_true(world.n_tasks <= EVALS * PARTS && world.n_tasks + PARTS > EVALS * PARTS);
 }
 
-static void test_a_finished_design_has_the_bytes_of_one_evaluated_at_once(void **state)
+TEST(a_finished_design_has_the_bytes_of_one_evaluated_at_once)
 {
-    (void)state;
     for (size_t i = 0; i < seen.n; i++) {
         const Evaluation *e = &world.done.row[i];
         Part parts[PARTS];
@@ -241,9 +238,8 @@ static void test_a_finished_design_has_the_bytes_of_one_evaluated_at_once(void *
     }
 }
 
-static void test_four_workers_make_the_bytes_of_one(void **state)
+TEST(four_workers_make_the_bytes_of_one)
 {
-    (void)state;
     memset(&other, 0, sizeof other);
     open_world(&other_world, 4);
     run(&other_world, &other, NULL);
@@ -252,9 +248,8 @@ static void test_four_workers_make_the_bytes_of_one(void **state)
 }
 
 /* At the end of a generation, and in the middle of the next one: what was screened is known, its simulations are not. */
-static void test_resumed_anywhere_it_makes_the_same_bytes(void **state)
+TEST(resumed_anywhere_it_makes_the_same_bytes)
 {
-    (void)state;
     const Moments *m = &seen.moments;
     for (size_t i = 0; i < seen.n; i++) {
         world.done.row[i].kind = (EvaluationKind)seen.kind[i];
@@ -272,9 +267,8 @@ static void test_resumed_anywhere_it_makes_the_same_bytes(void **state)
     }
 }
 
-static void test_a_search_that_ends_by_its_generations_finishes_designs_too(void **state)
+TEST(a_search_that_ends_by_its_generations_finishes_designs_too)
 {
-    (void)state;
     SearchConfig config = config_of();
     StopReason reason;
     Err err = {0};
@@ -288,9 +282,8 @@ static void test_a_search_that_ends_by_its_generations_finishes_designs_too(void
     forget(&other_world, &other);
 }
 
-static void test_levels_that_do_not_agree_turn_it_off(void **state)
+TEST(levels_that_do_not_agree_turn_it_off)
 {
-    (void)state;
     size_t sampled = 0, later = 0, finished = 0;
     memset(&other, 0, sizeof other);
     open_world(&other_world, 1);
@@ -308,9 +301,8 @@ static void test_levels_that_do_not_agree_turn_it_off(void **state)
     forget(&other_world, &other);
 }
 
-static void test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level(void **state)
+TEST(an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level)
 {
-    (void)state;
     memset(&other, 0, sizeof other);
     open_world(&other_world, 1);
     other_world.is_flat = 1;
@@ -320,9 +312,8 @@ static void test_an_objective_that_is_the_same_for_all_designs_does_not_speak_ag
     forget(&other_world, &other);
 }
 
-static void test_penalties_whose_squares_overflow_do_not_end_a_search_with_levels(void **state)
+TEST(penalties_whose_squares_overflow_do_not_end_a_search_with_levels)
 {
-    (void)state;
     static const double PENALTIES[] = {1e160, 1e300, DBL_MAX};
     for (size_t i = 0; i < 3; i++) {
         memset(&other, 0, sizeof other);
@@ -335,9 +326,8 @@ static void test_penalties_whose_squares_overflow_do_not_end_a_search_with_level
     }
 }
 
-static void test_an_agreement_that_is_not_known_is_said_to_be_so(void **state)
+TEST(an_agreement_that_is_not_known_is_said_to_be_so)
 {
-    (void)state;
     char text[SCREENING_WORDS];
     StudySummary sum = {.n_simulated = 154, .n_screened = 129, .n_evaluations = 59, .max_evals = 60};
     sum.level_agreement = NAN;
@@ -351,9 +341,8 @@ static void test_an_agreement_that_is_not_known_is_said_to_be_so(void **state)
     assert_non_null(strstr(text, "a Kendall's tau of 0.95"));
 }
 
-static void test_without_a_cheap_level_nothing_is_screened(void **state)
+TEST(without_a_cheap_level_nothing_is_screened)
 {
-    (void)state;
     memset(&other, 0, sizeof other);
     open_world(&other_world, 1);
     other_world.problem.n_cheap = 0;
@@ -367,18 +356,5 @@ static void test_without_a_cheap_level_nothing_is_screened(void **state)
 int main(void)
 {
     openblas_set_num_threads(1);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_screened_design_is_on_the_front),
-        cmocka_unit_test(test_every_simulation_is_made_once_and_counts_as_its_part_of_an_evaluation),
-        cmocka_unit_test(test_a_finished_design_has_the_bytes_of_one_evaluated_at_once),
-        cmocka_unit_test(test_four_workers_make_the_bytes_of_one),
-        cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
-        cmocka_unit_test(test_a_search_that_ends_by_its_generations_finishes_designs_too),
-        cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
-        cmocka_unit_test(test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level),
-        cmocka_unit_test(test_penalties_whose_squares_overflow_do_not_end_a_search_with_levels),
-        cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
-        cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return RUN_TESTS(set_up, tear_down);
 }

@@ -73,9 +73,8 @@ static void set(Settings *s, const char *key, const char *value)
     CHECK_OK(settings_set(s, assignment, &err), &err);
 }
 
-static void test_every_default_is_in_its_range_and_the_rules_hold(void **state)
+TEST(every_default_is_in_its_range_and_the_rules_hold)
 {
-    (void)state;
     Err err = {0};
     Settings s, again;
     static Pairs p;
@@ -89,9 +88,8 @@ static void test_every_default_is_in_its_range_and_the_rules_hold(void **state)
     assert_memory_equal(&s, &again, sizeof s);
 }
 
-static void test_keys_are_unique(void **state)
+TEST(keys_are_unique)
 {
-    (void)state;
     Settings s;
     static Pairs p;
     settings_defaults(&s);
@@ -102,9 +100,8 @@ static void test_keys_are_unique(void **state)
 }
 
 /* The words of a choice and the enumeration come from one list; those of problem.kind are the textbook's names too. */
-static void test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems(void **state)
+TEST(the_words_of_problem_kind_are_the_names_of_the_textbook_problems)
 {
-    (void)state;
     int kind = 0;
     while (strcmp(settings_key(kind), "problem.kind") != 0)
         kind++;
@@ -166,9 +163,8 @@ static void change_one(Settings *s, int i, const char *was)
     fail_msg("%s: %s", settings_key(i), err.text);
 }
 
-static void test_a_change_is_reported_for_its_key_with_the_flags_of_the_table(void **state)
+TEST(a_change_is_reported_for_its_key_with_the_flags_of_the_table)
 {
-    (void)state;
     static Pairs p;
     Settings s;
     settings_defaults(&s);
@@ -204,9 +200,8 @@ static void change_everything(Settings *s)
         set(s, VALUES[i][0], VALUES[i][1]);
 }
 
-static void test_saved_settings_load_to_the_same_values(void **state)
+TEST(saved_settings_load_to_the_same_values)
 {
-    (void)state;
     Err err = {0};
     Settings s, back;
     change_everything(&s);
@@ -224,9 +219,8 @@ static void test_saved_settings_load_to_the_same_values(void **state)
 }
 
 /* A path may be longer than the lines that the INI library takes. */
-static void test_a_long_path_survives_saving(void **state)
+TEST(a_long_path_survives_saving)
 {
-    (void)state;
     Err err = {0};
     Settings s, back;
     char path[OPTION_TEXT_MAX];
@@ -241,9 +235,8 @@ static void test_a_long_path_survives_saving(void **state)
     free(text);
 }
 
-static void test_what_is_not_written_keeps_its_default(void **state)
+TEST(what_is_not_written_keeps_its_default)
 {
-    (void)state;
     Err err = {0};
     Settings s, defaults;
     settings_defaults(&defaults);
@@ -255,9 +248,8 @@ static void test_what_is_not_written_keeps_its_default(void **state)
     assert_memory_equal(&s, &defaults, sizeof s);
 }
 
-static void test_a_misspelt_key_is_answered_with_the_nearest(void **state)
+TEST(a_misspelt_key_is_answered_with_the_nearest)
 {
-    (void)state;
     static const char *const PAIRS[][2] = {{"motion.strech=2", "motion.stretch"},
                                            {"contact.restitutoin=0.5", "contact.restitution"},
                                            {"search.max_eval=10", "search.max_evals"},
@@ -288,26 +280,23 @@ static void refused(const char *assignment, Status status, const char *says)
         fail_msg("%s: the message should contain '%s' and is '%s'", assignment, says, err.text);
 }
 
-static void test_a_misspelt_word_is_answered_with_the_nearest(void **state)
+TEST(a_misspelt_word_is_answered_with_the_nearest)
 {
-    (void)state;
     refused("sim.engine=cvod", STATUS_BAD_DATA, "did you mean cvode?");
     refused("contact.law=lankarani-nikravech", STATUS_BAD_DATA, "did you mean lankarani-nikravesh?");
     refused("motion.baseline=meen", STATUS_BAD_DATA, "did you mean mean?");
     refused("core.section=xxxxxxxxxx", STATUS_BAD_DATA, "is not one of box|plate|effective");
 }
 
-static void test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted(void **state)
+TEST(a_number_that_is_none_is_refused_with_the_unit_that_is_wanted)
 {
-    (void)state;
     refused("core.width_m=wide", STATUS_BAD_DATA, "core.width_m: 'wide' is not a number [m]");
     refused("core.damping=much", STATUS_BAD_DATA, "core.damping: 'much' is not a number");
     refused("core.width_m=1000", STATUS_BAD_DATA, "core.width_m: 1000 is outside 0.1..200 m");
 }
 
-static void test_the_rules_between_settings_hold_without_a_file(void **state)
+TEST(the_rules_between_settings_hold_without_a_file)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     settings_defaults(&s);
@@ -323,9 +312,8 @@ static void test_the_rules_between_settings_hold_without_a_file(void **state)
     CHECK_OK(settings_check(&s, &err), &err);
 }
 
-static void test_a_building_that_is_built_in_is_a_name_and_no_path(void **state)
+TEST(a_building_that_is_built_in_is_a_name_and_no_path)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     CHECK_OK(read_text(&s, "[building]\nmodel = appendix\n[motion]\nrecord = builtin:sylmar-like\n", &err), &err);
@@ -334,9 +322,8 @@ static void test_a_building_that_is_built_in_is_a_name_and_no_path(void **state)
     assert_int_equal(read_text(&s, "[motion]\nrecord = \x01\n=1\n", &err), STATUS_BAD_DATA);
 }
 
-static void test_an_assignment_has_a_key_and_an_equals_sign(void **state)
+TEST(an_assignment_has_a_key_and_an_equals_sign)
 {
-    (void)state;
     char long_key[300];
     memset(long_key, 'k', sizeof long_key);
     strcpy(long_key + 200, "=1");
@@ -346,9 +333,8 @@ static void test_an_assignment_has_a_key_and_an_equals_sign(void **state)
     refused("side=3", STATUS_BAD_DATA, "no such setting");
 }
 
-static void test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is(void **state)
+TEST(a_path_that_becomes_too_long_beside_its_file_stays_what_it_is)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     char text[600] = "[motion]\nrecord = ";
@@ -359,9 +345,8 @@ static void test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is(v
     assert_string_equal(s.building.model, "/no/such/folder");
 }
 
-static void test_a_text_that_a_file_would_change_is_refused(void **state)
+TEST(a_text_that_a_file_would_change_is_refused)
 {
-    (void)state;
     static const char *const TEXTS[] = {"motion.record=a ;b.csv", "motion.record= a.csv", "motion.record=a.csv ",
                                         "motion.record=a\nb.csv"};
     Settings s;
@@ -373,9 +358,8 @@ static void test_a_text_that_a_file_would_change_is_refused(void **state)
     }
 }
 
-static void test_all_faults_of_a_file_are_listed_with_their_lines(void **state)
+TEST(all_faults_of_a_file_are_listed_with_their_lines)
 {
-    (void)state;
     Err err = {0};
     Settings s;
     char path[] = "/tmp/imtet-settings-XXXXXX", *text = NULL;
@@ -398,9 +382,8 @@ static void test_all_faults_of_a_file_are_listed_with_their_lines(void **state)
     remove(path);
 }
 
-static void test_a_path_in_a_file_is_meant_from_its_folder(void **state)
+TEST(a_path_in_a_file_is_meant_from_its_folder)
 {
-    (void)state;
     Err err = {0};
     Settings s;
     char folder[] = "/tmp/imtet-folder-XXXXXX", ini[64], record[64], wanted[128];
@@ -424,9 +407,8 @@ static void test_a_path_in_a_file_is_meant_from_its_folder(void **state)
     rmdir(folder);
 }
 
-static void test_paths_become_absolute_where_they_lead_somewhere(void **state)
+TEST(paths_become_absolute_where_they_lead_somewhere)
 {
-    (void)state;
     Settings s;
     char wanted[PATH_MAX], list[2 * PATH_MAX];
     settings_defaults(&s);
@@ -446,9 +428,8 @@ static void test_paths_become_absolute_where_they_lead_somewhere(void **state)
 }
 
 /* As in an editor. */
-static void test_columns_count_characters_and_not_the_mark_of_utf_8(void **state)
+TEST(columns_count_characters_and_not_the_mark_of_utf_8)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     assert_int_equal(read_text(&s, "\xEF\xBB\xBF[\n[core]\n  width_m =\twide\n", &err), STATUS_BAD_DATA);
@@ -470,15 +451,13 @@ static Status read_file(const char *path, Err *err)
     return settings_read(&s, path, NULL, NULL, err);
 }
 
-static void test_every_bad_file_is_refused_with_file_line_and_key(void **state)
+TEST(every_bad_file_is_refused_with_file_line_and_key)
 {
-    (void)state;
     assert_at_most(20, all_refused("tests/bad/config", read_file));
 }
 
-static void test_a_missing_file_is_told_from_a_bad_one(void **state)
+TEST(a_missing_file_is_told_from_a_bad_one)
 {
-    (void)state;
     Err err = {0};
     assert_int_equal(read_file("tests/bad/config/not_there.ini", &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "not_there.ini"));
@@ -486,9 +465,8 @@ static void test_a_missing_file_is_told_from_a_bad_one(void **state)
 }
 
 /* Whatever has no end is given up after 1 MiB. */
-static void test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file(void **state)
+TEST(what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file)
 {
-    (void)state;
     Err err = {0};
     assert_int_equal(read_file("/dev/zero", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "/dev/zero: larger than 1 MiB"));
@@ -508,9 +486,8 @@ static void test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_fil
     remove(path);
 }
 
-static void test_a_first_study_touches_fifteen_settings(void **state)
+TEST(a_first_study_touches_fifteen_settings)
 {
-    (void)state;
     Settings s, again;
     Err err = {0};
     int n = 0;
@@ -529,9 +506,8 @@ static void test_a_first_study_touches_fifteen_settings(void **state)
 }
 
 /* Quoted texts and arrays; a number and a section are the same in both. */
-static void test_a_file_that_is_toml_as_well_is_read(void **state)
+TEST(a_file_that_is_toml_as_well_is_read)
 {
-    (void)state;
     Settings toml, ini;
     Err err = {0};
     CHECK_OK(read_text(&toml,
@@ -556,9 +532,8 @@ static void note_key(const char *key, const char *text, void *user)
     snprintf(user, 200, "%s %s", key, text);
 }
 
-static void test_a_setting_that_does_nothing_because_of_another_is_named(void **state)
+TEST(a_setting_that_does_nothing_because_of_another_is_named)
 {
-    (void)state;
     static const struct {
         const char *idle, *said, *wakes;
     } CASES[] = {{"core.masses_kg=3", "core.masses_kg has no effect: it is read where core.section = effective",
@@ -583,9 +558,8 @@ static void test_a_setting_that_does_nothing_because_of_another_is_named(void **
     }
 }
 
-static void test_fidelity_needs_replicates_that_average_no_noise(void **state)
+TEST(fidelity_needs_replicates_that_average_no_noise)
 {
-    (void)state;
     Settings s;
     settings_defaults(&s);
     s.search.fidelity = FIDELITY_REPLICATES;
@@ -600,33 +574,5 @@ static void test_fidelity_needs_replicates_that_average_no_noise(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_setting_that_does_nothing_because_of_another_is_named),
-        cmocka_unit_test(test_fidelity_needs_replicates_that_average_no_noise),
-        cmocka_unit_test(test_a_first_study_touches_fifteen_settings),
-        cmocka_unit_test(test_a_file_that_is_toml_as_well_is_read),
-        cmocka_unit_test(test_every_default_is_in_its_range_and_the_rules_hold),
-        cmocka_unit_test(test_keys_are_unique),
-        cmocka_unit_test(test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems),
-        cmocka_unit_test(test_a_change_is_reported_for_its_key_with_the_flags_of_the_table),
-        cmocka_unit_test(test_paths_become_absolute_where_they_lead_somewhere),
-        cmocka_unit_test(test_columns_count_characters_and_not_the_mark_of_utf_8),
-        cmocka_unit_test(test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file),
-        cmocka_unit_test(test_saved_settings_load_to_the_same_values),
-        cmocka_unit_test(test_a_long_path_survives_saving),
-        cmocka_unit_test(test_what_is_not_written_keeps_its_default),
-        cmocka_unit_test(test_a_misspelt_key_is_answered_with_the_nearest),
-        cmocka_unit_test(test_a_misspelt_word_is_answered_with_the_nearest),
-        cmocka_unit_test(test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted),
-        cmocka_unit_test(test_the_rules_between_settings_hold_without_a_file),
-        cmocka_unit_test(test_a_building_that_is_built_in_is_a_name_and_no_path),
-        cmocka_unit_test(test_an_assignment_has_a_key_and_an_equals_sign),
-        cmocka_unit_test(test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is),
-        cmocka_unit_test(test_a_text_that_a_file_would_change_is_refused),
-        cmocka_unit_test(test_all_faults_of_a_file_are_listed_with_their_lines),
-        cmocka_unit_test(test_a_path_in_a_file_is_meant_from_its_folder),
-        cmocka_unit_test(test_every_bad_file_is_refused_with_file_line_and_key),
-        cmocka_unit_test(test_a_missing_file_is_told_from_a_bad_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

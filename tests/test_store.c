@@ -68,22 +68,19 @@ static void check_pieces(const char *text, const char *name, int n_k, const int 
     }
 }
 
-static void test_a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped(void **state)
+TEST(a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped)
 {
-    (void)state;
     check_pieces(TEXTBOOK, "textbook", 5, (const int[]){2, 3, 7, 13, 31});
 }
 
-static void test_the_tower_stopped_in_between_is_the_tower_that_was_not(void **state)
+TEST(the_tower_stopped_in_between_is_the_tower_that_was_not)
 {
-    (void)state;
     check_pieces(TOWER, "tower", 3, (const int[]){2, 5, 15});
 }
 
 /* The pieces end in the search and in the polishing after it. */
-static void test_a_run_stopped_while_it_polishes_ends_with_the_same_designs(void **state)
+TEST(a_run_stopped_while_it_polishes_ends_with_the_same_designs)
 {
-    (void)state;
     if (SANITIZED) /* test_polish and the other runs by pieces go through its code */
         skip();
     StudySummary summary;
@@ -109,9 +106,8 @@ static void grant_and_die(Settings *s, long max_evals)
     store_free(store);
 }
 
-static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void **state)
+TEST(more_simulations_go_on_the_same_whenever_they_are_granted)
 {
-    (void)state;
     StudySummary summary;
     Err err = {0};
     int left = 17;
@@ -154,9 +150,8 @@ static void refused_with(const Settings *s, int force, const char *said, const c
     free(lines);
 }
 
-static void test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed(void **state)
+TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_changed)
 {
-    (void)state;
     char path[PATH_MAX], command[3 * PATH_MAX];
     sqlite3 *db;
     StudySummary summary;
@@ -182,9 +177,8 @@ static void test_a_search_that_another_version_interrupted_is_refused_before_any
     assert_int_equal(system(command), 0);
 }
 
-static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(void **state)
+TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
 {
-    (void)state;
     Settings s = settings_of(TEXTBOOK, "textbook-whole");
     s.search.seed = 5;
     s.search.generations = 900;
@@ -207,9 +201,8 @@ static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(
 }
 
 /* The same path, other numbers in it. */
-static void test_a_record_that_has_changed_is_another_setting(void **state)
+TEST(a_record_that_has_changed_is_another_setting)
 {
-    (void)state;
     StudySummary summary;
     Settings s = settings_of(TOWER, "record");
     write_in_place("record.csv", "time_s,accel_m_s2\n0,0\n0.02,1\n0.04,-1\n0.06,0.5\n0.08,0\n");
@@ -301,9 +294,8 @@ static void check_signal(int number, const char *out)
     free(output_of(resume));
 }
 
-static void test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on(void **state)
+TEST(a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on)
 {
-    (void)state;
     check_signal(SIGINT, "interrupted");
     check_signal(SIGTERM, "terminated");
     check_signal(SIGHUP, "hung-up");
@@ -312,9 +304,8 @@ static void test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_g
 }
 
 /* `script` gives the program a terminal. */
-static void test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe(void **state)
+TEST(progress_is_one_line_on_a_terminal_and_none_in_a_pipe)
 {
-    (void)state;
     Said s;
     char command[512];
     write_in_place("textbook.ini", TEXTBOOK);
@@ -341,9 +332,8 @@ static void test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe(void **st
     free(seen);
 }
 
-static void test_a_second_signal_ends_at_once(void **state)
+TEST(a_second_signal_ends_at_once)
 {
-    (void)state;
     write_in_place("deaf.ini", DEAF);
     const double begun = now_s();
     const pid_t pid = start("deaf.ini", "deaf");
@@ -363,9 +353,8 @@ static void test_a_second_signal_ends_at_once(void **state)
 
 /* 0.2 s of a batch that takes 0.7 s. */
 /* On a busy machine the first session may end before its worker has answered: then one of half as long again. */
-static void test_hours_are_obeyed_within_a_batch(void **state)
+TEST(hours_are_obeyed_within_a_batch)
 {
-    (void)state;
     StudySummary summary = {0};
     Err err = {0};
     Settings s = settings_of(STEADY, "hours");
@@ -411,9 +400,8 @@ static void assert_searched_as(const char *a, const char *b, size_t n_polished)
 }
 
 /* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
-static void test_polished_designs_join_the_front_but_not_the_search(void **state)
+TEST(polished_designs_join_the_front_but_not_the_search)
 {
-    (void)state;
     char path[PATH_MAX], id[16];
     long first;
     Run saved;
@@ -462,9 +450,8 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     assert_searched_as("polished", "early", 3);
 }
 
-static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **state)
+TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
 {
-    (void)state;
     write_in_place("tenth.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh tenth\nvariables = 3\n"
                                 "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
                                 "threads = 2\n");
@@ -503,9 +490,8 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
 
 /* The front generation by generation, from `entered` and `left`, against dominance among all that was simulated then.
  */
-static void test_the_front_of_every_generation_can_be_told(void **state)
+TEST(the_front_of_every_generation_can_be_told)
 {
-    (void)state;
     Run s;
     Err err = {0};
     char path[PATH_MAX];
@@ -536,9 +522,8 @@ static void test_the_front_of_every_generation_can_be_told(void **state)
 }
 
 /* Against the exact volume of some boxes. */
-static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **state)
+TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
 {
-    (void)state;
     const double lower[3] = {0, -1, 2}, reference[3] = {1, 1, 6};
     const double F[] = {0.2, 0, 3, 0.5, -0.5, 2.5, 0.1, 0.9, 5, 2, 2, 7};
     Hypervolume *h;
@@ -558,22 +543,5 @@ static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
-        cmocka_unit_test(test_the_tower_stopped_in_between_is_the_tower_that_was_not),
-        cmocka_unit_test(test_a_run_stopped_while_it_polishes_ends_with_the_same_designs),
-        cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
-        cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
-        cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),
-        cmocka_unit_test(test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed),
-        cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
-        cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),
-        cmocka_unit_test(test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on),
-        cmocka_unit_test(test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe),
-        cmocka_unit_test(test_a_second_signal_ends_at_once),
-        cmocka_unit_test(test_hours_are_obeyed_within_a_batch),
-        cmocka_unit_test(test_one_failure_in_ten_is_survived_and_never_on_the_front),
-        cmocka_unit_test(test_the_share_that_is_covered_is_the_hypervolume_of_the_box),
-    };
-    return cmocka_run_group_tests_name("store", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -18,9 +18,8 @@
     "--set search.population=16 --max-evals " #max_evals " "
 #define SMALL_STUDY SMALL_STUDY_OF(40)
 
-static void test_the_front_has_the_same_bytes_at_any_number_of_threads(void **state)
+TEST(the_front_has_the_same_bytes_at_any_number_of_threads)
 {
-    (void)state;
     static const int THREADS[] = {1, 2, 5};
     char arguments[512], name[64], *front[3], *all[3];
     for (int i = 0; i < 3; i++) {
@@ -41,9 +40,8 @@ static void test_the_front_has_the_same_bytes_at_any_number_of_threads(void **st
     free(all[0]);
 }
 
-static void test_a_run_is_repeated_from_its_own_folder(void **state)
+TEST(a_run_is_repeated_from_its_own_folder)
 {
-    (void)state;
     free(output_of("optimize @/threads-2/settings.ini --out @/again"));
     char *first = read_in_place("threads-2/front.csv"), *second = read_in_place("again/front.csv");
     assert_string_equal(first, second);
@@ -71,9 +69,8 @@ static int dominates(const double a[7], const double b[7])
     return better;
 }
 
-static void test_the_front_holds_nondominated_designs_in_the_search_box(void **state)
+TEST(the_front_holds_nondominated_designs_in_the_search_box)
 {
-    (void)state;
     Err err = {0};
     Table t;
     char *path = in_place("threads-1/front.csv");
@@ -91,9 +88,8 @@ static void test_the_front_holds_nondominated_designs_in_the_search_box(void **s
     free(path);
 }
 
-static void test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number(void **state)
+TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 {
-    (void)state;
     Said s;
     char *before = read_in_place("threads-1/front.csv");
     run(&s, SMALL_STUDY "--threads 2 --out @/threads-1");
@@ -110,9 +106,8 @@ static void test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_numb
     free(after);
 }
 
-static void test_the_export_is_the_front(void **state)
+TEST(the_export_is_the_front)
 {
-    (void)state;
     free(output_of("export @/threads-1 --csv @/exported.csv"));
     char *front = read_in_place("threads-1/front.csv"), *exported = read_in_place("exported.csv");
     assert_string_equal(front, exported);
@@ -125,9 +120,8 @@ static long first_id(const char *front)
     return strtol(strchr(front, '\n') + 1, NULL, 10);
 }
 
-static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **state)
+TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
-    (void)state;
     char *front = read_in_place("threads-1/front.csv"), arguments[256];
     snprintf(arguments, sizeof arguments,
              "evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
@@ -153,9 +147,8 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     free(table);
 }
 
-static void test_status_tells_a_run_from_a_folder_of_runs(void **state)
+TEST(status_tells_a_run_from_a_folder_of_runs)
 {
-    (void)state;
     char *said = output_of("status @/threads-1");
     assert_non_null(strstr(said, "threads-1: finished"));
     free(said);
@@ -182,9 +175,8 @@ static size_t n_files(const char *folder)
     return n;
 }
 
-static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
+TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 {
-    (void)state;
     json_t *o = json_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
@@ -233,9 +225,8 @@ static void assert_all_in(const char *some, const char *all)
 }
 
 /* kill -9 as soon as there is a front; most of the 4000 simulations are still to come. */
-static void test_a_run_that_is_killed_leaves_its_last_finished_generation(void **state)
+TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
 {
-    (void)state;
     Said s;
     run(&s, "%s",
         SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
@@ -261,9 +252,8 @@ static const char EXTERNAL_INI[] = "[problem]\nkind = external\ncommand = sh tes
                                    "objectives = 2\nsenses = min,max\n[search]\nmax_evals = 45\ninitial = 30\n"
                                    "population = 12\n";
 
-static void test_an_external_simulator_is_searched_and_every_design_exported(void **state)
+TEST(an_external_simulator_is_searched_and_every_design_exported)
 {
-    (void)state;
     Table t;
     Err err = {0};
     write_in_place("external.ini", EXTERNAL_INI);
@@ -297,9 +287,8 @@ static void test_an_external_simulator_is_searched_and_every_design_exported(voi
 }
 
 /* The external run of the test before: f = (x1 min, x2 max). */
-static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished(void **state)
+TEST(designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished)
 {
-    (void)state;
     free(output_of("optimize @/external.ini --out @/kind --set 'problem.command=sh tests/worker.sh good'"));
     char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --reference f1=0,f2=1");
     assert_non_null(strstr(said, "knee"));
@@ -330,9 +319,8 @@ static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_
 }
 
 /* A plain search of 400 is far from the front; with noise nothing is polished. */
-static void test_a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy(void **state)
+TEST(a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy)
 {
-    (void)state;
     write_in_place("textbook.ini", "[problem]\nkind = dtlz2\nvariables = 5\nobjectives = 2\n[search]\nmax_evals = 400\n"
                                    "population = 40\nsurrogate = off\npolish = 1\nseed = 2\n");
     char *said = output_of("optimize @/textbook.ini --out @/exact"),
@@ -344,9 +332,8 @@ static void test_a_study_of_another_problem_than_the_tower_is_polished_at_its_en
 }
 
 /* The simulator answers until there is a file beside it. */
-static void test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason(void **state)
+TEST(a_design_that_fails_when_it_is_polished_is_named_with_its_reason)
 {
-    (void)state;
     write_in_place("tired.sh", "while read -r line; do id=${line#*:}; id=${id%%,*}\n"
                                "if [ -e \"$0.off\" ]; then echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"no licence\\\"}\"\n"
                                "else echo \"{\\\"id\\\":$id,\\\"f\\\":[$id,1]}\"; fi; done\n");
@@ -360,9 +347,8 @@ static void test_a_design_that_fails_when_it_is_polished_is_named_with_its_reaso
 }
 
 /* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
-static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void **state)
+TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
 {
-    (void)state;
     write_in_place("sphere.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\n"
                                  "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
     free(output_of("optimize @/sphere.ini --out @/earlier"));
@@ -404,9 +390,8 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     free(three_path);
 }
 
-static void test_a_textbook_problem_is_written_design_by_design(void **state)
+TEST(a_textbook_problem_is_written_design_by_design)
 {
-    (void)state;
     Table t;
     Err err = {0};
     free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 1 --csv @/one.csv --set search.initial=50"));
@@ -434,22 +419,5 @@ static void test_a_textbook_problem_is_written_design_by_design(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_front_has_the_same_bytes_at_any_number_of_threads),
-        cmocka_unit_test(test_a_run_is_repeated_from_its_own_folder),
-        cmocka_unit_test(test_the_front_holds_nondominated_designs_in_the_search_box),
-        cmocka_unit_test(test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number),
-        cmocka_unit_test(test_the_export_is_the_front),
-        cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
-        cmocka_unit_test(test_status_tells_a_run_from_a_folder_of_runs),
-        cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
-        cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
-        cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),
-        cmocka_unit_test(test_a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy),
-        cmocka_unit_test(test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason),
-        cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
-        cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
-        cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

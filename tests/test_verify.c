@@ -27,9 +27,8 @@ static void expect_same(const json_t *a, const json_t *b)
         assert_true(json_equal(json_object_get(a, KEYS[k]), json_object_get(b, KEYS[k])));
 }
 
-static void test_both_models_are_what_simulate_gives(void **state)
+TEST(both_models_are_what_simulate_gives)
 {
-    (void)state;
     write_design("d.csv");
     json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
     json_t *all = json_of("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
@@ -48,9 +47,8 @@ static void test_both_models_are_what_simulate_gives(void **state)
     json_decref(full);
 }
 
-static void test_designs_and_records_make_a_list_in_their_order(void **state)
+TEST(designs_and_records_make_a_list_in_their_order)
 {
-    (void)state;
     write_design("d.csv");
     json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
                         "builtin:kobe-like --record "
@@ -65,9 +63,8 @@ static void test_designs_and_records_make_a_list_in_their_order(void **state)
     json_decref(v);
 }
 
-static void test_fixed_interface_modes_are_verified_as_the_reduced_model(void **state)
+TEST(fixed_interface_modes_are_verified_as_the_reduced_model)
 {
-    (void)state;
     json_t *v = json_of(
         "evaluate --full-model configs/quick.ini --design none --set sim.duration_s=20 --set building.modes=30 --json");
     const json_t *error = json_object_get(v, "error");
@@ -77,9 +74,8 @@ static void test_fixed_interface_modes_are_verified_as_the_reduced_model(void **
     json_decref(v);
 }
 
-static void test_peaks_over_the_height_are_listed_and_drawn(void **state)
+TEST(peaks_over_the_height_are_listed_and_drawn)
 {
-    (void)state;
     char *text =
         output_of("evaluate --full-model configs/quick.ini --design none --set sim.duration_s=5 --svg @/peaks.svg");
     assert_non_null(strstr(text, "no core, full (106)"));
@@ -90,9 +86,8 @@ static void test_peaks_over_the_height_are_listed_and_drawn(void **state)
     free(text);
 }
 
-static void test_what_has_no_full_model_is_refused(void **state)
+TEST(what_has_no_full_model_is_refused)
 {
-    (void)state;
     write_design("d.csv");
     expect(2, "--design is missing", "evaluate --full-model configs/quick.ini");
     expect(65, "building.model: appendix has nothing fuller than its floors to verify with",
@@ -102,12 +97,5 @@ static void test_what_has_no_full_model_is_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_both_models_are_what_simulate_gives),
-        cmocka_unit_test(test_designs_and_records_make_a_list_in_their_order),
-        cmocka_unit_test(test_fixed_interface_modes_are_verified_as_the_reduced_model),
-        cmocka_unit_test(test_peaks_over_the_height_are_listed_and_drawn),
-        cmocka_unit_test(test_what_has_no_full_model_is_refused),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

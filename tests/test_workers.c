@@ -23,9 +23,8 @@ static size_t count_failures(const json_t *status)
     return n;
 }
 
-static void test_no_design_is_left_out_whatever_its_message(void **state)
+TEST(no_design_is_left_out_whatever_its_message)
 {
-    (void)state;
     static const char *const MODES[] = {"umlauts", "latin"};
     for (size_t i = 0; i < 2; i++) {
         char command[64];
@@ -48,9 +47,8 @@ static void test_no_design_is_left_out_whatever_its_message(void **state)
     }
 }
 
-static void test_names_that_are_no_utf_8_are_shown(void **state)
+TEST(names_that_are_no_utf_8_are_shown)
 {
-    (void)state;
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/runs/stra\337e"));
     json_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("status @/runs --json"),
@@ -64,9 +62,8 @@ static void test_names_that_are_no_utf_8_are_shown(void **state)
     json_decref(all);
 }
 
-static void test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason(void **state)
+TEST(a_run_whose_workers_all_fail_stops_after_some_with_the_reason)
 {
-    (void)state;
     write_external("dead.ini", "true", "max_evals = 4000\nfailures_max = 20\n");
     expect(70, "the last 20 of 20 simulations failed (search.failures_max), the last one as dead: the worker ended",
            "optimize @/dead.ini --threads 1 --out @/dead");
@@ -84,9 +81,8 @@ static void test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason(v
 /* -- a motion that is still at rest -------------------------------------------------------------------------------- */
 
 /* All designs have the same objectives; shares of the energy that went in are undefined. */
-static void test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason(void **state)
+TEST(a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason)
 {
-    (void)state;
     static const char AT_REST[] = "optimize configs/quick.ini --set sim.duration_s=6 "
                                   "--set search.population=24 --set search.polish=0 --max-evals 240 --threads 1";
     char command[512];
@@ -103,9 +99,8 @@ static void test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_re
 
 /* -- the system ---------------------------------------------------------------------------------------------------- */
 
-static void test_too_little_address_space_or_stack_is_said_at_once(void **state)
+TEST(too_little_address_space_or_stack_is_said_at_once)
 {
-    (void)state;
     if (SANITIZED) /* its shadow memory needs more */
         skip();
     static const struct {
@@ -130,9 +125,8 @@ static void test_too_little_address_space_or_stack_is_said_at_once(void **state)
 }
 
 /* As a shell starts what stands before `&`. */
-static void test_a_signal_that_was_ignored_at_the_start_stays_ignored(void **state)
+TEST(a_signal_that_was_ignored_at_the_start_stays_ignored)
 {
-    (void)state;
     int status;
     write_external("slow.ini", "sh tests/worker.sh steady", "max_evals = 40\n");
     struct sigaction ignored = {.sa_handler = SIG_IGN}, before;
@@ -145,9 +139,8 @@ static void test_a_signal_that_was_ignored_at_the_start_stays_ignored(void **sta
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
-static void test_a_building_beyond_all_buildings_is_refused_whatever_its_units(void **state)
+TEST(a_building_beyond_all_buildings_is_refused_whatever_its_units)
 {
-    (void)state;
     char path[PATH_MAX];
     assert_int_equal(mkdir(path_of("stiff", path), 0777), 0);
     write_in_place("stiff/K.csv", "2e300,-1e300\n-1e300,1e300\n");
@@ -157,9 +150,8 @@ static void test_a_building_beyond_all_buildings_is_refused_whatever_its_units(v
 }
 
 /* The motion is still at rest: a search has no shares of energy to go by, and a single simulation says the same. */
-static void test_a_design_without_input_fails_in_a_search_and_in_a_simulation_alike(void **state)
+TEST(a_design_without_input_fails_in_a_search_and_in_a_simulation_alike)
 {
-    (void)state;
 #define AT_REST "configs/quick.ini --set sim.duration_s=6 "
     write_in_place("zones.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
     expect(70, "no net energy",
@@ -177,15 +169,5 @@ static void test_a_design_without_input_fails_in_a_search_and_in_a_simulation_al
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_design_is_left_out_whatever_its_message),
-        cmocka_unit_test(test_names_that_are_no_utf_8_are_shown),
-        cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),
-        cmocka_unit_test(test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason),
-        cmocka_unit_test(test_too_little_address_space_or_stack_is_said_at_once),
-        cmocka_unit_test(test_a_signal_that_was_ignored_at_the_start_stays_ignored),
-        cmocka_unit_test(test_a_building_beyond_all_buildings_is_refused_whatever_its_units),
-        cmocka_unit_test(test_a_design_without_input_fails_in_a_search_and_in_a_simulation_alike),
-    };
-    return cmocka_run_group_tests_name("workers", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -468,14 +468,16 @@ static int smc_width(const Lines *l)
 {
     const Lines ahead = lines_ahead(l);
     const char *p = ahead.from;
-    while (p && p < ahead.to && !strchr("EeDd ", *p))
+    if (!p)
+        return 10;
+    while (p < ahead.to && !strchr("EeDd ", *p))
         p++;
-    for (p += p && p < ahead.to; p && p < ahead.to;)
+    for (p += p < ahead.to; p < ahead.to;)
         if (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])))
             p++;
         else
             break;
-    const long width = p ? p - ahead.raw : 0;
+    const long width = p - ahead.raw;
     return width >= 10 && width <= 20 ? (int)width : 10;
 }
 
