@@ -184,7 +184,8 @@ static void write_gaps(FILE *out, const Report *r)
     for (int j = 0; j < d->n_floors; j++)
         numbers(out, 4, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->thickness_m[j],
                 d->result[SCENE_IMPACT].closings[j] > 0 ? 1.0 : NAN);
-    fprintf(out, "EOD\nFLOORS = %d; LOW = %.6g; HIGH = %.6g\n", d->n_floors, 1e3 * o->gap_m.at[0], 1e3 * o->gap_m.at[1]);
+    fprintf(out, "EOD\nFLOORS = %d; LOW = %.6g; HIGH = %.6g\n", d->n_floors, 1e3 * o->gap_m.at[0],
+            1e3 * o->gap_m.at[1]);
 }
 
 /* Pale: never closes; dashed: the bounds of the search. */

@@ -49,7 +49,8 @@ typedef char OptionText[OPTION_TEXT_MAX];
     OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = 1)
 #define LIST(field, unit_, standard_, min_, max_, ...) \
     OPTION(KIND_LIST, field, NumberList, standard_, __VA_ARGS__, .unit = unit_, .min = min_, .max = max_)
-#define BOUNDS(field, unit_, standard_, min_, max_, ...) LIST(field, unit_, standard_, min_, max_, __VA_ARGS__, .count = 2)
+#define BOUNDS(field, unit_, standard_, min_, max_, ...) \
+    LIST(field, unit_, standard_, min_, max_, __VA_ARGS__, .count = 2)
 #define PATH(field, standard_, words_, ...) \
     OPTION(KIND_PATH, field, OptionText, standard_, __VA_ARGS__, .words = words_)
 #define PATH_LIST(field, standard_, ...) OPTION(KIND_PATH_LIST, field, OptionText, standard_, __VA_ARGS__)
