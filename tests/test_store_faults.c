@@ -310,9 +310,11 @@ static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(voi
     char *wanted = tables();
     assert_non_null(strstr(wanted, "\n6,"));
     for (Kind kind = 0; kind < N_KINDS; kind++)
-        for (long at = 1; at <= n[kind]; at += SANITIZED ? 7 : 1)
-            for (int rolls_back = 0; rolls_back <= (kind == STEP || kind == EXEC); rolls_back++)
-                check_life(kind, at, rolls_back, folder, &schema, wanted);
+        for (long at = 1; at <= n[kind]; at += SANITIZED ? 7 : 1) {
+            check_life(kind, at, 0, folder, &schema, wanted);
+            if (kind == STEP || kind == EXEC)
+                check_life(kind, at, 1, folder, &schema, wanted);
+        }
     free(wanted);
     schema_free(&schema);
 }
