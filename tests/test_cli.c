@@ -381,6 +381,7 @@ TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
     }
     write_in_place("held/run.sqlite", "");
     write_in_place("held/front.csv", "id\n");
+    write_in_place("held/settings.ini", "[motion]\nrecord = ../motion.csv\n");
     write_in_place("records/one.csv", "t,a_g\n0,1\n");
     write_in_place("tower/K.csv", "1e8\n");
     write_in_place("tower/M.csv", "1e5\n");
@@ -404,6 +405,9 @@ TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
     expect(2, "motion.csv, which motion.record names", "simulate @/tower.ini --design none --csv @/motion.csv");
     expect(2, "K.csv, which building.model names", "building @/tower.ini --svg @/tower/K.csv");
     expect(2, "motion.csv, which the command reads", "spectrum @/motion.csv --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads", "export @/held --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads", "choose @/held/run.sqlite --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads", "simulate configs/quick.ini --design @/held:1 --csv @/motion.csv");
     char *kept = read_in_place("held/front.csv");
     assert_string_equal(kept, "id\n");
     free(kept);

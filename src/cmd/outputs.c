@@ -54,13 +54,47 @@ static int is_read_from(const char *out, const char *place)
     return is.st_dev == other.st_dev && is.st_ino == other.st_ino;
 }
 
-/* word: a file, a folder, or one of its designs: FILE:N. */
+typedef struct {
+    const char *out;
+    char reader[80]; /* empty: no setting names it */
+} Looking;
+
+static void compare(const char *key, const char *path, void *user)
+{
+    Looking *l = user;
+    struct stat is;
+    const char *slash = strrchr(l->out, '/');
+    const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
+    if (is_read_from(l->out, path) && (!is_folder || building_reads(slash ? slash + 1 : l->out)))
+        snprintf(l->reader, sizeof l->reader, "%s names", key);
+}
+
+/* What a run reads when a design of it is simulated again, by the settings in its folder. */
+static int is_read_by_run(const char *out, const char *folder)
+{
+    Settings s;
+    char file[PATH_MAX];
+    Looking l = {.out = out};
+    if (!folder_is_run(folder) || snprintf(file, sizeof file, "%s/settings.ini", folder) >= PATH_MAX)
+        return 0;
+    settings_defaults(&s);
+    if (settings_read(&s, file, NULL, NULL, &(Err){0}) == STATUS_OK)
+        settings_each_path(&s, compare, &l);
+    return l.reader[0] != 0;
+}
+
+static int is_read_at(const char *out, const char *place)
+{
+    return is_read_from(out, place) || is_read_by_run(out, place);
+}
+
+/* word: a file, a folder, a run, or one of its designs: FILE:N, RUN:ID. */
 static int is_read(const char *out, const char *word)
 {
     char place[PATH_MAX];
     const char *colon = strrchr(word, ':');
     snprintf(place, sizeof place, "%.*s", colon ? (int)(colon - word) : 0, word);
-    return is_read_from(out, word) || (colon && is_read_from(out, place));
+    return is_read_at(out, word) || (colon && is_read_at(out, place));
 }
 
 static Status refuse(const Given *out, const char *reader, Err *err)
@@ -89,7 +123,7 @@ static Status check_one(const Args *args, const Given *out, Err *err)
         return refuse(out, "is write-protected", err);
     TRY(check_place(out, err));
     for (int j = 0; j < args->n_operands; j++)
-        n_readers += is_read(out->value, args->operands[j]);
+        n_readers += is_read(out->value, j > 0 ? args->operands[j] : args->operand); /* of run.sqlite its folder */
     for (int j = 0; j < args->n_given; j++) {
         const Given *other = &args->given[j];
         if (other == out || !other->value)
@@ -111,21 +145,6 @@ Status outputs_check(const Args *args, Err *err)
         if (is_written(&args->given[i]))
             TRY(check_one(args, &args->given[i], err));
     return STATUS_OK;
-}
-
-typedef struct {
-    const char *out;
-    char reader[80]; /* empty: no setting names it */
-} Looking;
-
-static void compare(const char *key, const char *path, void *user)
-{
-    Looking *l = user;
-    struct stat is;
-    const char *slash = strrchr(l->out, '/');
-    const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
-    if (is_read_from(l->out, path) && (!is_folder || building_reads(slash ? slash + 1 : l->out)))
-        snprintf(l->reader, sizeof l->reader, "%s names", key);
 }
 
 Status outputs_spare(const Args *args, const Settings *s, Err *err)
