@@ -527,6 +527,30 @@ TEST(a_file_that_is_toml_as_well_is_read)
     assert_string_equal(ini.problem.command, "\"a b\" \"c\"");
 }
 
+TEST(notes_switches_and_arrays_over_several_lines_are_read_as_in_toml)
+{
+    Settings toml, ini;
+    Err err = {0};
+    CHECK_OK(
+        read_text(&toml,
+                  "[building] # the frame\nheights_m = [ # from the bottom: ], \"\n  5.5,\n  4.0, # all others\n]\n"
+                  "p_delta = true # on\n[motion]\npga_g = 0.3 # of gravity\nrecords = [\n'builtin:sylmar-like'\n]\n"
+                  "record = \"run#1;a.csv\"# as it was delivered\n",
+                  &err),
+        &err);
+    CHECK_OK(read_text(&ini,
+                       "[building]\nheights_m = 5.5, 4.0\np_delta = on\n[motion]\npga_g = 0.3\n"
+                       "records = builtin:sylmar-like\nrecord = run#1;a.csv\n",
+                       &err),
+             &err);
+    assert_memory_equal(&toml, &ini, sizeof toml);
+    assert_int_equal(read_text(&ini, "[building]\nheights_m = [\n3,\n,4]\nnone_such = 1\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":2:13: building.heights_m"));
+    assert_int_equal(read_text(&ini, "[building]\nheights_m = [\n3]\nnone_such = 1\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":4:1: building.none_such"));
+    assert_int_equal(read_text(&ini, "[building]\nheights_m = [3,\n4\np_delta = on\n", &err), STATUS_BAD_DATA);
+}
+
 static void note_key(const char *key, const char *text, void *user)
 {
     snprintf(user, 200, "%s %s", key, text);

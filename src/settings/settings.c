@@ -364,7 +364,8 @@ static Status assign_list(Settings *s, const Option *o, const char *value, Err *
 static Status assign_choice(Settings *s, const Option *o, const char *value, Err *err)
 {
     double number = 0;
-    int i = word_index(o->words, value);
+    const int is_switch = strcmp(o->words, CHOICE_WORDS(SWITCH_LIST)) == 0; /* as TOML writes it */
+    int i = is_switch ? word_index("off|on|false|true", value) % 2 : word_index(o->words, value);
     if (i < 0 && !(o->number && strchr("0123456789.", value[0])))
         return unknown_word(o, value, err);
     if (i < 0) {
@@ -407,10 +408,13 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
         return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
         return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
-    if (strpbrk(value, "\r\n") || strstr(value, " ;") || isspace((unsigned char)value[0]) ||
-        isspace((unsigned char)value[strlen(value) - 1]))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', blanks around it)", o->key, value);
+    const int needs_quotes = strstr(value, " #") != NULL, has_both = strchr(value, '"') && strchr(value, '\'');
+    if (strpbrk(value, "\r\n") || strstr(value, " ;") || (needs_quotes && (has_both || strchr(value, '\\'))) ||
+        isspace((unsigned char)value[0]) || isspace((unsigned char)value[strlen(value) - 1]))
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
+            o->key, value);
     snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
     return STATUS_OK;
 }
@@ -700,6 +704,7 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
         section = o->key;
         if (form != SETTINGS_PLAIN)
             describe(o, out);
-        fprintf(out, "%s = %s\n", o->key + n + 1, value);
+        const char *quote = !strstr(value, " #") ? "" : strchr(value, '"') ? "'" : "\"";
+        fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }
 }

@@ -89,7 +89,13 @@ static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
         return plain;
     }
     snprintf(inner, sizeof inner, "%.*s", (int)n - 2, value + 1);
-    for (size_t i = 0; i < list_count(inner) && list_item(inner, i, item, sizeof item); i++) {
+    const size_t count = list_count(inner);
+    for (size_t i = 0; i < count; i++) {
+        const int is_there = list_item(inner, i, item, sizeof item);
+        if (!is_there && i > 0 && i + 1 == count) /* a comma behind the last item */
+            break;
+        if (!is_there)
+            return value;
         strip_quotes(item, text);
         used += (size_t)snprintf(plain + used, OPTION_TEXT_MAX - used, "%s%s", used ? ", " : "", text);
         if (used >= OPTION_TEXT_MAX)
@@ -98,11 +104,42 @@ static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
     return plain;
 }
 
-/* Ends a value where a note follows it: at the first ; behind a blank. */
+/* Where a value of TOML, which begins with a quote or a bracket, is over: at its closing one, behind which only a note
+ * may stand. Beyond the line only an array goes on; notes and ends of lines inside it become blanks where `joins`.
+ * NULL: it does not close. */
+static char *toml_end(char *value, const char *end, int joins)
+{
+    char quote = 0;
+    const int is_array = *value == '[';
+    for (char *c = value + is_array; c < end; c++) {
+        if (*c == '\n' && (quote || !is_array))
+            return NULL;
+        if (!quote && *c == '#')
+            for (; c < end && *c != '\n'; c++)
+                *c = joins ? ' ' : *c;
+        if (c < end && *c == '\n' && joins)
+            *c = ' ';
+        if (quote ? *c == quote : *c == ']')
+            quote = 0;
+        else if (!quote && strchr("\"'", *c))
+            quote = *c;
+        else
+            continue;
+        if (is_array ? !quote && *c == ']' : !quote)
+            return c + 1;
+    }
+    return NULL;
+}
+
+/* Ends a value where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
 static void cut_note(char *value)
 {
-    for (char *c = value; (c = strchr(c, ';')); c++)
-        if (c > value && isspace((unsigned char)c[-1])) {
+    char *first = value + strspn(value, " \t");
+    char *close = *first && strchr("\"'[", *first) ? toml_end(first, value + strlen(value), 0) : NULL;
+    if (close && strchr(";#", *skip_blanks(close)))
+        *close = 0;
+    for (char *c = value; (c = strpbrk(c, ";#")); c++)
+        if (c > value && (!close || c > close) && isspace((unsigned char)c[-1])) {
             *c = 0;
             return;
         }
@@ -163,12 +200,28 @@ static void report_broken(const size_t fields[RULE_FIELDS], const char *text, vo
     report_fault(r, at, text);
 }
 
+/* The end of a line that ends at `stop`, together with those that an array of TOML goes on to. */
+static char *whole_line(char *line, char *stop, char *end, int *n_more)
+{
+    const char *begin = skip_blanks(line);
+    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', (size_t)(stop - line));
+    char *value = equals ? skip_blanks(equals + 1) : stop;
+    *n_more = 0;
+    if (*value != '[' || !toml_end(value, end, 0))
+        return stop;
+    for (const char *c = value, *close = toml_end(value, end, 0); c < close; c++)
+        *n_more += *c == '\n';
+    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', (size_t)(end - close));
+    return last ? last : end;
+}
+
 /* text (length, and a zero behind it): its lines are closed by zeros. */
 static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 {
     for (char *next = text, *line = text, *end = text + length; next < end; line = next) {
         char *stop = memchr(line, '\n', (size_t)(end - line));
-        stop = stop ? stop : end;
+        int n_more;
+        stop = whole_line(line, stop ? stop : end, end, &n_more);
         next = stop + 1;
         *stop = 0;
         if (r->line++ == 0 && strncmp(line, "\xEF\xBB\xBF", 3) == 0)
@@ -178,6 +231,7 @@ static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
             take_line(r, line);
         else
             report_fault(r, place_of(r, skip_blanks(line)), "holds a NUL byte; this is not a settings file");
+        r->line += n_more;
     }
     rules_check(r->s, report_broken, r);
     if (n_faults)
