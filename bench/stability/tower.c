@@ -50,8 +50,10 @@ SimResult bench_tower_run(const Tower *t, SceneKind kind)
         scene_set_engine(scene, bench_engine(t->engine));
         status = sim_worker_create(&worker, scene, &err);
     }
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
+        sim_worker_device(worker, &(LinearDevice){.link_ns_m = 1e12}); /* floors and core move as one */
         status = sim_run(worker, kind, t->x, &r, &err);
+    }
     if (status != STATUS_OK) {
         r = (SimResult){.outcome = RUN_ENGINE_FAILED};
         snprintf(r.reason, sizeof r.reason, "%.*s", (int)sizeof r.reason - 1, err.text);

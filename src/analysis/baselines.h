@@ -1,7 +1,7 @@
 /* analysis/baselines.h -- what a design is compared with: the building alone, and linear uses of the same core.
  *
  *   no core            the building alone
- *   rigidly connected  floors and core without gaps
+ *   rigidly connected  floors and core without gaps, in the modes of both with the building's damping ratios
  *   tuned mass damper  no core, but its mass on a spring and a dashpot at the roof; frequency and damping optimized
  *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
  *

@@ -357,6 +357,18 @@ static double largest_of(int n, const double values[])
     return largest;
 }
 
+/* What the modes of both together have damped, as parts of building and core: sum_i P_ik^2 = 1. */
+static void book_by_shares(const Linear *d)
+{
+    const LinearSystem *s = d->s;
+    const int n = n_coordinates(d);
+    for (int k = 0; n + k < s->n_loss; k++) {
+        for (int i = 0; i < n; i++)
+            d->damped[i] += pow(s->P[k * s->n_loss + i], 2) * d->damped[n + k];
+        d->damped[n + k] = 0;
+    }
+}
+
 static void report(const Linear *d, SimResult *result)
 {
     const LinearSystem *s = d->s;
@@ -369,6 +381,8 @@ static void report(const Linear *d, SimResult *result)
     result->stroke_m = largest_of(s->n_apart, d->apart_max);
     result->dashpot_n = s->n_apart > 0 ? s->loss[s->n_loss - 1] * largest_of(s->n_apart, d->rate_max) : 0;
     peak_monitor_report(&d->peaks, result);
+    if (s->n_apart == 0)
+        book_by_shares(d);
     energy_balance_close(result, s->n_building, s->like, s->n_loss - s->n_building, d->damped);
 }
 

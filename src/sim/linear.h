@@ -1,7 +1,8 @@
 /* sim/linear.h -- linear structures under a ground motion: the same core without impacts, and what else its mass
  * could do.
  *
- *   rigid  floors and core rigidly connected (zero gap): M + Mc, K + Kc, C + Cc
+ *   rigid  floors and core rigidly connected (zero gap): M + Mc, K + Kc, and in the modes of both together the damping
+ *          ratios of the building's modes
  *   tmd    a tuned mass damper at the roof, with the mass of the core: k_t = m_t w_t^2, c_t = 2 zeta_t m_t w_t
  *   links  floors and core joined by dashpots of one constant: f_j = -c (u_j' - v_j') on the floor
  *
@@ -10,7 +11,9 @@
  *   z' = [0 W; -W -D] z + [0; -Gamma] a,   D = P' diag(loss) P,   rate = P y'
  *
  * Every row of P is the rate of something that dissipates loss rate^2: modes of the building and of the core by their
- * own damping (q' and 2 zeta w), dashpots (their relative velocity and c). D is full. Over a step the load is a
+ * own damping (q' and 2 zeta w), dashpots (their relative velocity and c), D is then full; rigidly connected, the modes
+ * of both together, whose losses are booked under modes of building and core by their shares of the kinetic energy,
+ * P_ik^2 of mode k. Over a step the load is a
  * straight line, and the step is exact: (z, a, a') is multiplied by the exponential of one matrix (C. F. Van Loan,
  * IEEE Trans. Autom. Control 23 (1978) 395); the only error is where we look. Energies are integrated by the
  * trapezoidal rule with its end correction (Euler-Maclaurin), straight stretch by straight stretch:
