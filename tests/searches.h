@@ -9,15 +9,11 @@
 
 #include "moga/search.h"
 
-/* As the program has it, but for what every test has of its own: seed, sizes, limits, and how far a surface is trusted.
- */
-static inline SearchConfig search_config(uint32_t seed, size_t population, size_t surrogate_max, double trust_error)
+/* As the program has it, but for what every test has of its own: seed, sizes, limits. */
+static inline SearchConfig search_config(uint32_t seed, size_t population, size_t surrogate_max)
 {
-    return (SearchConfig){.seed = seed,
-                          .population = population,
-                          .surrogate_max = surrogate_max,
-                          .trust_error = trust_error,
-                          .nondominated_share = 1};
+    return (SearchConfig){
+        .seed = seed, .population = population, .surrogate_max = surrogate_max, .nondominated_share = 1};
 }
 
 enum { MOMENTS_MAX = 200 };

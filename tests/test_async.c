@@ -124,7 +124,7 @@ static void world(size_t n_var, size_t n_obj, size_t workers)
 
 static SearchConfig config(size_t initial, size_t max_evals)
 {
-    SearchConfig c = search_config(5, 24, 60, 0.05);
+    SearchConfig c = search_config(5, 24, 60);
     c.initial = initial;
     c.generations = 100;
     c.max_evals = max_evals;

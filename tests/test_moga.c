@@ -552,36 +552,15 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     directions_free(&d);
 }
 
-/* The chosen are farther apart than twice as many drawn at random are in the mean, and the axes are there. */
-/* Every gain computed anew before each pick. */
-static size_t pick_by_definition(Infill *q, size_t n, size_t m, const double F[], const double violation[],
-                                 const double uncertainty[], const unsigned char allowed[])
-{
-    size_t best = SIZE_MAX;
-    double max = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        const double gain = infill_gain(q, F + i * m);
-        if (!allowed[i])
-            continue;
-        const int ties = best != SIZE_MAX && violation[i] == violation[best] && gain == max;
-        if (best == SIZE_MAX || violation[i] < violation[best] || (violation[i] == violation[best] && gain > max) ||
-            (ties && uncertainty[i] > uncertainty[best])) {
-            best = i;
-            max = gain;
-        }
-    }
-    return best;
-}
-
 TEST(picks_are_those_of_gains_computed_anew_each_time)
 {
     enum { N = 60, M = 3, SEEDS = 200 };
     double F[N * M], violation[N], uncertainty[N];
-    size_t rows[N];
+    size_t rows[N], taken[2 * N];
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
-        unsigned char allowed[N];
+        unsigned char allowed[N], asked[N];
         Directions d;
-        Infill *q;
+        Infill *lazy, *anew;
         Err err = {0};
         Random r = random_stream(seed, RANDOM_TEST, 1, 0);
         coarse_points(seed, N, M, F);
@@ -592,20 +571,32 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
             allowed[i] = random_below(&r, 8) > 0;
         }
         CHECK_OK(directions_create(&d, M, 5, 0, &err), &err);
-        CHECK_OK(infill_create(&q, (InfillKind)(seed % 2), N, &d, &err), &err);
-        infill_measure(q, 5, rows, F);
-        infill_offer(q, N, F, violation, uncertainty, NULL);
-        for (int k = 0; k < N; k++) {
-            const size_t wanted = pick_by_definition(q, N, M, F, violation, uncertainty, allowed);
-            assert_same_number(infill_pick(q, allowed), wanted);
-            if (k % 4 == 0) /* the other criterion's */
-                infill_take(q, random_below(&r, N));
+        CHECK_OK(infill_create(&lazy, (InfillKind)(seed % 2), N, &d, &err), &err);
+        CHECK_OK(infill_create(&anew, (InfillKind)(seed % 2), N, &d, &err), &err);
+        infill_measure(lazy, 5, rows, F);
+        infill_offer(lazy, N, F, violation, uncertainty, NULL);
+        for (size_t k = 0, n = 0; k < N; k++) {
+            infill_measure(anew, 5, rows, F);
+            infill_offer(anew, N, F, violation, uncertainty, NULL);
+            for (size_t i = 0; i < n; i++)
+                infill_take(anew, taken[i]);
+            memcpy(asked, allowed, sizeof asked);
+            const size_t wanted = infill_pick(anew, asked), picked = infill_pick(lazy, allowed);
+            assert_same_number(picked, wanted);
+            if (picked != SIZE_MAX)
+                taken[n++] = picked;
+            if (k % 4 == 0) { /* the other criterion's */
+                taken[n] = random_below(&r, N);
+                infill_take(lazy, taken[n++]);
+            }
         }
-        infill_free(q);
+        infill_free(lazy);
+        infill_free(anew);
         directions_free(&d);
     }
 }
 
+/* The chosen are farther apart than twice as many drawn at random are in the mean, and the axes are there. */
 TEST(spread_directions_have_the_axes_and_keep_apart)
 {
     for (size_t m = 2; m <= 7; m++) {

@@ -305,7 +305,7 @@ static void settle(World *w)
 
 static SearchConfig config(uint32_t seed, double repeats)
 {
-    SearchConfig c = search_config(seed, 16, 24, 0.05);
+    SearchConfig c = search_config(seed, 16, 24);
     c.initial = 20;
     c.generations = 1000;
     c.max_evals = 200;

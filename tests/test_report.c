@@ -189,8 +189,11 @@ TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
         const size_t end = h.n - 1; /* 45 s are no whole number of samples: the run goes on for a part of one */
         assert_close(h.energy[ENERGY_INPUT][end], result->input_energy_j, 0.02);
         assert_close(h.energy[ENERGY_DAMPED_BUILDING][end], result->damped_building_j, 0.02);
-        if (kind == SCENE_IMPACT)
-            assert_close(h.energy[ENERGY_CONTACTS][end], result->contact_loss_j + result->clamp_j, 0.02);
+        if (kind ==
+            SCENE_IMPACT) /* a contact that is closed takes and gives during the part of a sample that is left */
+            assert_at_most(fabs(h.energy[ENERGY_CONTACTS][end] - result->contact_loss_j - result->contact_stored_j -
+                                result->clamp_j),
+                           0.01 * result->input_energy_j);
         else
             assert_true(h.energy[ENERGY_CONTACTS][end] == 0 && h.energy[ENERGY_CORE][end] == 0);
         assert_at_most(most, result->peak_displacement_m[19] * (1 + 1e-9));

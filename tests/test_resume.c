@@ -71,7 +71,7 @@ static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
 
 static SearchConfig config(size_t initial, size_t max_evals)
 {
-    SearchConfig c = search_config(7, 24, 40, 0.2);
+    SearchConfig c = search_config(7, 24, 40);
     c.initial = initial;
     c.generations = 60;
     c.max_evals = max_evals;

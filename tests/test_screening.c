@@ -115,7 +115,7 @@ static void open_world(World *w, size_t n_workers)
 
 static SearchConfig config_of(void)
 {
-    SearchConfig c = search_config(7, 12, 600, 0.05);
+    SearchConfig c = search_config(7, 12, 600);
     c.generations = 1000;
     c.max_evals = EVALS;
     c.fidelity = FIDELITY_REPLICATES;

@@ -29,6 +29,7 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
         return n;
     memcpy(b->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     b->repeat[n] = 0;
+    b->is_probe[n] = 0;
     b->kind[n] = (unsigned char)kind;
     return n + 1;
 }
@@ -58,7 +59,7 @@ static Status ask(Search *s, size_t n, Err *err)
         }
         note[NOTE_KIND] = b->kind[i];
         note[NOTE_WAS_PREDICTED] = is_predicted(s, i);
-        note[NOTE_CRITERION] = b->criterion[i];
+        note[NOTE_IS_PROBE] = b->is_probe[i];
         memcpy(note + NOTE_PREDICTED, b->predicted + i * p->n_obj, p->n_obj * sizeof *note);
         TRY(queue_ask(s->queue, &asked, err));
     }
@@ -78,7 +79,7 @@ static Status take_result(Search *s, size_t i, const Finished *done, Err *err)
     b->ok[i] = e->outcome == OUTCOME_OK;
     b->kind[i] = done->note ? (unsigned char)done->note[NOTE_KIND] : (unsigned char)e->kind;
     b->was_predicted[i] = done->note && done->note[NOTE_WAS_PREDICTED] != 0.0;
-    b->criterion[i] = done->note ? (unsigned char)done->note[NOTE_CRITERION] : 0;
+    b->is_probe[i] = done->note && done->note[NOTE_IS_PROBE] != 0.0;
     if (b->was_predicted[i])
         memcpy(b->predicted + i * p->n_obj, done->note + NOTE_PREDICTED, p->n_obj * sizeof *b->predicted);
     TRY(screening_take(s, done, err));
@@ -117,12 +118,11 @@ static size_t pending_wanted(const Search *s, size_t n)
 
 Status batch_evaluate(Search *s, size_t n_new, size_t n, Err *err)
 {
-    SearchTimes *t = &s->control.times;
     const double before = search_seconds(s);
     memset(s->batch.kind + n_new, s->screening.cost.whole > 1 ? KIND_FINISHED : KIND_REPEAT, n - n_new);
     TRY(ask(s, n, err));
     const Status status = take_results(s, pending_wanted(s, n), err);
-    t->waiting += search_seconds(s) - before;
+    s->waited_s += search_seconds(s) - before;
     return status;
 }
 

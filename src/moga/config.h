@@ -10,8 +10,7 @@
 #include "evaluate/evaluation.h"
 #include "settings/search_options.h"
 
-enum { SEARCH_CENTRES = 600 };                 /* of the surrogate at most */
-static const double SEARCH_TRUST_ERROR = 0.05; /* of a prediction that stands for an evaluation */
+enum { SEARCH_CENTRES = 600 }; /* of the surrogate at most */
 
 typedef struct {
     uint32_t seed;
@@ -30,7 +29,6 @@ typedef struct {
     double max_seconds;        /* 0: no limit */
     size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
-    double trust_error;        /* share of an objective's range in the archive */
 } SearchConfig;
 
 /* Where a search is resumed: the evaluations at the end of a generation, in the order of the view, and its state. Only

@@ -58,27 +58,18 @@ static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's deriv
 /* -- infill_select.c: infill selection ----------------------------------------------------------------------------- */
 
 static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
-enum { VALIDATION_SHARE = 4 };      /* batch / this + 1 designs of a batch validate trusted predictions */
-enum { PREDICTION_AGE_MAX = 3 };    /* generations for which a prediction is trusted before it is validated first */
 
-/* -- control.c, surrogate_use.c ------------------------------------------------------------------------------------ */
+/* -- control.c, offspring.c ---------------------------------------------------------------------------------------- */
 
 static const double AGREEMENT_MIN = 0.15;    /* running mean of Kendall's tau below which no infill is selected */
-static const double AGREEMENT_WEIGHT = 0.25; /* of one batch in that mean */
-static const double CREDIT_WEIGHT = 0.1;     /* of one batch in the running means of credits and failure rate */
-static const double GENERATOR_POWER = 8.0;   /* infill and variation share a batch by (gain per design)^power */
-static const double CRITERION_POWER = 16.0;  /* PBI and rays share the infill by (gain per design)^power */
-static const double VARIATION_MARGIN = 1.3;  /* factor by which variation must gain more than infill */
-enum { VARIATION_SHARE_MIN = 16 };           /* batch / this + 1 designs for each of infill and variation */
-enum { INFILL_ALONE = 18 }; /* evaluations per variable before variation and, without waves, probes share a batch */
-static const double VARIATION_CREDIT_FIRST = 0.03; /* share of the gain credited to variation before the first batch */
-static const double VARIATION_CHANCE_FIRST = 0.1;  /* share of the designs attributed to it before the first batch */
-static const double PROBE_SHARE = 0.1;             /* of a batch, for probes along single variables, at first */
-static const double PROBE_SHARE_MIN = 0.03;        /* least share of a batch for probes, so that a find is not missed */
-static const double PROBE_SHARE_MAX = 0.3;         /* greatest share of a batch for probes */
-static const double PROBE_FIND = 0.01;   /* a find is better than predicted by this, in ranges of the archive */
-static const double PROBE_PAY = 2.5;     /* share of a batch for probes of which all are finds */
-static const double PROBE_WEIGHT = 0.05; /* of one probe in the running mean that is the share */
+static const double AGREEMENT_WEIGHT = 0.25; /* of one batch in that mean and in that of the failure rate */
+enum { INFILL_ALONE = 18 };                  /* evaluations per variable before probes are made without waves */
+static const double PROBE_SHARE = 0.1;       /* of a batch, for probes along single variables, at first */
+static const double PROBE_SHARE_MIN = 0.03;  /* least share of a batch for probes, so that a find is not missed */
+static const double PROBE_SHARE_MAX = 0.3;   /* greatest share of a batch for probes */
+static const double PROBE_FIND = 0.01;       /* a find is better than predicted by this, in ranges of the archive */
+static const double PROBE_PAY = 2.5;         /* share of a batch for probes of which all are finds */
+static const double PROBE_WEIGHT = 0.05;     /* of one probe in the running mean that is the share */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */
 

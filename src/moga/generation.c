@@ -81,8 +81,7 @@ static void take_estimates(Search *s)
     surrogate_estimate(s->surrogate, a);
     search_measure_front(s);
     for (size_t i = 0; i < p->n; i++)
-        if (p->row[i] != PREDICTED)
-            memcpy(p->F + i * p->n_obj, a->estimate + p->row[i] * a->n_obj, a->n_obj * sizeof *a->estimate);
+        memcpy(p->F + i * p->n_obj, a->estimate + p->row[i] * a->n_obj, a->n_obj * sizeof *a->estimate);
 }
 
 static Status fit_surrogate(Search *s, Err *err)
@@ -92,7 +91,6 @@ static Status fit_surrogate(Search *s, Err *err)
     else
         surrogate_drop(s->surrogate);
     take_estimates(s);
-    search_predict(s, &s->population, 0, 0);
     return STATUS_OK;
 }
 
@@ -110,9 +108,9 @@ static void judge_batch(Search *s)
                                   .range = surrogate_ranges(s->surrogate),
                                   .ok = b->ok,
                                   .kind = b->kind,
-                                  .criterion = b->criterion,
+                                  .is_probe = b->is_probe,
                                   .was_predicted = b->was_predicted};
-    control_judge(&s->control, &results, s->criteria.gain);
+    control_judge(&s->control, &results);
 }
 
 /* -- step 7: environmental selection ------------------------------------------------------------------------------- */
@@ -129,19 +127,13 @@ static void append_evaluated(const Search *s, Population *to, const Population *
     to->violation[to->n - 1] = a->violation[row];
 }
 
-/* Next population: from the evaluated members of the present one, the trusted predictions and the results. */
+/* Next population: from the members of the present one and the results. */
 static void renew_population(Search *s, size_t first_new)
 {
-    Population *population = &s->population, *pool = &s->pool, *offspring = &s->offspring.members;
+    Population *population = &s->population, *pool = &s->pool;
     pool->n = 0;
     for (size_t i = 0; i < population->n; i++)
-        if (population->row[i] != PREDICTED)
-            append_evaluated(s, pool, population, i);
-    for (size_t i = 0; i < offspring->n; i++)
-        if (!s->offspring.excluded[i] && search_trusts(s, offspring, i)) {
-            s->n_predicted += offspring->age[i]++ == 0;
-            population_append(pool, offspring, i);
-        }
+        append_evaluated(s, pool, population, i);
     batch_join(s, pool, first_new);
     offspring_survive(s, pool, 0);
     population_copy(population, pool);
@@ -154,7 +146,6 @@ static Status replicate_generation(Search *s, size_t n, Err *err)
 {
     const size_t first_new = s->archive.n;
     surrogate_drop(s->surrogate);
-    s->offspring.members.n = 0;
     TRY(batch_evaluate(s, 0, n, err));
     renew_population(s, first_new);
     return STATUS_OK;
@@ -163,9 +154,7 @@ static Status replicate_generation(Search *s, size_t n, Err *err)
 Status generation_next(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
-    const int has_parents = s->population.n >= 2;
-    s->n_predicted = 0;
-    if (!has_parents && !search_has_front(s))
+    if (s->population.n < 2)
         return sample_again(s, err);
     pareto_archive_reset_estimates(&s->archive);
     search_measure_front(s);
@@ -173,8 +162,6 @@ Status generation_next(Search *s, Err *err)
     TRY(screening_last(s, &n_last, err));
     if (n_last > 0)
         return replicate_generation(s, n_last, err);
-    if (!has_parents) /* all were predictions, which a generation of replicates drops */
-        return sample_again(s, err);
     TRY(fit_surrogate(s, err));              /* 2 */
     offspring_make(s, 0);                    /* 3 */
     const size_t n = infill_select_batch(s); /* 4 */
@@ -191,7 +178,6 @@ Status generation_next(Search *s, Err *err)
 Status generation_last(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
-    s->n_predicted = s->offspring.members.n = 0;
     pareto_archive_reset_estimates(&s->archive);
     TRY(batch_finish(s, err));
     renew_population(s, first_new);

@@ -143,14 +143,6 @@ void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
     }
 }
 
-void infill_copy(Infill *q, const Infill *measured)
-{
-    memcpy(q->normalisation.ideal, measured->normalisation.ideal, q->n_obj * sizeof *q->normalisation.ideal);
-    memcpy(q->normalisation.width, measured->normalisation.width, q->n_obj * sizeof *q->normalisation.width);
-    memcpy(q->best_value, measured->best_value, q->n_dir * sizeof *q->best_value);
-    memcpy(q->best, measured->best, q->n_dir * sizeof *q->best);
-}
-
 size_t infill_best(const Infill *q, size_t vector)
 {
     return q->best[vector];
@@ -214,15 +206,6 @@ double infill_distance(Infill *q, const double f[])
         nearest = off < nearest ? off : nearest;
     }
     return nearest;
-}
-
-double infill_gain(Infill *q, const double f[])
-{
-    double gain = 0.0;
-    values_of(q, f, q->row);
-    for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->best_value[r] - q->row[r], 0.0);
-    return gain;
 }
 
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[],

@@ -32,7 +32,6 @@ void infill_free(Infill *q); /* NULL is fine */
 
 /* Normalises by the rows front[0..n) of F and takes their values as best_w. */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);
-void infill_copy(Infill *q, const Infill *measured); /* what that found, of the same kind and vectors */
 
 /* Distance of f from the ideal, in widths of the front. */
 double infill_length(const Infill *q, const double f[]);
@@ -43,8 +42,6 @@ double infill_distance(Infill *q, const double f[]);
 /* Row of the front that is best for a vector; value of f for it, with its derivatives by f (n_obj). */
 size_t infill_best(const Infill *q, size_t vector);
 double infill_slope(const Infill *q, size_t vector, const double f[], double slope[]);
-
-double infill_gain(Infill *q, const double f[]);
 
 /* n predicted designs: F (n, n_obj), violation (n), predicted error (n), chance (n) or NULL: feasible designs come
  * first; borrowed until the last pick. */

@@ -82,12 +82,12 @@ static void add_evolved(Search *s)
 
 /* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the
  * criteria share them. */
-static void add_descended(Search *s, double hypervolume)
+static void add_descended(Search *s)
 {
     const Problem *p = s->problem;
     const size_t n_vectors = s->criteria.vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(s),
                  wanted = two_each < s->config->population ? two_each : s->config->population,
-                 n = wanted < n_vectors ? wanted : n_vectors, first = (size_t)(hypervolume * (double)n);
+                 n = wanted < n_vectors ? wanted : n_vectors, first = n / 2;
     size_t *vector = s->scratch.descent_vector;
     double *X = s->scratch.descent_X;
     Random random = random_stream(s->config->seed, RANDOM_DESCENT, (uint32_t)s->generation, 0);
@@ -146,16 +146,15 @@ void offspring_make(Search *s, int variation_alone)
 {
     Offspring *o = &s->offspring;
     const int with_surrogate = search_uses_surrogate(s) && !variation_alone;
-    const BatchShares shares = control_batch_shares(&s->control, batch_size(s), s->archive.n, s->problem->n_var);
+    const size_t all = s->config->population, few = batch_size(s);
     o->members.n = o->n_probes = 0;
     if (with_surrogate) {
         add_evolved(s);
         if (search_has_front(s))
-            add_descended(s, shares.hypervolume);
+            add_descended(s);
         search_predict(s, &o->members, 0, 1);
         add_probes(s);
     }
-    const size_t all = s->config->population, few = batch_size(s) < all ? batch_size(s) : all;
-    add_variation(s, variation_alone ? all : !with_surrogate ? few : shares.n_variation == 0 ? 0 : all);
+    add_variation(s, variation_alone ? all : !with_surrogate ? few : control_variation(&s->control, few) > 0 ? all : 0);
     add_pending(s);
 }

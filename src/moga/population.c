@@ -14,7 +14,6 @@ static void layout(void *population, Carve *c)
     p->uncertainty = carve(c, p->n_max, sizeof(double));
     p->chance = carve(c, p->n_max, sizeof(double));
     p->row = carve(c, p->n_max, sizeof(size_t));
-    p->age = carve(c, p->n_max, sizeof(size_t));
 }
 
 Status population_create(Population *p, size_t n_max, size_t n_var, size_t n_obj, Err *err)
@@ -39,7 +38,6 @@ size_t population_add(Population *p, const double x[])
     p->violation[i] = p->uncertainty[i] = 0.0;
     p->chance[i] = 1.0;
     p->row[i] = PREDICTED;
-    p->age[i] = 0;
     return i;
 }
 
@@ -52,7 +50,6 @@ static void copy(Population *to, size_t i, const Population *from, size_t j)
     to->uncertainty[i] = from->uncertainty[j];
     to->chance[i] = from->chance[j];
     to->row[i] = from->row[j];
-    to->age[i] = from->age[j];
 }
 
 void population_append(Population *to, const Population *from, size_t i)
@@ -74,20 +71,20 @@ void population_copy(Population *to, const Population *from)
         population_append(to, from, i);
 }
 
-void population_pack(Population *population, Pack *p, size_t n_rows)
+void population_pack(Population *population, Pack *p, const Archive *a)
 {
+    const size_t m = population->n_obj;
     size_t n = population->n;
     pack_size(p, &n, population->n_max);
-    pack_numbers(p, population->X, n * population->n_var, -DBL_MAX, DBL_MAX);
-    pack_numbers(p, population->F, n * population->n_obj, -DBL_MAX, DBL_MAX);
-    pack_numbers(p, population->violation, n, 0.0, DBL_MAX);
-    pack_numbers(p, population->uncertainty, n, 0.0, DBL_MAX);
-    pack_numbers(p, population->chance, n, 0.0, 1.0);
     for (size_t i = 0; i < n && !p->faulty; i++) {
-        size_t code = population->row[i] == PREDICTED ? 0 : population->row[i] + 1;
-        pack_size(p, &code, n_rows);
-        pack_size(p, &population->age[i], UINT32_MAX);
-        population->row[i] = code == 0 ? PREDICTED : code - 1;
+        size_t row = p->reading ? 0 : population->row[i];
+        pack_size(p, &row, a->n - 1);
+        if (p->reading) {
+            population->n = i;
+            population_add(population, a->X + row * a->n_var);
+            population->row[i] = row;
+        }
+        pack_numbers(p, population->F + i * m, m, -DBL_MAX, DBL_MAX);
+        pack_numbers(p, population->violation + i, 1, 0.0, DBL_MAX);
     }
-    population->n = p->faulty ? population->n : n;
 }

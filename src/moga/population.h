@@ -12,17 +12,18 @@
 
 #include "base/pack.h"
 #include "base/status.h"
+#include "moga/archive.h"
 
 static const size_t PREDICTED = SIZE_MAX;
 
 typedef struct {
     size_t n, n_max, n_var, n_obj;
     double *X, *F;       /* (n, n_var) (n, n_obj) */
-    double *error;       /* (n, n_obj) predicted error, 0: evaluated; of offspring until they are selected */
+    double *error;       /* (n, n_obj) predicted error, 0: evaluated */
     double *violation;   /* (n) */
     double *uncertainty; /* (n) predicted error, share of the range, of the worst objective; 0: evaluated */
     double *chance;      /* (n) probability that it succeeds and keeps every limit; 1: evaluated */
-    size_t *row, *age;   /* (n); age: generations for which a prediction has been trusted */
+    size_t *row;         /* (n) */
     void *store;
 } Population;
 
@@ -35,7 +36,7 @@ void population_append(Population *to, const Population *from, size_t i); /* mem
 void population_copy(Population *to, const Population *from);             /* replaces all members */
 void population_keep(Population *p, size_t n, const size_t kept[]);       /* ascending; drops the rest */
 
-/* All members; rows are below n_rows or PREDICTED. */
-void population_pack(Population *population, Pack *p, size_t n_rows);
+/* All members, which are evaluated: rows of the archive, with objectives and violation as they were estimated. */
+void population_pack(Population *population, Pack *p, const Archive *a);
 
 #endif

@@ -77,7 +77,6 @@ static void reconsider_convergence(Search *s)
 static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
-    const SearchTimes *t = &s->control.times;
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -102,12 +101,11 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .level_agreement = s->screening.agreement,
         .has_left_screening = s->screening.n > 0 && !s->screening.is_on,
         .generation_now = s->generation,
-        .n_predicted = s->n_predicted,
         .n_left_out = surrogate_left_out(s->surrogate),
         .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
-        .waited_s = t->waiting,
-        .surrogate_s = t->surrogate,
+        .waited_s = s->waited_s,
+        .surrogate_s = s->surrogate_s,
         .is_last = is_last,
         .is_asynchronous = s->config->asynchronous != 0,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,

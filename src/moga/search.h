@@ -13,30 +13,22 @@
  *                   and the surrogate right about all that it has seen
  *       variation   children of the population; the only offspring where the surrogate is not used
  *   4 Infill selection of a batch (infill_select.c)
- *       trusted     predictions whose leave-one-out based error is below trust_error in every objective stand for
- *                   evaluations, for PREDICTION_AGE_MAX generations
- *       infill      of the others those with the greatest gain by two criteria, PBI and hypervolume (infill.h), which
- *                   share the batch by what they gained; a gain is that of lower confidence bounds, prediction minus
- *                   OPTIMISM times its error in every objective: where the surrogate errs more there is more to find
- *       validation  some trusted predictions, first those that have been trusted for long
- *       variation   from INFILL_ALONE evaluations per variable on a few children of variation with the greatest
- *                   predicted gain, and most of the batch while these gain more
+ *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is that
+ *                   of lower confidence bounds, prediction minus OPTIMISM times its error in every objective: where the
+ *                   surrogate errs more there is more to find
+ *       variation   as many children of variation as infill loses to failures, those with the greatest predicted gain
  *       probes      times the share of objectives with waves, or whole after INFILL_ALONE evaluations per variable
  *                   where every objective has an R2 above PROBE_R2: a share that grows while probes are better than
  *                   predicted and falls where they are not (control.h). What a surrogate knows of one valley says
  *                   nothing of the others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
- *                   back where a limit is violated or a failure predicted; variation gets the share that fails
+ *                   back where a limit is violated or a failure predicted
  *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by
  *     the cheap level, and in full for those that promise most (screening.c)
  *   6 Control (control.h)
- *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone;
- *       credits of generators and criteria
+ *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone
  *   7 Environmental selection (selection.h)
- *       NSGA-III among evaluated members, results and trusted predictions; other designs are dropped. Back to 2
- *
- * Predicted designs may be members of the population; only evaluated ones enter the archive, and the front is made of
- * the archive alone.
+ *       NSGA-III among members and results; other designs are dropped. Back to 2
  *
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count; no
  *               clock is read but for max_seconds
@@ -105,7 +97,6 @@ typedef struct {
     double level_agreement; /* Kendall's tau of the levels, mean over the objectives; NAN: not known */
     int has_left_screening; /* it is too low: nothing is screened any more */
     size_t generation_now;
-    size_t n_predicted;     /* predictions trusted for the first time in this generation */
     size_t n_left_out;      /* objectives and constraints that the surrogate leaves out: their mean stands for them */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NAN: no surrogate yet */
     double seconds;

@@ -31,13 +31,12 @@ static void layout(void *search, Carve *c)
     b->predicted = carve(c, b->n_max * n_obj, sizeof(double));
     b->ok = carve(c, b->n_max, 1);
     b->kind = carve(c, b->n_max, 1);
-    b->criterion = carve(c, b->n_max + 1, 1);
+    b->is_probe = carve(c, b->n_max, 1);
     b->was_predicted = carve(c, b->n_max, 1);
     b->repeat = carve(c, b->n_max, sizeof(size_t));
     s->control.F = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
     s->control.predicted = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
     s->offspring.allowed = carve(c, n_pool, 1);
-    s->offspring.excluded = carve(c, n_pool, 1);
     w->survivors = carve(c, n_pool, sizeof(size_t));
     w->members = carve(c, n_pool, sizeof(size_t));
     w->bound = carve(c, n_pool * n_obj, sizeof(double));
@@ -58,10 +57,8 @@ static Status create_criteria(Search *s, size_t n_pool, Err *err)
 {
     Criteria *q = &s->criteria;
     TRY(directions_spread(&q->vectors, s->problem->n_obj, n_vectors(s), err));
-    for (int kind = 0; kind < INFILL_KINDS; kind++) {
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, err));
-        TRY(infill_create(&q->gain[kind], (InfillKind)kind, 1, &q->vectors, err));
-    }
     return STATUS_OK;
 }
 
@@ -102,10 +99,8 @@ void state_free(Search *s)
     directions_free(&s->criteria.vectors);
     pareto_archive_free(&s->archive);
     selection_free(s->selection);
-    for (int kind = 0; kind < INFILL_KINDS; kind++) {
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->criteria.select[kind]);
-        infill_free(s->criteria.gain[kind]);
-    }
     surrogate_free(s->surrogate);
     screening_free(s);
     population_free(&s->population);
@@ -135,7 +130,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 12 };
+enum { STATE_VERSION = 13 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -158,7 +153,6 @@ static void pack_pending(Search *s, Pack *p)
         pack_size(p, &asked.repeat, UINT32_MAX);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
-        p->faulty = p->faulty || !(note[NOTE_CRITERION] >= 0.0 && note[NOTE_CRITERION] <= CRITERION_NONE);
         if (p->reading && !p->faulty)
             p->faulty = queue_ask(s->queue, &asked, &(Err){0}) != STATUS_OK;
     }
@@ -186,7 +180,7 @@ static void pack_search(Search *s, Pack *p)
     pack_size(p, &s->generation, UINT32_MAX);
     pack_size(p, &s->n_probed, UINT32_MAX);
     control_pack(&s->control, p, problem->n_obj);
-    population_pack(&s->population, p, s->archive.n);
+    population_pack(&s->population, p, &s->archive);
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->convergence, p);
     pack_size(p, &s->screening.is_on, 1);

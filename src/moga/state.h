@@ -31,19 +31,18 @@
 #include "moga/selection.h"
 #include "moga/surrogate.h"
 
-/* Infill criteria that share a batch, all measured on the same front. */
+/* Infill criteria, which share a batch evenly, measured on the same front and offered the same offspring: what is
+ * picked lowers the values to beat. */
 typedef struct {
-    Directions vectors;           /* reference vectors */
-    Infill *select[INFILL_KINDS]; /* offered the offspring: what is picked lowers the values to beat */
-    Infill *gain[INFILL_KINDS];   /* gain of the results */
+    Directions vectors; /* reference vectors */
+    Infill *select[INFILL_KINDS];
 } Criteria;
 
 /* Members in this order: proposed by the surrogate, probes, by variation, pending. */
 typedef struct {
     Population members;
     size_t n_probes, n_variation, n_pending;
-    unsigned char *allowed;  /* (pool) may be picked now */
-    unsigned char *excluded; /* (pool) is not picked in this generation any more */
+    unsigned char *allowed; /* (pool) may be picked now */
 } Offspring;
 
 /* Designs that are asked for, then, in the same arrays, the results that came. */
@@ -52,14 +51,14 @@ typedef struct {
     size_t n, n_max;              /* results of this generation, room for them */
     double *X, *F, *predicted;    /* (n_max, n_var) (n_max, n_obj) (n_max, n_obj) */
     unsigned char *ok, *kind;     /* (n_max) EvaluationKind */
-    unsigned char *criterion;     /* (n_max + 1) InfillKind that selected it */
+    unsigned char *is_probe;      /* (n_max) */
     unsigned char *was_predicted; /* (n_max) */
     size_t *repeat;               /* (n_max) replicates that the design has already */
 } Batch;
 
-/* What a design carries through the queue: was_predicted, criterion, its kind before it was screened, predicted
+/* What a design carries through the queue: was_predicted, is_probe, its kind before it was screened, predicted
  * (n_obj). */
-enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_KIND, NOTE_PREDICTED };
+enum { NOTE_WAS_PREDICTED, NOTE_IS_PROBE, NOTE_KIND, NOTE_PREDICTED };
 
 /* Grows with the archive. */
 typedef struct {
@@ -121,11 +120,11 @@ typedef struct {
     Convergence convergence;
     Screening screening;
     size_t generation;
-    size_t n_probed;    /* probes so far */
-    size_t n_predicted; /* predictions trusted for the first time in this generation */
-    size_t reserved;    /* evaluations kept for the last replicates */
-    Pack state;         /* as of the last report */
-    double start;       /* [s] of the clock */
+    size_t n_probed;              /* probes so far */
+    size_t reserved;              /* evaluations kept for the last replicates */
+    Pack state;                   /* as of the last report */
+    double start;                 /* [s] of the clock */
+    double waited_s, surrogate_s; /* of this session: for simulations; fits, predictions, descents */
     void *store;
 } Search;
 
@@ -173,7 +172,6 @@ Status generation_last(Search *s, Err *err); /* asynchronous: what is under way 
 /* surrogate_use.c */
 void search_measure_front(Search *s);
 int search_uses_surrogate(const Search *s); /* usable, and control agrees */
-int search_trusts(const Search *s, const Population *p, size_t i);
 Status search_fit_surrogate(Search *s, Err *err);
 void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);

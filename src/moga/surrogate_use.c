@@ -13,25 +13,18 @@ void search_measure_front(Search *s)
     pareto_archive_list_front(a);
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
-    for (int k = 0; k < INFILL_KINDS; k++) {
+    for (int k = 0; k < INFILL_KINDS; k++)
         if (s->screening.n_front > 0)
             infill_measure(s->criteria.select[k], s->screening.n_front, s->screening.front, a->estimate);
         else if (a->n_front > 0)
             infill_measure(s->criteria.select[k], a->n_front, a->front, a->estimate);
         else
             infill_measure(s->criteria.select[k], p->n, s->scratch.members, p->F);
-        infill_copy(s->criteria.gain[k], s->criteria.select[k]);
-    }
 }
 
 int search_uses_surrogate(const Search *s)
 {
     return s->config->surrogate == SURROGATE_ON && surrogate_is_usable(s->surrogate) && control_agrees(&s->control);
-}
-
-int search_trusts(const Search *s, const Population *p, size_t i)
-{
-    return search_uses_surrogate(s) && p->uncertainty[i] < s->config->trust_error;
 }
 
 /* -- the surrogate, timed ------------------------------------------------------------------------------------------ */
@@ -40,7 +33,7 @@ Status search_fit_surrogate(Search *s, Err *err)
 {
     const double before = search_seconds(s);
     const Status status = surrogate_fit(s->surrogate, &s->archive, s->criteria.select[INFILL_PBI], err);
-    s->control.times.surrogate += search_seconds(s) - before;
+    s->surrogate_s += search_seconds(s) - before;
     return status;
 }
 
@@ -48,12 +41,12 @@ void search_predict(Search *s, Population *p, size_t first, int with_uncertainty
 {
     const double before = search_seconds(s);
     surrogate_predict(s->surrogate, p, first, with_uncertainty);
-    s->control.times.surrogate += search_seconds(s) - before;
+    s->surrogate_s += search_seconds(s) - before;
 }
 
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[])
 {
     const double before = search_seconds(s);
     surrogate_descend(s->surrogate, &s->archive, s->criteria.select[kind], n, vectors, X);
-    s->control.times.surrogate += search_seconds(s) - before;
+    s->surrogate_s += search_seconds(s) - before;
 }

@@ -279,10 +279,9 @@ static json_t *json_columns(const Schema *schema)
 
 static json_t *json_generation(const RunGeneration *g)
 {
-    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
                      (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front", (json_int_t)g->front,
-                     "predicted", (json_int_t)g->predicted, "surrogate_error", json_number(g->surrogate_error),
-                     "hypervolume", json_number(g->hypervolume));
+                     "surrogate_error", json_number(g->surrogate_error), "hypervolume", json_number(g->hypervolume));
 }
 
 Status export_json(FILE *f, const Run *run, Err *err)

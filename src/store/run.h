@@ -33,7 +33,7 @@ typedef struct {
 } RunPlace;
 
 typedef struct {
-    long number, simulated, failed, front, predicted;
+    long number, simulated, failed, front;
     double surrogate_error; /* NAN: no surrogate */
     double hypervolume;     /* share of a box about the first sample that the front dominates; results/README.md */
     double seconds;         /* of work on the run until then, all sessions together */

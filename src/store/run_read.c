@@ -36,7 +36,7 @@ static Status no_memory(const Loading *l, size_t n, const char *what, Err *err)
 
 long run_generation_digest(const RunGeneration *g)
 {
-    const long whole[] = {g->number, g->simulated, g->failed, g->front, g->predicted};
+    const long whole[] = {g->number, g->simulated, g->failed, g->front};
     const double numbers[] = {g->surrogate_error, g->hypervolume, g->seconds};
     uint64_t hash = HASH_SEED;
     for (size_t i = 0; i < sizeof whole / sizeof whole[0]; i++)
@@ -97,13 +97,12 @@ static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
                          .simulated = (long)sqlite3_column_int64(row, 1),
                          .failed = (long)sqlite3_column_int64(row, 2),
                          .front = (long)sqlite3_column_int64(row, 3),
-                         .predicted = (long)sqlite3_column_int64(row, 4),
-                         .surrogate_error = column_number(row, 5),
-                         .hypervolume = column_number(row, 6),
-                         .seconds = column_number(row, 7)};
-    snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 8));
+                         .surrogate_error = column_number(row, 4),
+                         .hypervolume = column_number(row, 5),
+                         .seconds = column_number(row, 6)};
+    snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 7));
     run->n_finished = (size_t)g->simulated;
-    return (long)sqlite3_column_int64(row, 9) == run_generation_digest(g)
+    return (long)sqlite3_column_int64(row, 8) == run_generation_digest(g)
                ? STATUS_OK
                : database_damaged(l->d, err, "generation %ld is not what was written", g->number);
 }
@@ -184,8 +183,8 @@ static Status load_head(Loading *l, Err *err)
         return database_damaged(l->d, err, "it has no settings");
     TRY(tables_check(l->d, &l->run->schema, err));
     TRY(database_each(l->d,
-                      "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
-                      "finished, digest FROM generation ORDER BY number",
+                      "SELECT number, simulated, failed, front, surrogate_error, hypervolume, seconds, finished, "
+                      "digest FROM generation ORDER BY number",
                       take_generation, l, err));
     TRY(database_each(
         l->d,

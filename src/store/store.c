@@ -516,16 +516,15 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                        .simulated = (long)v->n,
                        .failed = (long)v->n_failed,
                        .front = (long)v->n_front,
-                       .predicted = (long)v->n_predicted,
                        .surrogate_error = v->surrogate_error,
                        .hypervolume = store_hypervolume(store),
                        .seconds = seconds};
     utc_now(g.finished);
     return database_do(store->db, err,
-                       "INSERT INTO generation(number, simulated, failed, front, predicted, surrogate_error, "
-                       "hypervolume, seconds, finished, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                       "iiiiidddti", g.number, g.simulated, g.failed, g.front, g.predicted, g.surrogate_error,
-                       g.hypervolume, g.seconds, g.finished, run_generation_digest(&g));
+                       "INSERT INTO generation(number, simulated, failed, front, surrogate_error, "
+                       "hypervolume, seconds, finished, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                       "iiiidddti", g.number, g.simulated, g.failed, g.front, g.surrogate_error, g.hypervolume,
+                       g.seconds, g.finished, run_generation_digest(&g));
 }
 
 /* The states of two generations are kept: one that the disk has damaged gives way to the one before. */

@@ -17,7 +17,7 @@ static const char BEFORE_EVALUATION[] =
     " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL,"
     " tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0, digest INTEGER NOT NULL);"
     "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
-    " front INTEGER NOT NULL, predicted INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL,"
+    " front INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL,"
     " seconds REAL NOT NULL, finished TEXT NOT NULL, digest INTEGER NOT NULL);"
     "CREATE TABLE front(evaluation INTEGER PRIMARY KEY REFERENCES evaluation(id), entered INTEGER NOT NULL,"
     " left INTEGER);"

@@ -5,7 +5,7 @@
  *                digest, and a REAL column, by its name, for every variable, objective and further measure; NULL: not
  *                known
  *   replicates   evaluation, NAME_sd of every objective: standard deviation of a single simulation; where it is known
- *   generation   number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished, digest
+ *   generation   number, simulated, failed, front, surrogate_error, hypervolume, seconds, finished, digest
  *   front        evaluation, entered, left: it was on the front of the generations entered <= g < left
  *   state        generation, bytes (moga/search.h), digest, front: of the last two generations
  *   session      started, ended, host, pid, program, threads, simulated_before, seconds, stopped, is_final,

@@ -323,7 +323,6 @@ SearchConfig study_search_config(const Settings *s)
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,
-        .trust_error = SEARCH_TRUST_ERROR,
         .replicate_share = s->search.replicate_share,
         .replicates_max = (size_t)s->search.replicates_max,
     };

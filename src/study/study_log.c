@@ -76,10 +76,9 @@ Status study_log_generation(RunStore *store, const SearchView *view, double seco
                  view->n_left_out);
     return store_log(store, err,
                      "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), "
-                     "predictions kept %zu, surrogate error %s, "
-                     "%.1f s",
+                     "surrogate error %s, %.1f s",
                      view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume,
-                     hypervolume_error(hypervolume), view->n_predicted, surrogate, seconds);
+                     hypervolume_error(hypervolume), surrogate, seconds);
 }
 
 /* What surrogate and search cost beside the simulations. */
