@@ -152,7 +152,7 @@ static void note_estimates(Promise *p, const SimResult *standard, const SimResul
     for (int i = 0; i < N_ESTIMATED; i++) {
         const double value = measure_value(wanted, ESTIMATED[i]), least = SMALLEST_ERROR * fabs(value);
         const double missed = fmax(fabs(measure_value(standard, ESTIMATED[i]) - value), least);
-        p->ratio[i][p->n] = fmax(error[ESTIMATED[i]], least) / missed;
+        p->ratio[i][p->n] = fmax(ESTIMATE_FACTOR * error[ESTIMATED[i]], least) / missed;
     }
 }
 

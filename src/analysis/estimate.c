@@ -7,7 +7,7 @@ void estimate_errors(const Measured *result, const Measured *finer, double error
 {
     const int known = result->outcome == RUN_OK && finer->outcome == RUN_OK;
     for (int k = 0; k < N_MEASURES; k++)
-        error[k] = known ? ESTIMATE_FACTOR * fabs(result->value[k] - finer->value[k]) : NAN;
+        error[k] = known ? fabs(result->value[k] - finer->value[k]) : NAN;
 }
 
 Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],

@@ -1,9 +1,9 @@
 /* analysis/estimate.h -- the integration error of a result, estimated from the same design at twice the steps.
  *
- *   error of measure m = ESTIMATE_FACTOR |m(steps) - m(2 steps)|
+ *   likely error of measure m = |m(steps) - m(2 steps)|        bound = ESTIMATE_FACTOR times that
  *
- * The factor is calibrated: the error against `fine` is below the estimate in 95 % of the windows of docs/promise.md
- * (`make promise` prints the share and how much too large the estimate is). Of the engine `fast` alone.
+ * The factor is calibrated: the error against `fine` is below the bound in 95 % of the windows of docs/promise.md
+ * (`make promise` prints the share and how much too large the bound is). Of the engine `fast` alone.
  *
  * Threads  estimate_errors is pure; estimate_designs has the workers of the problem */
 #ifndef IMTET_ANALYSIS_ESTIMATE_H
@@ -13,7 +13,7 @@
 
 static const double ESTIMATE_FACTOR = 9;
 
-/* error (N_MEASURES), in the unit of each; not numbers where one of the two runs failed. */
+/* error (N_MEASURES): the likely ones, in the unit of each; not numbers where one of the two runs failed. */
 void estimate_errors(const Measured *result, const Measured *finer, double error[]);
 
 /* The same for n results of single simulations, by simulating the tasks once more: error (n, N_MEASURES). The engine

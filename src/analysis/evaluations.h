@@ -46,7 +46,7 @@ typedef struct {
     Measured device[N_WITH_DEVICES]; /* found under this record (evaluate/device.h) */
     ReplicateSummary replicates;     /* of the design, where there are some */
     Measured finer;                  /* the design with twice the steps, where error_known */
-    double error[N_MEASURES];        /* of the design, estimated (analysis/estimate.h), where error_known */
+    double error[N_MEASURES];        /* of the design, likely ones (analysis/estimate.h), where error_known */
     int error_known;                 /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;
 

@@ -15,7 +15,7 @@ typedef struct {
     int dofs[MODELS], n_floors;
     double z[FLOORS_MAX];      /* [m] of the floors */
     SimResult *result[MODELS]; /* (n) */
-    double *error;             /* (n, N_MEASURES) estimated integration errors of the reduced model; NULL: not known */
+    double *error;             /* (n, N_MEASURES) likely integration errors of the reduced model; NULL: not known */
 } FullModel;
 
 /* Of n designs X (n, n_var), NULL for SCENE_NO_CORE, under motion.record. estimates 1: errors, by the engine fast. */

@@ -152,20 +152,29 @@ static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
     return STATUS_OK;
 }
 
+/* Where the knee within the limits is another design than the one that RUN:knee names. */
+static void tell_knees(const Run *run, const Picks *p)
+{
+    const long knee = run->table.row[run_knee(run)].id, here = run->table.row[p->pick[0].row].id;
+    if (here != knee)
+        printf("\nthe knee within the limits is design %ld; %s:knee, of the whole front, is design %ld\n", here,
+               run->folder, knee);
+}
+
 static void show_table(const Run *run, const Picks *p)
 {
+    json_t *table = json_array();
     printf("%zu of %zu designs are within the limits\n\n", p->n_left, run->n_front);
-    show_objective_names(&run->schema);
-    for (size_t i = 0; i < p->n; i++)
-        show_objectives(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema, run_f(run, p->pick[i].row),
-                        NULL);
-    if (run->schema.n_limited == 0)
-        return;
-    putchar('\n');
-    show_limited_names(&run->schema);
-    for (size_t i = 0; i < p->n; i++)
-        show_limited(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema,
-                     run->table.row[p->pick[i].row].extra);
+    for (size_t i = 0; i < p->n; i++) {
+        const size_t row = p->pick[i].row;
+        double error[OBJECTIVES_MAX];
+        run_likely(run, row, error);
+        figures_design(table, p->pick[i].name, run->table.row[row].id, &run->schema, run_f(run, row), error,
+                       run->table.row[row].extra);
+    }
+    figures_print(table);
+    if (p->n > 0)
+        tell_knees(run, p);
 }
 
 static void show_variables(const Run *run, const Picks *p)
@@ -196,36 +205,32 @@ static Status write_csv(const Run *run, const Picks *p, const char *path, Err *e
     return output_end(&o, export_designs(o.stream, run, EXPORT_FRONT, n, rows, err), err);
 }
 
-static json_t *json_values(size_t n, const Column columns[], const double values[])
+/* Values of n columns that begin at `first`; a column that is listed alone where `list` is given. */
+static json_t *json_values(const Schema *schema, size_t first, size_t n, const size_t list[], const double values[])
 {
     json_t *o = json_object();
-    for (size_t k = 0; k < n; k++)
-        json_object_set_new(o, columns[k].name, json_number(values[k]));
-    return o;
-}
-
-static json_t *json_limited(const Run *run, size_t row)
-{
-    const Schema *s = &run->schema;
-    json_t *o = json_object();
-    for (size_t k = 0; k < s->n_limited; k++)
-        json_object_set_new(o, schema_extra(s, s->limited[k])->name,
-                            json_number(run->table.row[row].extra[s->limited[k]]));
+    for (size_t i = 0; i < n; i++) {
+        const size_t k = list ? list[i] : i;
+        json_object_set_new(o, schema->column[first + k].name, json_number(values[k]));
+    }
     return o;
 }
 
 static json_t *describe(const Run *run, const Picks *p)
 {
-    const Schema *schema = &run->schema;
+    const Schema *s = &run->schema;
     json_t *picks = json_array();
     for (size_t i = 0; i < p->n; i++) {
-        const size_t row = p->pick[i].row;
-        json_array_append_new(picks,
-                              json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
-                                        (json_int_t)run->table.row[row].id, "objectives",
-                                        json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
-                                        "limited", json_limited(run, row), "variables",
-                                        json_values(schema->n_var, schema->column, run_x(run, row))));
+        const Evaluation *e = &run->table.row[p->pick[i].row];
+        double error[OBJECTIVES_MAX];
+        json_t *pick = json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id", (json_int_t)e->id,
+                                 "objectives", json_values(s, s->n_var, s->n_obj, NULL, run_f(run, p->pick[i].row)),
+                                 "limited", json_values(s, s->n_var + s->n_obj, s->n_limited, s->limited, e->extra),
+                                 "variables", json_values(s, 0, s->n_var, NULL, e->x));
+        if (run_likely(run, p->pick[i].row, error))
+            json_object_set_new(pick, "error",
+                                json_pack("{s:o}", "likely", json_values(s, s->n_var, s->n_obj, NULL, error)));
+        json_array_append_new(picks, pick);
     }
     return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
                      (json_int_t)p->n_left, "designs", picks);

@@ -6,7 +6,6 @@
 
 #include "base/clock.h"
 #include "base/json.h"
-#include "base/cell.h"
 #include "base/list.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -15,7 +14,6 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
-#include "store/output.h"
 #include "store/run_read.h"
 
 /* A design of a run, or one from elsewhere, under the settings of the run or of a settings file. */
@@ -44,8 +42,7 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
         json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].device.link_ns_m));
     }
     if (run->error_known)
-        json_object_set_new(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), "estimated_error",
-                            json_errors(run->error));
+        put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error);
     if (e->replicates > 0)
         json_object_set_new(o, "replicates", json_replicates(&run->replicates));
     return o;
@@ -71,72 +68,57 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
     return show_json(all, err);
 }
 
-static void write_row(FILE *out, const Evaluations *e, size_t i, EvaluatedCase which)
+/* Who it is of, then the motion. */
+static json_t *begin_row(json_t *table, const char *record, EvaluatedCase which, const char *outcome,
+                         const double motion[3])
 {
-    const EvaluatedRun *run = &e->run[i];
-    const SimResult *r = &run->result[which];
-    char record[OPTION_TEXT_MAX];
-    cell_text(record, sizeof record, run->record->path);
-    fprintf(out, "%s,%s,%s", record, EVALUATION_CASES[which].key, outcome_word(measure_outcome(r->outcome)));
-    const double motion[] = {e->level ? e->level[i % e->n_levels] : run->pga_g, run->scale, run->stretch};
-    print_cells(out, 3, motion);
-    for (int k = 0; k < N_MEASURES; k++)
-        print_cells(out, 1, &(double){r->outcome == RUN_OK ? measure_value(r, k) : NAN});
-    if (e->replicates > 0)
-        write_replicates(out, which == EVALUATED_DESIGN ? &run->replicates : NULL);
-    fputc('\n', out);
+    static const char *const KEYS[] = {"pga_g", "scale", "stretch"};
+    json_t *row = figures_row(table);
+    json_object_set_new(row, "record", json_words(record));
+    json_object_set_new(row, "scene", json_string(EVALUATION_CASES[which].key));
+    json_object_set_new(row, "outcome", json_string(outcome));
+    for (int i = 0; i < 3; i++)
+        json_object_set_new(row, KEYS[i], json_number(motion[i]));
+    return row;
 }
 
-static void write_fractiles(FILE *out, const Evaluations *e, size_t level, EvaluatedCase which)
+static void add_rows(json_t *table, const Evaluations *e, size_t i)
 {
+    const EvaluatedRun *run = &e->run[i];
+    for (size_t c = 0; run->record->readable == STATUS_OK && c < evaluated_cases(e, run); c++) {
+        const Measured m = measured(&run->result[c]);
+        const double motion[] = {e->level ? e->level[i % e->n_levels] : run->pga_g, run->scale, run->stretch};
+        json_t *row =
+            begin_row(table, run->record->path, (EvaluatedCase)c, outcome_word(measure_outcome(m.outcome)), motion);
+        put_measures(row, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
+        if (e->replicates > 0)
+            put_replicates(row, c == EVALUATED_DESIGN ? &run->replicates : NULL);
+    }
+}
+
+static void add_fractiles(json_t *table, const Evaluations *e, size_t level, EvaluatedCase which)
+{
+    double values[N_MEASURES];
     for (int i = 0; i < IDA_FRACTILES; i++) {
-        fprintf(out, "%s,%s,", IDA_FRACTILE_WORD[i], EVALUATION_CASES[which].key);
-        print_cells(out, 3, (double[]){e->level[level], NAN, NAN});
         for (int k = 0; k < N_MEASURES; k++)
-            print_cells(out, 1, &(double){ida_fractile(e, level, which, k, IDA_FRACTILE[i])});
-        fputc('\n', out);
+            values[k] = ida_fractile(e, level, which, k, IDA_FRACTILE[i]);
+        put_measures(begin_row(table, IDA_FRACTILE_WORD[i], which, "", (double[]){e->level[level], NAN, NAN}), "",
+                     values, NULL, NULL);
     }
 }
 
 static Status write_csv(const Evaluations *e, const char *path, Err *err)
 {
-    Output o;
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "record,scene,outcome,pga_g,scale,stretch");
-    for (int k = 0; k < N_MEASURES; k++)
-        fprintf(o.stream, ",%s", measure(k)->name);
-    if (e->replicates > 0)
-        write_replicates_names(o.stream);
-    fputc('\n', o.stream);
+    json_t *table = json_array();
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        for (size_t c = 0; e->run[i].record->readable == STATUS_OK && c < evaluated_cases(e, &e->run[i]); c++)
-            write_row(o.stream, e, i, (EvaluatedCase)c);
+        add_rows(table, e, i);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
         for (int c = 0; c < N_EVALUATED; c++)
-            write_fractiles(o.stream, e, l, (EvaluatedCase)c);
-    return output_close(&o, err);
+            add_fractiles(table, e, l, (EvaluatedCase)c);
+    return figures_csv(table, path, err);
 }
 
 /* ---- for people -------------------------------------------------------------------------------------------------- */
-
-/* In which objectives impacts win and lose; none at several intensities. */
-static void show_verdicts(const Evaluations *e, const Schema *schema, const EvaluatedRun *run)
-{
-    static const EvaluatedCase CASES[N_BASELINES] = {EVALUATED_NO_CORE, EVALUATED_RIGID, EVALUATED_TMD,
-                                                     EVALUATED_LINKS};
-    double values[OBJECTIVES_MAX];
-    Baseline b;
-    if (evaluated_cases(e, run) < N_WITH_DEVICES)
-        return;
-    for (size_t i = 0; i < schema->n_obj; i++)
-        values[i] = measure_value(&run->result[EVALUATED_DESIGN], schema->order.of[i]);
-    for (int k = 0; k < N_BASELINES; k++) {
-        for (int m = 0; m < N_MEASURES; m++)
-            b.value[m] = measure_value(&run->result[CASES[k]], m);
-        b.device = run->device[CASES[k]].device;
-        show_verdict((BaselineKind)k, schema, values, &b);
-    }
-}
 
 static void print_motion(const Evaluations *e, size_t i)
 {
@@ -147,52 +129,53 @@ static void print_motion(const Evaluations *e, size_t i)
     }
 }
 
-/* The records that were named, each under its motion. */
-static void print_named(const Evaluations *e, const Schema *schema)
+/* With the device that was found for it. */
+static void add_case(json_t *table, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
 {
-    const MeasureOrder *order = &schema->order;
+    char label[160] = "", device[DEVICE_TEXT_MAX] = "";
+    if (c >= N_EVALUATED)
+        baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c].device, device);
+    snprintf(label, sizeof label, "%s%s%s%s", EVALUATION_CASES[c].word, *device ? " (" : "", device,
+             *device ? ")" : "");
+    figures_result(table, label, order, &run->result[c], c == EVALUATED_DESIGN && run->error_known ? run->error : NULL);
+    if (c == EVALUATED_DESIGN && run->replicates.n_replicates > 0)
+        figures_replicates(table, order, &run->replicates);
+}
+
+/* The records that were named, each under its motion. */
+static void print_named(const Evaluations *e, const MeasureOrder *order)
+{
     for (size_t i = 0; i < e->n_records; i++) {
-        if (e->record[i].from_folder)
-            continue;
-        print_motion(e, i);
-        show_result_names("", order);
-        for (size_t c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
-            const double *error = c == EVALUATED_DESIGN && e->run[i].error_known ? e->run[i].error : NULL;
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], error);
-            if (error)
-                show_result_errors(order, error);
-            if (c == EVALUATED_DESIGN && e->replicates > 0)
-                show_replicates(0, order, &e->run[i].replicates);
-        }
-        if (e->replicates > 0)
-            puts("replicates are of the design with impacts; the other lines, and what they are compared by, are as "
-                 "designed");
-        show_verdicts(e, schema, &e->run[i]);
-        putchar('\n');
+        json_t *table = json_array();
+        if (!e->record[i].from_folder)
+            print_motion(e, i);
+        for (size_t c = 0; !e->record[i].from_folder && c < evaluated_cases(e, &e->run[i]); c++)
+            add_case(table, order, &e->run[i], c);
+        if (json_array_size(table) > 0 && e->replicates > 0)
+            puts("replicates are of the design with impacts; the other lines are as designed");
+        figures_print(table);
+        if (!e->record[i].from_folder)
+            putchar('\n');
     }
 }
 
-/* Those of a folder in one table. */
+/* Those of a folder in one table, the name of the record before each row. */
 static void print_folder(const Evaluations *e, const MeasureOrder *order)
 {
-    int width = (int)strlen("record"), n = 0;
+    json_t *table = json_array();
     for (size_t i = 0; i < e->n_records; i++)
-        if (e->record[i].from_folder && e->record[i].readable == STATUS_OK) {
-            const int length = (int)strlen(evaluated_name(&e->record[i]));
-            width = length > width ? length : width;
-            n++;
+        for (size_t c = 0; c < N_EVALUATED && e->record[i].from_folder && e->record[i].readable == STATUS_OK; c++) {
+            char label[400];
+            const size_t first = json_array_size(table);
+            add_case(table, order, &e->run[i], c);
+            for (size_t r = first; r < json_array_size(table); r++) {
+                json_t *row = json_array_get(table, r);
+                snprintf(label, sizeof label, "%s  %s", evaluated_name(&e->record[i]),
+                         json_string_value(json_object_get(row, "")));
+                json_object_set_new(row, "", json_words(label));
+            }
         }
-    if (n > 0) {
-        printf("%-*s  ", width, "record");
-        show_result_names("", order);
-    }
-    for (size_t i = 0; i < e->n_records; i++)
-        for (int c = 0; c < N_EVALUATED && e->record[i].from_folder && e->record[i].readable == STATUS_OK; c++) {
-            printf("%-*s  ", width, evaluated_name(&e->record[i]));
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
-            if (c == EVALUATED_DESIGN && e->replicates > 0)
-                show_replicates(width + 2, order, &e->run[i].replicates);
-        }
+    figures_print(table);
 }
 
 static void print_refused(FILE *out, const Evaluations *e)
@@ -213,7 +196,7 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
     if (e->level)
         ida_print(e, order);
     else {
-        print_named(e, c->schema);
+        print_named(e, order);
         print_folder(e, order);
     }
     print_refused(stdout, e);
@@ -402,8 +385,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
     {"--svg", "FILE", NULL, 0,
-     "drawn by gnuplot: response against intensity with 16 %, median and 84 %; with --full-model peaks over the "
-     "height"},
+     "of --pga FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %"},
     {"--full-model", NULL, NULL, 0, "on all degrees of freedom of the building's frame, beside the reduced model"},
     OPTION_END,
 };

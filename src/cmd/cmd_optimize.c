@@ -79,31 +79,45 @@ static void explain_objectives(const Schema *schema, const char *objectives)
         puts(missing);
 }
 
+/* Likely errors as stored with the design; of the knee else as estimated at the end. */
+static void add_design(json_t *table, const Run *run, const StudySummary *summary, const char *label, size_t row)
+{
+    const Schema *schema = &run->schema;
+    double error[OBJECTIVES_MAX];
+    const int is_stored = run_likely(run, row, error);
+    for (size_t k = 0; !is_stored && summary->error_known && row == run_knee(run) && k < schema->n_obj; k++)
+        error[k] = summary->error[schema->order.of[k]];
+    figures_design(table, label, run->table.row[row].id, schema, run_f(run, row), error, run->table.row[row].extra);
+}
+
+static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_BASELINES])
+{
+    for (int k = 0; k < N_BASELINES; k++) {
+        const double *value = baseline[k].value;
+        double natural[OBJECTIVES_MAX], extra[N_MEASURES];
+        for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
+            *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
+        figures_design(table, baseline_words((BaselineKind)k), 0, schema, natural, NULL, extra);
+    }
+}
+
 static void print_front(const Run *run, const StudySummary *summary)
 {
     const Schema *schema = &run->schema;
     const size_t knee = run_knee(run);
+    json_t *table = json_array();
     char label[TABLE_NAME_MAX + 8];
-    double of_knee[OBJECTIVES_MAX], *error = summary->error_known ? of_knee : NULL;
-    show_objective_names(schema);
-    for (size_t k = 0; k < schema->n_obj && error; k++)
-        error[k] = summary->error[schema->order.of[k]];
     for (size_t k = 0; k < schema->n_obj; k++) {
-        const size_t best = run_best(run, k);
         snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
-        show_objectives(label, run->table.row[best].id, schema, run_f(run, best), error);
+        add_design(table, run, summary, label, run_best(run, k));
     }
-    show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee), error);
-    if (error)
-        show_objective_errors(schema, error);
-    if (schema->n_limited > 0) {
-        putchar('\n');
-        show_limited_names(schema);
-        show_limited("knee", run->table.row[knee].id, schema, run->table.row[knee].extra);
-        putchar('\n');
-    }
+    add_design(table, run, summary, "knee", knee);
+    if (summary->has_baselines)
+        add_baselines(table, schema, summary->baseline);
+    figures_print(table);
     if (summary->has_baselines) {
-        show_baselines(schema, run_f(run, knee), summary->baseline);
+        putchar('\n');
+        show_verdicts(schema, run_f(run, knee), summary->baseline);
         if (run->settings->sim.replicates > 1)
             puts("replicates are of designs with impacts; the others are as designed");
         explain_objectives(schema, run->settings->search.objectives);
@@ -151,16 +165,14 @@ static void print_review(const Schema *schema, const FrontReview *r)
 
 static void print_nearest(const Run *run, size_t n, const size_t rows[])
 {
+    json_t *table = json_array();
     char label[48];
-    show_objective_names(&run->schema);
     for (size_t i = 0; i < n; i++) {
-        snprintf(label, sizeof label, "misses by %.3g", run->table.row[rows[i]].violation);
-        show_objectives(label, run->table.row[rows[i]].id, &run->schema, run_f(run, rows[i]), NULL);
+        const Evaluation *e = &run->table.row[rows[i]];
+        snprintf(label, sizeof label, "misses by %.3g", e->violation);
+        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->extra);
     }
-    if (run->schema.n_limited > 0)
-        show_limited_names(&run->schema);
-    for (size_t i = 0; i < n && run->schema.n_limited > 0; i++)
-        show_limited("", run->table.row[rows[i]].id, &run->schema, run->table.row[rows[i]].extra);
+    figures_print(table);
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }
 

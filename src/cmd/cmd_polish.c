@@ -6,7 +6,7 @@
 #include "cmd/designs.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "store/output.h"
+#include "store/run_read.h"
 #include "store/store.h"
 #include "study/refine.h"
 #include "settings/options.h"
@@ -81,34 +81,35 @@ static Status open_run(const Args *args, Work *w, Err *err)
     return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
 }
 
+static void put_objectives(json_t *row, const Schema *schema, const char *end, const double values[])
+{
+    char name[TABLE_NAME_MAX + 16];
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        snprintf(name, sizeof name, "%s%s", schema_objective(schema, k)->name, end);
+        json_object_set_new(row, name, json_number(values[k]));
+    }
+}
+
 /* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of
- * every objective how it was before, and where they are known the standard deviations of both and the estimated
- * error. */
+ * every objective how it was before, and where they are known the standard deviations of both and the likely error. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
     const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
     const struct {
-        const char *suffix;
+        const char *end;
         const double *values;
-    } more[] = {{"before", start->f}, {"before_sd", start->sd}, {"sd", end->sd}, {"error", r->error}};
-    enum { N_MORE = sizeof more / sizeof more[0] };
-    Output o;
-    TRY(output_open(&o, path, err));
-    fputs("polished_from", o.stream);
-    for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
-        fprintf(o.stream, ",%s", schema->column[j].name);
-    for (size_t i = 0; i < N_MORE; i++)
-        for (size_t k = 0; k < schema->n_obj && isfinite(more[i].values[0]); k++)
-            fprintf(o.stream, ",%s_%s", schema_objective(schema, k)->name, more[i].suffix);
-    fprintf(o.stream, "\n%ld", w->run->table.row[w->row].id);
-    print_cells(o.stream, schema->n_var, end->x);
-    print_cells(o.stream, schema->n_obj, end->f);
-    for (size_t i = 0; i < N_MORE; i++)
-        print_cells(o.stream, isfinite(more[i].values[0]) ? schema->n_obj : 0, more[i].values);
-    fputc('\n', o.stream);
-    return output_close(&o, err);
+    } more[] = {{"_before", start->f}, {"_before_sd", start->sd}, {"_sd", end->sd}, {"_error", r->error}};
+    json_t *table = json_array(), *row = figures_row(table);
+    json_object_set_new(row, "polished_from", json_integer(w->run->table.row[w->row].id));
+    for (size_t j = 0; j < schema->n_var; j++)
+        json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
+    put_objectives(row, schema, "", end->f);
+    for (size_t i = 0; i < sizeof more / sizeof more[0]; i++)
+        if (isfinite(more[i].values[0]))
+            put_objectives(row, schema, more[i].end, more[i].values);
+    return figures_csv(table, path, err);
 }
 
 static void show_gain(const Work *w, size_t k)
@@ -136,21 +137,28 @@ static const char *verdict_of(const Refined *r)
                : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
-static void show(const Work *w, long id)
+static void show_table(const Work *w, long id)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
     const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
+    const Settings *s = w->run->settings;
+    json_t *table = json_array();
     char label[32];
-    show_objective_names(schema);
-    show_objectives("before", w->run->table.row[w->row].id, schema, start->f, r->error);
-    snprintf(label, sizeof label, "sd %s",
-             spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->sim.uncertain));
-    show_objectives("polished", id, schema, end->f, r->error);
+    snprintf(label, sizeof label, "sd %s", spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain));
+    figures_design(table, "before", w->run->table.row[w->row].id, schema, start->f, r->error, start->extra);
+    if (r->has_changed)
+        figures_design(table, "polished", id, schema, end->f, r->error, end->extra);
     if (isfinite(start->sd[0]))
-        show_objectives(label, 0, schema, start->sd, NULL);
-    if (isfinite(r->error[0]))
-        show_objective_errors(schema, r->error);
+        figures_design(table, label, 0, schema, start->sd, NULL, NULL);
+    figures_print(table);
+}
+
+static void show(const Work *w, long id)
+{
+    const Schema *schema = &w->run->schema;
+    const Refined *r = &w->result;
+    show_table(w, id);
     printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
            r->seconds);
     for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)
@@ -161,14 +169,29 @@ static void show(const Work *w, long id)
         printf("stored in the run as design %ld.\n", id);
 }
 
+/* A design that joins the front may move its knee, by which other commands name a design. */
+static Status tell_knee(const Args *args, long before, Err *err)
+{
+    Run run;
+    TRY(run_read(&run, args->operand, err));
+    const long now = run.table.row[run_knee(&run)].id;
+    if (now != before)
+        printf("%s:knee was design %ld and is now design %ld.\n", run.folder, before, now);
+    run_free(&run);
+    return STATUS_OK;
+}
+
 static Status polish(const Args *args, Work *w, Err *err)
 {
     long id = 0;
     TRY(open_run(args, w, err));
+    const long knee = w->run->n_front > 0 ? w->run->table.row[run_knee(w->run)].id : 0;
     TRY(refine_design(w->run, w->row, &w->config, &w->result, err));
     if (refined_counts(&w->result))
         TRY(store_add_evaluations(w->store, 1, &w->result.designs.row[1], &id, err));
     show(w, id);
+    if (id)
+        TRY(tell_knee(args, knee, err));
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
 

@@ -109,7 +109,7 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
                           m->stretch, "processed", json_words(m->processed));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
-        json_object_set_new(o, "estimated_error", json_errors(errors_of(job, i)));
+        put_errors(o, errors_of(job, i));
     if (job->has_parts)
         json_object_set_new(o, "replicates", json_replicates(&job->summary[i]));
     return o;
@@ -127,44 +127,38 @@ static Status print_json(const Job *job, const Motion *m, Err *err)
 
 static Status write_csv(const Job *job, const char *path, Err *err)
 {
-    Output o;
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "design");
-    for (int k = 0; k < N_MEASURES; k++)
-        fprintf(o.stream, ",%s", measure(k)->name);
-    if (job->has_parts)
-        write_replicates_names(o.stream);
-    fprintf(o.stream, ",outcome\n");
+    json_t *table = json_array();
     for (size_t i = 0; i < job->n; i++) {
-        fprintf(o.stream, "%ld", number_of(job, i));
-        for (int k = 0; k < N_MEASURES; k++)
-            print_cells(o.stream, 1, (const double[]){measure_value(&job->results[i], k)});
+        const Measured m = measured(&job->results[i]);
+        json_t *row = figures_row(table);
+        json_object_set_new(row, "design", json_integer(number_of(job, i)));
+        put_measures(row, "", m.value, NULL, NULL);
         if (job->has_parts)
-            write_replicates(o.stream, &job->summary[i]);
-        fprintf(o.stream, ",%s\n", outcome_word(measure_outcome(job->results[i].outcome)));
+            put_replicates(row, &job->summary[i]);
+        json_object_set_new(row, "outcome", json_string(outcome_word(measure_outcome(m.outcome))));
     }
-    return output_close(&o, err);
+    return figures_csv(table, path, err);
 }
 
-static void print_table(const Job *job, const Settings *s, const Tower *t)
+static void print_table(const Args *args, const Job *job, const Settings *s, const Tower *t)
 {
     const MeasureOrder *order = tower_measures(t);
     const char *missing = measures_missing(order, s->search.objectives, tower_n_floors(t));
-    char label[32];
+    json_t *table = json_array();
+    char label[DESIGN_LABEL_MAX];
     for (size_t i = 0; i < tower_n_records(t); i++)
         show_motion(stdout, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
     if (missing && strcmp(s->search.objectives, "auto") != 0)
         puts(missing);
-    putchar('\n');
-    show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "", order);
+    puts(job->kind == SCENE_RIGID ? "\nrigidly connected" : "");
     for (size_t i = 0; i < job->n; i++) {
-        snprintf(label, sizeof label, "design %ld", number_of(job, i));
-        show_result(job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i], errors_of(job, i));
-        if (job->error)
-            show_result_errors(order, errors_of(job, i));
+        design_label(&job->designs, args_value(args, "--design"), i, label);
+        figures_result(table, job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i],
+                       errors_of(job, i));
         if (job->has_parts)
-            show_replicates(0, order, &job->summary[i]);
+            figures_replicates(table, order, &job->summary[i]);
     }
+    figures_print(table);
 }
 
 static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
@@ -177,7 +171,7 @@ static Status print(const Args *args, const Job *job, const Settings *s, const T
     if (args_has(args, "--json"))
         return print_json(job, m, err);
     if (!args_has(args, "--csv") && !outputs_standard(args, 0))
-        print_table(job, s, t);
+        print_table(args, job, s, t);
     return STATUS_OK;
 }
 
@@ -259,6 +253,7 @@ static Status print_horizon_json(const Horizon *h, const ReplicateSummary *r, Er
 
 static void print_horizon(const Scenario *w, const MeasureOrder *order, const Horizon *h, const ReplicateSummary *r)
 {
+    json_t *table = json_array();
     show_motion(stdout, &w->motion, w->options.sim.duration_s);
     printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", HORIZON_CHANGE);
     for (int i = 0; i < HORIZON_LEVELS; i++)
@@ -268,8 +263,8 @@ static void print_horizon(const Scenario *w, const MeasureOrder *order, const Ho
             printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
     printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
            h->distance_at_end);
-    show_result_names("", order);
-    show_replicates(0, order, r);
+    figures_replicates(table, order, r);
+    figures_print(table);
 }
 
 static Status find_horizon(const Args *args, const Problem *p, Err *err)
@@ -388,8 +383,10 @@ const Command CMD_SIMULATE = {
         "and so will a design of a run: --design results/quick:knee, results/quick:417, results/quick:best_j1_m.\n"
         "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
         "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
-        "--json gives one object for one design and a list of them for several. The estimated error is that of the\n"
-        "integration, by a second run with twice the steps (docs/promise.md); digits it leaves open are not shown.\n"
+        "--json gives one object for one design and a list of them for several. Behind +- stands the likely error of "
+        "the\n"
+        "integration, by a second run with twice the steps (docs/promise.md); digits that it leaves open are not "
+        "shown.\n"
         "--horizon: impacts magnify differences: two runs that differ in the last digit part ways after some hundreds\n"
         "of them. Before the predictability horizon results can be compared digit by digit, after it only by their\n"
         "mean and standard deviation.",

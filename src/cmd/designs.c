@@ -221,6 +221,17 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
                 word, first);
 }
 
+void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX])
+{
+    const char *slash = d->id ? NULL : strrchr(word, '/'), *name = slash ? slash + 1 : word;
+    if (d->id)
+        snprintf(label, DESIGN_LABEL_MAX, "design %ld", d->id[i]);
+    else if (d->n == 1 && strchr(name, ':'))
+        snprintf(label, DESIGN_LABEL_MAX, "%s", name);
+    else
+        snprintf(label, DESIGN_LABEL_MAX, "%.120s:%zu", name, i + 1);
+}
+
 /* Row with these variables, or run->table.n; one of the front first. */
 static size_t row_of(const Run *run, const double x[])
 {

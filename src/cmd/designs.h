@@ -23,6 +23,10 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
+/* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1". */
+enum { DESIGN_LABEL_MAX = 160 };
+void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX]);
+
 /* A row of the run. A word that leads elsewhere (a file, another run) names that of the run's designs which has the
  * same variables; where none has, elsewhere holds the design, for design_free, and row is run->table.n.
  * elsewhere NULL: such a design is refused. */

@@ -10,7 +10,6 @@
 #include "base/units.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "report/heights.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
@@ -25,7 +24,6 @@ typedef struct {
     MeasureOrder order;
     int estimates;
     json_t *list;    /* NULL: a table */
-    const char *svg; /* of the first record */
     FullModel found; /* under the record at hand */
 } Job;
 
@@ -44,99 +42,83 @@ static double relative(double reduced, double full)
 static json_t *describe(const Job *job, size_t i)
 {
     const SimResult *reduced = &job->found.result[REDUCED][i], *full = &job->found.result[FULL][i];
-    json_t *o = json_object(), *error = json_object();
+    double error[N_MEASURES];
+    json_t *o = json_object(), *of_reduced = json_object();
+    for (int k = 0; k < N_MEASURES; k++)
+        error[k] = relative(measure_value(reduced, k), measure_value(full, k));
+    put_measures(of_reduced, "", error, NULL, NULL);
     if (job->designs.x)
         json_object_set_new(o, "design", json_integer(number_of(job, i)));
-    json_object_set_new(o, "record", json_string(job->found.motion.name));
-    json_object_set_new(o, "pga_g", json_number(motion_peak(&job->found.motion) / GRAVITY));
-    json_object_set_new(o, "scale", json_number(job->found.motion.scale));
-    json_object_set_new(o, "stretch", json_number(job->found.motion.stretch));
-    json_object_set_new(
-        o, "degrees_of_freedom",
-        json_pack("{s:i, s:i}", WORDS[REDUCED], job->found.dofs[REDUCED], WORDS[FULL], job->found.dofs[FULL]));
-    for (int m = 0; m < MODELS; m++)
-        json_object_set_new(o, WORDS[m], json_result(job->kind, &job->found.result[m][i]));
-    for (int k = 0; k < N_MEASURES; k++)
-        json_object_set_new(error, measure(k)->name,
-                            json_number(relative(measure_value(reduced, k), measure_value(full, k))));
-    json_object_set_new(o, "error", error);
+    json_object_update_new(
+        o, json_pack("{s:o, s:f, s:f, s:f, s:{s:i, s:i}, s:o, s:o, s:o}", "record", json_words(job->found.motion.name),
+                     "pga_g", motion_peak(&job->found.motion) / GRAVITY, "scale", job->found.motion.scale, "stretch",
+                     job->found.motion.stretch, "degrees_of_freedom", WORDS[REDUCED], job->found.dofs[REDUCED],
+                     WORDS[FULL], job->found.dofs[FULL], WORDS[REDUCED], json_result(job->kind, reduced), WORDS[FULL],
+                     json_result(job->kind, full), "error", of_reduced));
     return o;
+}
+
+static void put_peaks(json_t *row, const char *what, double reduced, double full)
+{
+    const double values[MODELS] = {reduced, full};
+    char name[48], text[24];
+    for (int m = 0; m < MODELS; m++) {
+        snprintf(name, sizeof name, "%s, %s", what, WORDS[m]);
+        figures_put(row, name, values[m], NAN, NAN);
+    }
+    snprintf(text, sizeof text, "%.2f %%", 100 * relative(reduced, full));
+    snprintf(name, sizeof name, "error of %s", what);
+    json_object_set_new(row, name, json_string(text));
 }
 
 static void print_peaks(const Job *job, size_t i)
 {
     const SimResult *r = &job->found.result[REDUCED][i], *f = &job->found.result[FULL][i];
-    printf("\n%5s %8s  %30s  %30s  %30s\n", "", "", "peak displacement [m]", "peak interstorey drift [m]",
-           "peak acceleration [g]");
-    printf("%5s %8s", "floor", "z [m]");
-    for (int k = 0; k < 3; k++)
-        printf("  %10s %10s %8s", WORDS[REDUCED], WORDS[FULL], "error");
-    putchar('\n');
+    json_t *table = json_array();
     for (int j = job->found.n_floors - 1; j >= 0; j--) {
-        const double of[3][MODELS] = {{r->peak_displacement_m[j], f->peak_displacement_m[j]},
-                                      {r->peak_drift_m[j], f->peak_drift_m[j]},
-                                      {r->peak_acceleration_g[j], f->peak_acceleration_g[j]}};
-        printf("%5d %8.2f", j + 1, job->found.z[j]);
-        for (int k = 0; k < 3; k++)
-            printf("  %10.4g %10.4g %6.2f %%", of[k][REDUCED], of[k][FULL],
-                   100 * relative(of[k][REDUCED], of[k][FULL]));
-        putchar('\n');
+        json_t *row = figures_row(table);
+        json_object_set_new(row, "floor", json_integer(j + 1));
+        json_object_set_new(row, "z_m", json_real(job->found.z[j]));
+        put_peaks(row, "u_m", r->peak_displacement_m[j], f->peak_displacement_m[j]);
+        put_peaks(row, "drift_m", r->peak_drift_m[j], f->peak_drift_m[j]);
+        put_peaks(row, "accel_g", r->peak_acceleration_g[j], f->peak_acceleration_g[j]);
     }
+    puts("\npeaks");
+    figures_print(table);
 }
 
-static void print_design(const Job *job, size_t i)
+static void add_design(json_t *table, const Job *job, const char *word, size_t i)
 {
-    char label[64];
-    const double *known = job->found.error ? job->found.error + i * N_MEASURES : NULL;
+    char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX] = "no core", text[24];
+    if (job->designs.x)
+        design_label(&job->designs, word, i, name);
     for (int m = 0; m < MODELS; m++) {
-        if (job->designs.x)
-            snprintf(label, sizeof label, "design %ld, %s (%d)", number_of(job, i), WORDS[m], job->found.dofs[m]);
-        else
-            snprintf(label, sizeof label, "no core, %s (%d)", WORDS[m], job->found.dofs[m]);
-        show_result(label, &job->order, &job->found.result[m][i], known);
+        snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], job->found.dofs[m]);
+        figures_result(table, label, &job->order, &job->found.result[m][i],
+                       job->found.error ? job->found.error + i * N_MEASURES : NULL);
     }
-    if (known)
-        show_result_errors(&job->order, known);
-    printf("%-28s", "  error of the reduced [%]");
+    json_t *row = figures_row(table);
+    json_object_set_new(row, "", json_string("  error of the reduced"));
     for (int o = 0; o < job->order.n_obj; o++) {
         const int k = job->order.of[o];
-        printf(" %10.3f", 100 * relative(measure_value(&job->found.result[REDUCED][i], k),
-                                         measure_value(&job->found.result[FULL][i], k)));
+        snprintf(text, sizeof text, "%.3f %%",
+                 100 * relative(measure_value(&job->found.result[REDUCED][i], k),
+                                measure_value(&job->found.result[FULL][i], k)));
+        json_object_set_new(row, measure(k)->name, json_string(text));
     }
-    putchar('\n');
 }
 
-static void print_table(const Job *job)
+static void print_table(const Job *job, const char *word)
 {
-    printf("%s: %.4g g, time x %.4g\n", job->found.motion.name, motion_peak(&job->found.motion) / GRAVITY,
-           job->found.motion.stretch);
-    show_result_names("model (degrees of freedom)", &job->order);
+    json_t *table = json_array();
+    show_motion(stdout, &job->found.motion, 0);
+    puts("model (degrees of freedom)");
     for (size_t i = 0; i < job->n; i++)
-        print_design(job, i);
+        add_design(table, job, word, i);
+    figures_print(table);
     if (job->n == 1)
         print_peaks(job, 0);
     putchar('\n');
-}
-
-static Status draw(const Job *job, Err *err)
-{
-    const char *slash = strrchr(job->found.motion.name, '/');
-    const SimResult *r = job->found.result[REDUCED], *f = job->found.result[FULL];
-    const HeightPanel panels[] = {
-        {.title = "peak displacement [m]",
-         .curve = {r->peak_displacement_m, f->peak_displacement_m},
-         .name = {WORDS[REDUCED], WORDS[FULL]},
-         .from_ground = 1},
-        {.title = "peak interstorey drift [m]", .curve = {r->peak_drift_m, f->peak_drift_m}},
-        {.title = "peak acceleration [g]", .curve = {r->peak_acceleration_g, f->peak_acceleration_g}},
-    };
-    return heights_draw(&(Heights){.title = slash ? slash + 1 : job->found.motion.name,
-                                   .n = job->found.n_floors,
-                                   .z = job->found.z,
-                                   .columns = 3,
-                                   .n_panels = 3,
-                                   .panel = panels},
-                        job->svg, err);
 }
 
 /* ---- designs and records ----------------------------------------------------------------------------------------- */
@@ -149,28 +131,26 @@ static void tell_failures(const Job *job)
                 fprintf(stderr, "design %zu, %s model: failed: %s\n", i + 1, WORDS[m], job->found.result[m][i].reason);
 }
 
-static Status verify_under(Job *job, const Settings *s, Err *err)
+static Status verify_under(const Args *args, Job *job, const Settings *s, Err *err)
 {
     TRY(full_model_find(s, job->kind, job->n, job->designs.x, job->estimates, &job->found, err));
     tell_failures(job);
-    const Status status = job->svg ? draw(job, err) : STATUS_OK;
     for (size_t i = 0; i < job->n && job->list; i++)
         json_array_append_new(job->list, describe(job, i));
-    if (status == STATUS_OK && !job->list)
-        print_table(job);
+    if (!job->list)
+        print_table(job, args_value(args, "--design"));
     full_model_free(&job->found);
-    job->svg = NULL;
-    return status;
+    return STATUS_OK;
 }
 
 static Status verify_all(const Args *args, Job *job, Settings *s, Err *err)
 {
     const char *path;
     if (!args_has(args, "--record"))
-        return verify_under(job, s, err);
+        return verify_under(args, job, s, err);
     for (int i = 0; (path = args_next(args, "--record", &i));) {
         TRY(option_put_path(s->motion.record, path, err));
-        TRY(verify_under(job, s, err));
+        TRY(verify_under(args, job, s, err));
     }
     return STATUS_OK;
 }
@@ -178,15 +158,11 @@ static Status verify_all(const Args *args, Job *job, Settings *s, Err *err)
 static Status show(const Args *args, Job *job, Settings *s, Err *err)
 {
     job->list = args_has(args, "--json") ? json_array() : NULL;
-    Status status = verify_all(args, job, s, err);
-    if (status != STATUS_OK || !job->list) {
-        json_decref(job->list);
-        return status;
-    }
-    json_t *only = json_array_size(job->list) == 1 ? json_incref(json_array_get(job->list, 0)) : NULL;
-    if (only)
-        json_decref(job->list);
-    return show_json(only ? only : job->list, err);
+    const Status status = verify_all(args, job, s, err);
+    json_t *only = json_array_size(job->list) == 1 ? json_array_get(job->list, 0) : job->list;
+    const Status shown = status == STATUS_OK && only ? show_json(json_incref(only), err) : status;
+    json_decref(job->list);
+    return shown;
 }
 
 /* --design; of a run also ID, knee, best_NAME alone. folder NULL: there is no run. */
@@ -214,7 +190,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, Err *
 static Status verify_by(const Args *args, Settings *s, const char *folder, Err *err)
 {
     const int as_json = args_has(args, "--json");
-    Job job = {.n = 1, .svg = args_value(args, "--svg"), .estimates = s->sim.engine == ENGINE_FAST && !as_json};
+    Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
     if (s->problem.kind != PROBLEM_TOWER)
         return fail(err, STATUS_BAD_DATA, "problem.kind: only a tower has a full model");
     if (!frame_is(s->building.model))
@@ -244,7 +220,7 @@ static Status settings_of_run(const Args *args, Settings *s, Err *err)
 
 Status show_full_model(const Args *args, Err *err)
 {
-    static const char *const OTHERS[] = {"--records", "--csv", "--replicates"};
+    static const char *const OTHERS[] = {"--records", "--csv", "--svg", "--replicates"};
     Settings s;
     char database[PATH_MAX];
     const char *pga = args_value(args, "--pga");

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/figure.h"
+#include "cmd/show.h"
 #include "report/gnuplot.h"
 
 const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
@@ -18,21 +20,22 @@ static int n_shown(const MeasureOrder *order)
 
 void ida_print(const Evaluations *e, const MeasureOrder *order)
 {
+    char text[3 * FIGURE_MAX + 16], value[IDA_FRACTILES][FIGURE_MAX];
     for (int c = 0; c < N_EVALUATED; c++) {
-        printf("%s, %zu records: median (16 %% to 84 %%)\n%8s", EVALUATION_CASES[c].word, e->n_read, "pga_g");
-        for (int i = 0; i < n_shown(order); i++)
-            printf("  %-29s", measure(order->of[i])->name);
-        putchar('\n');
+        json_t *table = json_array();
+        printf("%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word, e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
-            double value[IDA_FRACTILES];
-            printf("%8.4g", e->level[l]);
+            json_t *row = figures_row(table);
+            json_object_set_new(row, "pga_g", json_real(e->level[l]));
             for (int i = 0; i < n_shown(order); i++) {
                 for (int f = 0; f < IDA_FRACTILES; f++)
-                    value[f] = ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]);
-                printf("  %8.4g (%8.4g to %8.4g)", value[1], value[0], value[2]);
+                    figure_text(ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]), NAN, NAN,
+                                value[f]);
+                snprintf(text, sizeof text, "%s (%s to %s)", value[1], value[0], value[2]);
+                json_object_set_new(row, measure(order->of[i])->name, json_string(text));
             }
-            putchar('\n');
         }
+        figures_print(table);
         putchar('\n');
     }
 }

@@ -7,7 +7,6 @@
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "analysis/sensitivity.h"
-#include "store/output.h"
 
 static json_t *describe(const Sensitivity *s)
 {
@@ -21,57 +20,50 @@ static json_t *describe(const Sensitivity *s)
                      slopes);
 }
 
-static Status write_csv(const char *path, size_t n, const Sensitivity list[], Err *err)
+static json_t *rows_of(size_t n, const Sensitivity list[])
 {
-    Output o;
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "parameter,value,step");
-    for (int k = 0; k < N_MEASURES; k++)
-        fprintf(o.stream, ",%s_slope,%s_error", measure(k)->name, measure(k)->name);
+    json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
-        fprintf(o.stream, "\n%s", list[i].name);
-        print_cells(o.stream, 2, (double[]){list[i].value, list[i].step});
-        for (int k = 0; k < N_MEASURES; k++)
-            print_cells(o.stream, 2, (double[]){list[i].slope[k], list[i].error[k]});
+        json_t *row = figures_row(table);
+        json_object_set_new(row, "parameter", json_string(list[i].name));
+        json_object_set_new(row, "value", json_number(list[i].value));
+        json_object_set_new(row, "step", json_number(list[i].step));
+        put_measures(row, "_slope", list[i].slope, "_error", list[i].error);
     }
-    fputc('\n', o.stream);
-    return output_close(&o, err);
+    return table;
 }
 
 /* Change of J1, J2, J3 for one step of the parameter. */
 static void print_table(size_t n, const Sensitivity list[])
 {
     static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3};
-    printf("change for one step\n%-28s %10s %10s", "parameter", "value", "step");
-    for (size_t k = 0; k < sizeof SHOWN / sizeof SHOWN[0]; k++)
-        printf(" %11s %9s ", measure(SHOWN[k])->name, "+-");
-    putchar('\n');
+    json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];
-        printf("%-28s %10.4g %10.3g", s->name, s->value, s->step);
-        for (size_t k = 0; k < sizeof SHOWN / sizeof SHOWN[0]; k++) {
-            const double change = s->slope[SHOWN[k]] * s->step, error = s->error[SHOWN[k]] * s->step;
-            printf(" %+11.3g %9.2g%c", change, error, fabs(change) > 2 * error ? '*' : ' ');
-        }
-        putchar('\n');
+        json_t *row = figures_row(table);
+        json_object_set_new(row, "parameter", json_string(s->name));
+        json_object_set_new(row, "value", json_number(s->value));
+        json_object_set_new(row, "step", json_number(s->step));
+        for (size_t k = 0; k < sizeof SHOWN / sizeof SHOWN[0]; k++)
+            figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step, NAN);
     }
-    puts("*: more than twice its error, which is that of the replicates and of halving the step");
+    puts("change for one step, with the error of the replicates and of halving the step");
+    figures_print(table);
 }
 
 static Status show(const Args *args, size_t n, const Sensitivity list[], Err *err)
 {
-    json_t *all;
+    json_t *all = json_array();
     if (args_has(args, "--csv"))
-        TRY(write_csv(args_value(args, "--csv"), n, list, err));
-    if (!args_has(args, "--json")) {
-        if (!args_has(args, "--csv"))
-            print_table(n, list);
-        return STATUS_OK;
-    }
-    all = json_array();
+        TRY(figures_csv(rows_of(n, list), args_value(args, "--csv"), err));
     for (size_t i = 0; i < n; i++)
         json_array_append_new(all, describe(&list[i]));
-    return show_json(all, err);
+    if (args_has(args, "--json"))
+        return show_json(all, err);
+    json_decref(all);
+    if (!args_has(args, "--csv"))
+        print_table(n, list);
+    return STATUS_OK;
 }
 
 /* For design_free. */

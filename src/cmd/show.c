@@ -5,9 +5,155 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/estimate.h"
+#include "base/cell.h"
+#include "base/figure.h"
 #include "base/units.h"
 #include "moga/hypervolume.h"
 #include "store/output.h"
+
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
+
+enum { CELL_MAX = 600 };
+
+json_t *figures_row(json_t *table)
+{
+    json_t *row = json_object();
+    json_array_append_new(table, row);
+    return row;
+}
+
+void figures_put(json_t *row, const char *column, double value, double error, double sd)
+{
+    char text[FIGURE_MAX];
+    figure_text(value, error, sd, text);
+    json_object_set_new(row, column, json_string(text));
+}
+
+/* How the cell is shown; empty where the row has none. */
+static void cell_words(const json_t *cell, char text[CELL_MAX])
+{
+    if (!cell || json_is_string(cell))
+        snprintf(text, CELL_MAX, "%s", cell ? json_string_value(cell) : "");
+    else if (json_is_integer(cell))
+        snprintf(text, CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
+    else
+        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, NAN, NAN, text);
+}
+
+/* Characters, not bytes. */
+static int width_of(const char *text)
+{
+    int n = 0;
+    for (; *text; text++)
+        n += (*text & 0xC0) != 0x80;
+    return n;
+}
+
+/* Every column with its width; the table has one row at least. */
+static json_t *columns_of(json_t *table)
+{
+    json_t *columns = json_object(), *row, *cell;
+    const char *name;
+    char text[CELL_MAX];
+    size_t i;
+    json_array_foreach(table, i, row) json_object_foreach(row, name, cell)
+    {
+        const json_int_t before = json_integer_value(json_object_get(columns, name));
+        cell_words(cell, text);
+        const int head = width_of(name), own = width_of(text), width = head > own ? head : own;
+        if (!before || width > before)
+            json_object_set_new(columns, name, json_integer(width));
+    }
+    return columns;
+}
+
+/* row NULL: the names. Words stand left, in the first column and in those whose name begins with a blank. */
+static void print_row(json_t *columns, const json_t *row)
+{
+    const char *name, *gap = "";
+    json_t *width;
+    char text[CELL_MAX];
+    json_object_foreach(columns, name, width)
+    {
+        if (row)
+            cell_words(json_object_get(row, name), text);
+        else
+            snprintf(text, sizeof text, "%s", name);
+        const int blanks = (int)json_integer_value(width) - width_of(text), is_word = !*gap || *name == ' ';
+        if (is_word)
+            printf("%s%s%*s", gap, text, *name == ' ' ? 0 : blanks, "");
+        else
+            printf("%s%*s%s", gap, blanks, "", text);
+        gap = "  ";
+    }
+    putchar('\n');
+}
+
+void figures_print(json_t *table)
+{
+    json_t *columns = columns_of(table), *row;
+    size_t i;
+    if (json_array_size(table) > 0)
+        print_row(columns, NULL);
+    json_array_foreach(table, i, row) print_row(columns, row);
+    json_decref(columns);
+    json_decref(table);
+}
+
+static void write_cell(FILE *out, const json_t *cell)
+{
+    char text[CELL_MAX], safe[CELL_MAX];
+    if (json_is_real(cell)) {
+        print_number(out, json_real_value(cell));
+    } else if (cell && !json_is_null(cell)) {
+        cell_words(cell, text);
+        cell_text(safe, sizeof safe, text);
+        fputs(safe, out);
+    }
+}
+
+Status figures_csv(json_t *table, const char *path, Err *err)
+{
+    Output o;
+    size_t i;
+    const char *name, *comma = "";
+    json_t *row, *cell, *columns = columns_of(table);
+    Status status = output_open(&o, path, err);
+    if (status == STATUS_OK) {
+        json_object_foreach(columns, name, cell)
+        {
+            fprintf(o.stream, "%s%s", comma, name);
+            comma = ",";
+        }
+        fputc('\n', o.stream);
+        json_array_foreach(table, i, row)
+        {
+            comma = "";
+            json_object_foreach(columns, name, cell)
+            {
+                fputs(comma, o.stream);
+                write_cell(o.stream, json_object_get(row, name));
+                comma = ",";
+            }
+            fputc('\n', o.stream);
+        }
+        status = output_close(&o, err);
+    }
+    json_decref(columns);
+    json_decref(table);
+    return status;
+}
+
+Status show_json(json_t *all, Err *err)
+{
+    const int failed = !all || json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
+    json_decref(all);
+    putchar('\n');
+    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
+}
+
+/* ---- results ----------------------------------------------------------------------------------------------------- */
 
 /* What a figure is, and what it takes to have it. */
 typedef enum { OF_NUMBER, OF_LONG, OF_INT, OF_STOREY, OF_FLAG, OF_FLOORS, OF_MODES, OF_SIDES, OF_COUNTS } FieldKind;
@@ -148,37 +294,48 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     return o;
 }
 
-static json_t *json_measures(const double values[], int omits)
+void put_measures(json_t *o, const char *end, const double values[], const char *other, const double others[])
 {
-    json_t *o = json_object();
-    for (int k = 0; k < N_MEASURES; k++)
-        if (!omits || isfinite(values[k]))
-            json_object_set_new(o, measure(k)->name, json_number(values[k]));
-    return o;
+    char name[64];
+    for (int k = 0; k < N_MEASURES; k++) {
+        snprintf(name, sizeof name, "%s%s", measure(k)->name, end);
+        json_object_set_new(o, name, json_number(values ? values[k] : NAN));
+        snprintf(name, sizeof name, "%s%s", measure(k)->name, other ? other : "");
+        if (other)
+            json_object_set_new(o, name, json_number(others ? others[k] : NAN));
+    }
 }
 
-json_t *json_errors(const double error[])
+void put_errors(json_t *o, const double likely[])
 {
-    return json_measures(error, 1);
+    json_t *of_likely = json_object(), *bound = json_object();
+    for (int k = 0; k < N_MEASURES; k++)
+        if (isfinite(likely[k])) {
+            json_object_set_new(of_likely, measure(k)->name, json_real(likely[k]));
+            json_object_set_new(bound, measure(k)->name, json_real(ESTIMATE_FACTOR * likely[k]));
+        }
+    json_object_set(o, "estimated_error", bound);
+    json_object_set_new(o, "error", json_pack("{s:o, s:o}", "likely", of_likely, "bound", bound));
 }
 
 json_t *json_replicates(const ReplicateSummary *r)
 {
-    double unknown[N_MEASURES];
-    for (int k = 0; k < N_MEASURES; k++)
-        unknown[k] = NAN;
+    json_t *mean = json_object(), *sd = json_object();
+    put_measures(mean, "", r->n_failed ? NULL : r->mean, NULL, NULL);
+    put_measures(sd, "", r->n_failed ? NULL : r->sd, NULL, NULL);
     return json_pack("{s:I, s:I, s:I, s:s, s:s, s:o, s:o}", "n", (json_int_t)r->n_replicates, "records",
                      (json_int_t)r->n_records, "failed", (json_int_t)r->n_failed, "spread", r->spread, "rule", r->rule,
-                     "mean", json_measures(r->n_failed ? unknown : r->mean, 0), "sd",
-                     json_measures(r->n_failed ? unknown : r->sd, 0));
+                     "mean", mean, "sd", sd);
 }
 
-Status show_json(json_t *all, Err *err)
+void put_replicates(json_t *row, const ReplicateSummary *r)
 {
-    const int failed = !all || json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
-    json_decref(all);
-    putchar('\n');
-    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
+    const int known = r && !r->n_failed;
+    json_object_set_new(row, "records", r ? json_integer((json_int_t)r->n_records) : json_null());
+    json_object_set_new(row, "replicates", r ? json_integer((json_int_t)r->n_replicates) : json_null());
+    json_object_set_new(row, "rule", r ? json_string(r->rule) : json_null());
+    json_object_set_new(row, "spread", r ? json_string(r->spread) : json_null());
+    put_measures(row, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
 void show_motion(FILE *out, const Motion *m, double duration_s)
@@ -196,172 +353,67 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
         fprintf(out, "  warning: %s\n", m->warning);
 }
 
-/* Digits of a value that an error leaves standing: one to four. */
-static int digits_known(double value, double error)
+json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
+                       const double error[])
 {
-    const double digits = 1 + floor(log10(fabs(value / error)));
-    return digits >= 1 && digits < 4 ? (int)digits : digits < 1 ? 1 : 4;
-}
-
-/* In a column of width 10 or of the name's, if that is wider. */
-static void show_digits(double value, int digits, const char *name)
-{
-    const int width = strlen(name) > 10 ? (int)strlen(name) : 10;
-    if (isfinite(value))
-        printf(" %*.*g", width, digits, value);
-    else
-        printf(" %*s", width, "-");
-}
-
-static void show_number(double value, const char *name)
-{
-    show_digits(value, 4, name);
-}
-
-void show_result_names(const char *label, const MeasureOrder *order)
-{
-    printf("%-28s", label);
+    char note[200] = "";
+    json_t *row = figures_row(table);
+    json_object_set_new(row, "", json_words(label));
     for (int i = 0; i < order->n_obj; i++)
-        printf(" %10s", measure(order->of[i])->name);
-    printf(" %8s %9s %11s\n", "impacts", "balance", "indentation");
-}
-
-void show_result_errors(const MeasureOrder *order, const double error[])
-{
-    printf("%-28s", "  estimated error");
-    for (int i = 0; i < order->n_obj; i++)
-        show_digits(error[order->of[i]], 1, measure(order->of[i])->name);
-    putchar('\n');
-}
-
-void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[])
-{
-    printf("%-28.28s", label);
-    for (int i = 0; i < order->n_obj; i++)
-        show_digits(measure_value(r, order->of[i]),
-                    error ? digits_known(measure_value(r, order->of[i]), error[order->of[i]]) : 4,
-                    measure(order->of[i])->name);
-    printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_balance_error, r->indentation_ratio);
+        figures_put(row, measure(order->of[i])->name, measure_value(r, order->of[i]), error ? error[order->of[i]] : NAN,
+                    NAN);
+    json_object_set_new(row, "impacts", json_integer(r->impacts));
+    figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
-        printf("  %s", outcome_word(measure_outcome(r->outcome)));
-    if (beyond_contact_law(r))
-        printf("  deeper than %g of the contact's radius: beyond the contact law", INDENTATION_RATIO_MAX);
-    if (r->bumper_bottoms_out)
-        printf("  a bumper is compressed by %.3g of its thickness: it bottoms out", r->bumper_strain);
-    putchar('\n');
+        snprintf(note, sizeof note, "%s", outcome_word(measure_outcome(r->outcome)));
+    else if (beyond_contact_law(r))
+        snprintf(note, sizeof note, "deeper than %g of the contact's radius: beyond the contact law",
+                 INDENTATION_RATIO_MAX);
+    else if (r->bumper_bottoms_out)
+        snprintf(note, sizeof note, "a bumper is compressed by %.3g of its thickness: it bottoms out",
+                 r->bumper_strain);
+    else if (r->filtered_known && r->j3_filtered_g > r->j3_g)
+        snprintf(note, sizeof note, "j3_filtered_g above j3_g: the filter overshoots (docs/theory.md)");
+    if (note[0])
+        json_object_set_new(row, " ", json_string(note));
+    return row;
 }
 
-/* Of the first column: "best NAME" of every objective fits, and the words of the baselines. */
-static int label_width(const Schema *schema)
+void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r)
 {
-    size_t width = 18;
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        const size_t length = strlen("best ") + strlen(schema_objective(schema, k)->name);
-        width = length > width ? length : width;
-    }
-    return (int)width;
-}
-
-static void show_label(const char *label, const char *id, const Schema *schema)
-{
-    printf("%-*s %7s", label_width(schema), label, id);
-}
-
-static void show_design(const char *label, long id, const Schema *schema)
-{
-    char text[24] = "-";
-    if (id > 0)
-        snprintf(text, sizeof text, "%ld", id);
-    show_label(label, text, schema);
-}
-
-void show_limited_names(const Schema *schema)
-{
-    show_label("limited", "design", schema);
-    for (size_t k = 0; k < schema->n_limited; k++)
-        printf(" %10s", schema_extra(schema, schema->limited[k])->name);
-    putchar('\n');
-}
-
-void show_limited(const char *label, long id, const Schema *schema, const double extra[])
-{
-    show_design(label, id, schema);
-    for (size_t k = 0; k < schema->n_limited; k++)
-        show_number(extra[schema->limited[k]], schema_extra(schema, schema->limited[k])->name);
-    putchar('\n');
-}
-
-void show_objective_names(const Schema *schema)
-{
-    show_label("", "design", schema);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        printf(" %10s", schema_objective(schema, k)->name);
-    putchar('\n');
-}
-
-void show_objectives(const char *label, long id, const Schema *schema, const double natural[], const double error[])
-{
-    show_design(label, id, schema);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        show_digits(natural[k], error ? digits_known(natural[k], error[k]) : 4, schema_objective(schema, k)->name);
-    putchar('\n');
-}
-
-void show_objective_errors(const Schema *schema, const double error[])
-{
-    printf("%-26s", "  estimated error");
-    for (size_t k = 0; k < schema->n_obj; k++)
-        show_digits(error[k], 1, schema_objective(schema, k)->name);
-    putchar('\n');
-}
-
-static void show_moments(int indent, const char *word, const ReplicateSummary *r, const MeasureOrder *order,
-                         const double values[])
-{
-    char label[64];
-    if (r->n_records > 1)
-        snprintf(label, sizeof label, "  %s, %zu records x %zu", word, r->n_records, r->n_replicates);
+    char label[96];
+    const int has_sd = r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]);
+    json_t *row = figures_row(table);
+    if (r->n_failed)
+        snprintf(label, sizeof label, "  %zu of its simulations failed: no mean", r->n_failed);
+    else if (r->n_records > 1)
+        snprintf(label, sizeof label, "  %s, %zu records x %zu", r->rule, r->n_records, r->n_replicates);
     else
-        snprintf(label, sizeof label, "  %s of %zu", word, r->n_replicates);
-    printf("%*s%-28s", indent, "", label);
-    for (int i = 0; i < order->n_obj; i++)
-        show_number(values[order->of[i]], measure(order->of[i])->name);
-    printf(" %8.3g %9.1e\n", values[MEASURE_IMPACTS], values[MEASURE_BALANCE]);
+        snprintf(label, sizeof label, "  %s of %zu", r->rule, r->n_replicates);
+    if (has_sd && !r->n_failed)
+        snprintf(label + strlen(label), sizeof label - strlen(label), ", sd %s", r->spread);
+    json_object_set_new(row, "", json_string(label));
+    for (int i = 0; i < order->n_obj && !r->n_failed; i++)
+        figures_put(row, measure(order->of[i])->name, r->mean[order->of[i]], NAN, has_sd ? r->sd[order->of[i]] : NAN);
+    if (!r->n_failed)
+        figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, has_sd ? r->sd[MEASURE_IMPACTS] : NAN);
 }
 
-void show_replicates(int indent, const MeasureOrder *order, const ReplicateSummary *r)
+void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
+                    const double error[], const double extra[])
 {
-    if (r->n_failed) {
-        printf("%*s  %zu of the simulations of this design failed: no mean\n", indent, "", r->n_failed);
-        return;
-    }
-    char label[48];
-    show_moments(indent, r->rule, r, order, r->mean);
-    snprintf(label, sizeof label, "sd %s", r->spread);
-    if (r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]))
-        show_moments(indent, label, r, order, r->sd);
+    json_t *row = figures_row(table);
+    json_object_set_new(row, "", json_words(label));
+    json_object_set_new(row, "design", id > 0 ? json_integer(id) : json_string("-"));
+    for (size_t k = 0; k < schema->n_obj; k++)
+        figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, NAN);
+    for (size_t k = 0; k < schema->n_limited; k++)
+        figures_put(row, schema_extra(schema, schema->limited[k])->name, extra ? extra[schema->limited[k]] : NAN, NAN,
+                    NAN);
 }
 
-void write_replicates_names(FILE *out)
-{
-    fputs(",records,replicates,rule,spread", out);
-    for (int k = 0; k < N_MEASURES; k++)
-        fprintf(out, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
-}
-
-void write_replicates(FILE *out, const ReplicateSummary *r)
-{
-    if (r)
-        fprintf(out, ",%zu,%zu,%s,%s", r->n_records, r->n_replicates, r->rule, r->spread);
-    else
-        fputs(",,,,", out);
-    for (int k = 0; k < N_MEASURES; k++) {
-        const int known = r && !r->n_failed;
-        print_cells(out, 2, (const double[]){known ? r->mean[k] : NAN, known ? r->sd[k] : NAN});
-    }
-}
-
-/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth. */
+/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth; none
+ * that the baseline does not have, such as the mass of a core where there is none. */
 static void print_better(const char *verb, const Schema *schema, double sign, const double natural[], const Baseline *b)
 {
     static const double SHARE = 1e-3;
@@ -369,34 +421,24 @@ static void print_better(const char *verb, const Schema *schema, double sign, co
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
         const double other = b->value[schema->order.of[k]];
-        if (sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
+        if (other != 0 && sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
             printf("%s%s", n++ ? ", " : verb, c->name);
     }
     if (n == 0)
         printf("%snothing", verb);
 }
 
-void show_verdict(BaselineKind kind, const Schema *schema, const double natural[], const Baseline *b)
+void show_verdicts(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
 {
     char device[DEVICE_TEXT_MAX];
-    baseline_device_text(kind, &b->device, device);
-    printf("against %s%s%s%s: impacts ", baseline_words(kind), *device ? " (" : "", device, *device ? ")" : "");
-    print_better("win in ", schema, 1, natural, b);
-    print_better("; lose in ", schema, -1, natural, b);
-    putchar('\n');
-}
-
-void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
-{
-    double values[OBJECTIVES_MAX];
     for (int k = 0; k < N_BASELINES; k++) {
-        for (size_t i = 0; i < schema->n_obj; i++)
-            values[i] = baseline[k].value[schema->order.of[i]];
-        show_objectives(baseline_words((BaselineKind)k), 0, schema, values, NULL);
+        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
+        printf("against %s%s%s%s: impacts ", baseline_words((BaselineKind)k), *device ? " (" : "", device,
+               *device ? ")" : "");
+        print_better("win in ", schema, 1, natural, &baseline[k]);
+        print_better("; lose in ", schema, -1, natural, &baseline[k]);
+        putchar('\n');
     }
-    putchar('\n');
-    for (int k = 0; k < N_BASELINES; k++)
-        show_verdict((BaselineKind)k, schema, natural, &baseline[k]);
 }
 
 void show_expected_gain(double gain)

@@ -41,6 +41,22 @@ const double *run_f(const Run *run, size_t row)
     return run->F + row * run->schema.n_obj;
 }
 
+int run_likely(const Run *run, size_t row, double error[])
+{
+    const Schema *s = &run->schema;
+    int any = 0;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        error[k] = NAN;
+        for (size_t e = 0; e < s->n_extra; e++) {
+            const char *name = schema_extra(s, e)->name;
+            if (strncmp(name, "err_", 4) == 0 && strcmp(name + 4, schema_objective(s, k)->name) == 0)
+                error[k] = run->table.row[row].extra[e];
+        }
+        any |= isfinite(error[k]);
+    }
+    return any;
+}
+
 size_t run_find(const Run *run, long id)
 {
     size_t row = 0;

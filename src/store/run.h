@@ -85,6 +85,10 @@ void run_free(Run *run);
 const double *run_x(const Run *run, size_t row); /* (n_var) */
 const double *run_f(const Run *run, size_t row); /* (n_obj) */
 
+/* Likely errors (n_obj) of the integration that are stored with the design, in columns err_NAME; NAN where there is
+ * none. Returns whether any is there. */
+int run_likely(const Run *run, size_t row, double error[]);
+
 /* Row of that design, or run->table.n. */
 size_t run_find(const Run *run, long id);
 

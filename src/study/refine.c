@@ -167,7 +167,7 @@ static Status compare_finer(Refine *r, const double F[], Err *err)
     const int is_known = ok[0] && ok[1];
     r->out->gain_finer = is_known ? gain_of(r, G) : -INFINITY;
     for (size_t k = 0; k < m && is_known; k++)
-        r->out->error[k] = ESTIMATE_FACTOR * fmax(fabs(G[k] - F[k]), fabs(G[m + k] - F[m + k]));
+        r->out->error[k] = fmax(fabs(G[k] - F[k]), fabs(G[m + k] - F[m + k]));
     return STATUS_OK;
 }
 

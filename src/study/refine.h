@@ -35,7 +35,7 @@ typedef struct {
 
 typedef struct {
     EvaluationTable designs;      /* (2) start and end, as simulated in step 3 */
-    double error[OBJECTIVES_MAX]; /* estimated integration error of both, the greater one; NAN: not known */
+    double error[OBJECTIVES_MAX]; /* likely integration error of both, the greater one; NAN: not known */
     double gain, gain_error;      /* of the value, > 0 is better; error NAN: not known */
     double gain_finer;            /* of step 4; NAN: there is none */
     size_t n_evaluated, n_failed, n_simulated; /* designs, of them failed; simulations */

@@ -1,0 +1,22 @@
+/* base/figure.h -- a number for people: with the digits that are known of it, and what is not known behind it.
+ *
+ *   16 +- 2        error 1.7: it has one digit, the value none below that
+ *   13 +- 1 sd     the standard deviation, where it is the larger of the two
+ *   0.07664        an error that four digits do not show
+ *   16.5           three digits, where no error is known
+ *   about 10       an error as large as the value: its order of magnitude alone. A negative value is then not told from
+ *                  zero: 0.00 +- 0.01
+ *   -              no number
+ *
+ * with the plus-minus sign of UTF-8. Without an exponent from 1e-4 to 1e7, beyond that (1.53 +- 0.02)e+08.
+ *
+ * Threads  pure functions */
+#ifndef IMTET_BASE_FIGURE_H
+#define IMTET_BASE_FIGURE_H
+
+enum { FIGURE_MAX = 64 };
+
+/* error, sd: in the unit of the value; NAN: not known. */
+void figure_text(double value, double error, double sd, char text[FIGURE_MAX]);
+
+#endif

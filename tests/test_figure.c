@@ -1,0 +1,67 @@
+/* A number for people has the digits that its error leaves, and never more. */
+#include "check.h"
+
+#include <string.h>
+
+#include "base/figure.h"
+
+static void expect_figure(double value, double error, double sd, const char *wanted)
+{
+    char text[FIGURE_MAX];
+    figure_text(value, error, sd, text);
+    if (strcmp(text, wanted) != 0)
+        fail_msg("%g, error %g, sd %g: is '%s', wanted '%s'", value, error, sd, text, wanted);
+}
+
+/* Expected texts are written by hand, by the rule of GUM 7.2.6: value and error end at the same place. */
+TEST(a_value_ends_where_its_error_begins)
+{
+    expect_figure(16.48, 1.7, NAN, "16 ± 2");
+    expect_figure(13.25, 0.12, NAN, "13.2 ± 0.1");
+    expect_figure(0.07664, 0.0009, NAN, "0.0766 ± 0.0009");
+    expect_figure(9.96, 0.96, NAN, "10 ± 1");
+    expect_figure(306251, 4100, NAN, "306000 ± 4000");
+    expect_figure(-4.567, 0.021, NAN, "-4.57 ± 0.02");
+    expect_figure(1.5312e8, 2.1e6, NAN, "(1.53 ± 0.02)e+08");
+    expect_figure(0, 0.3, NAN, "0.0 ± 0.3");
+}
+
+TEST(an_error_that_cannot_be_seen_is_not_shown)
+{
+    expect_figure(0.0766421, 5e-16, NAN, "0.07664");
+    expect_figure(436251.3, 0, NAN, "436300");
+    expect_figure(0, 0, NAN, "0");
+}
+
+TEST(without_an_error_there_are_three_digits_and_no_exponent)
+{
+    expect_figure(16.48, NAN, NAN, "16.5");
+    expect_figure(436251.3, NAN, NAN, "436000");
+    expect_figure(0.001234, NAN, NAN, "0.00123");
+    expect_figure(0, NAN, NAN, "0");
+    expect_figure(NAN, NAN, NAN, "-");
+    expect_figure(INFINITY, 1, NAN, "-");
+    expect_figure(1.5312e8, NAN, NAN, "1.53e+08");
+    expect_figure(1.5312e-9, NAN, NAN, "1.53e-09");
+}
+
+TEST(an_error_as_large_as_the_value_leaves_its_order_or_zero)
+{
+    expect_figure(13.25, 14, NAN, "about 10");
+    expect_figure(16.48, 40, NAN, "about 20");
+    expect_figure(3, 400, NAN, "0 ± 400");
+    expect_figure(-0.0066, 0.009, NAN, "0.000 ± 0.009");
+    expect_figure(-0.0066, 0.01, NAN, "0.00 ± 0.01");
+}
+
+TEST(a_standard_deviation_above_the_error_is_what_is_printed)
+{
+    expect_figure(13.25, 0.1, 1.16, "13 ± 1 sd");
+    expect_figure(13.25, 0.1, 0.01, "13.2 ± 0.1");
+    expect_figure(13.25, NAN, 0.2, "13.2 ± 0.2 sd");
+}
+
+int main(void)
+{
+    return RUN_TESTS(NULL, NULL);
+}
