@@ -118,8 +118,19 @@ static inline pid_t start(const char *config, const char *out)
 static inline Status add_to_run(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err)
 {
     RunStore *store;
-    TRY(store_open_run(&store, folder, err));
-    const Status status = store_add_evaluations(store, n, designs, first_id, err);
+    Run now;
+    long id = 0;
+    TRY(run_wanted(folder, err));
+    TRY(store_open(&store, folder, 0, err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
+        const Run *run = store_run(store);
+        status = store_polished(store, &designs[i], (size_t)run->tried_to_polish, (size_t)run->polished_at, &id, err);
+    }
+    if (status == STATUS_OK && first_id)
+        *first_id = id - (long)n + 1;
+    if (status == STATUS_OK && (status = store_write_front(store, &now, err)) == STATUS_OK)
+        run_free(&now);
     store_free(store);
     return status;
 }

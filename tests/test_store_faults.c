@@ -234,8 +234,8 @@ static Status work(RunStore *store, const Settings *s, const Schema *schema, siz
     const long tried = now.tried_to_polish;
     run_free(&now);
     if (n_generations == N_GENERATIONS && tried < 1)
-        TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, err));
-    return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, err) : STATUS_OK;
+        TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, &(long){0}, err));
+    return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, NULL, err) : STATUS_OK;
 }
 
 static Status session(const char *folder, const Schema *schema, size_t n_generations, Err *err)
@@ -260,8 +260,8 @@ static Status life(const char *folder, const Schema *schema, Err *err)
     TRY(run_read(&h, folder, err));
     const size_t n = h.table.n;
     run_free(&h);
-    if (n < N_DESIGNS + N_POLISHED)
-        TRY(add_to_run(folder, 2, POLISHED + 1, NULL, err));
+    for (size_t k = n - N_DESIGNS; k < N_POLISHED; k++)
+        TRY(add_to_run(folder, 1, POLISHED + k, NULL, err));
     return session(folder, schema, N_GENERATIONS, err);
 }
 

@@ -356,13 +356,12 @@ static Status evaluate_by_config(const Args *args, const char *word, Err *err)
 static Status run(const Args *args, Err *err)
 {
     const char *word = args_value(args, "--design");
-    char database[PATH_MAX];
     Run r;
     if (args_has(args, "--full-model"))
         return show_full_model(args, err);
     if (!word)
         return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
-    if (!run_path(args->operand, database, sizeof database))
+    if (!run_is_there(args->operand))
         return evaluate_by_config(args, word, err);
     TRY(run_read(&r, args->operand, err));
     const Status status = evaluate_of_run(args, &r, word, err);

@@ -239,8 +239,7 @@ static void tell_how_to_resume(const StudySummary *summary)
 static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err)
 {
     Run run;
-    char path[PATH_MAX];
-    if (!run_path(args->operand, path, sizeof path))
+    if (!run_is_there(args->operand))
         return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could be resumed",
                     args->operand);
     if (args_has(args, "--new") || args_gives(args, "run.out")) {

@@ -13,6 +13,7 @@
 
 typedef struct {
     RunStore *store; /* open from the first look at the design until the better one is in */
+    Run read;
     const Run *run;
     size_t row; /* of the design */
     RefineConfig config;
@@ -73,8 +74,10 @@ static Status take_design(const Args *args, Work *w, Err *err)
 static Status open_run(const Args *args, Work *w, Err *err)
 {
     RecordPaths moved;
-    TRY(store_open_run(&w->store, args->operand, err));
-    w->run = store_run(w->store);
+    TRY(run_wanted(args->operand, err));
+    TRY(store_open(&w->store, args->operand, 0, err));
+    TRY(store_read(w->store, &w->read, err));
+    w->run = &w->read;
     TRY(take_design(args, w, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
@@ -169,15 +172,15 @@ static void show(const Work *w, long id)
         printf("stored in the run as design %ld.\n", id);
 }
 
-/* A design that joins the front may move its knee, by which other commands name a design. */
-static Status tell_knee(const Args *args, long before, Err *err)
+/* It may move the knee of the front, by which other commands name a design: the new one's id. */
+static Status store_better(Work *w, long *id, long *knee, Err *err)
 {
-    Run run;
-    TRY(run_read(&run, args->operand, err));
-    const long now = run.table.row[run_knee(&run)].id;
-    if (now != before)
-        printf("%s:knee was design %ld and is now design %ld.\n", run.folder, before, now);
-    run_free(&run);
+    Run now;
+    TRY(store_polished(w->store, &w->result.designs.row[1], (size_t)w->run->tried_to_polish,
+                       (size_t)w->run->polished_at, id, err));
+    TRY(store_write_front(w->store, &now, err));
+    *knee = now.table.row[run_knee(&now)].id;
+    run_free(&now);
     return STATUS_OK;
 }
 
@@ -185,13 +188,14 @@ static Status polish(const Args *args, Work *w, Err *err)
 {
     long id = 0;
     TRY(open_run(args, w, err));
-    const long knee = w->run->n_front > 0 ? w->run->table.row[run_knee(w->run)].id : 0;
+    const long before = w->run->n_front > 0 ? w->run->table.row[run_knee(w->run)].id : 0;
+    long knee = before;
     TRY(refine_design(w->run, w->row, &w->config, &w->result, err));
     if (refined_counts(&w->result))
-        TRY(store_add_evaluations(w->store, 1, &w->result.designs.row[1], &id, err));
+        TRY(store_better(w, &id, &knee, err));
     show(w, id);
-    if (id)
-        TRY(tell_knee(args, knee, err));
+    if (knee != before)
+        printf("%s:knee was design %ld and is now design %ld.\n", w->run->folder, before, knee);
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
 
@@ -200,6 +204,7 @@ static Status run(const Args *args, Err *err)
     Work w = {0};
     const Status status = polish(args, &w, err);
     refined_free(&w.result);
+    run_free(&w.read);
     store_free(w.store);
     return status;
 }

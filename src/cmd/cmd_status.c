@@ -248,11 +248,11 @@ static void list_run(const char *name, const char *folder, json_t *list)
 
 static size_t list_folder(const char *folder, int n, struct dirent *const entries[], json_t *list)
 {
-    char path[PATH_MAX + 288], database[PATH_MAX + 320];
+    char path[PATH_MAX + 288];
     size_t found = 0;
     for (int i = 0; i < n; i++) {
         snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] == '.' || !run_path(path, database, sizeof database))
+        if (entries[i]->d_name[0] == '.' || !run_is_there(path))
             continue;
         if (found++ == 0 && !list)
             printf("%-24s %-10s %20s %7s %7s %12s  %s\n", "run", "state", "simulated", "failed", "front", "hypervolume",
@@ -286,9 +286,8 @@ static Status run(const Args *args, Err *err)
 {
     Run run;
     Standing standing;
-    char database[PATH_MAX];
     const char *folder = args->operand ? args->operand : "results";
-    if (!run_path(folder, database, sizeof database))
+    if (!run_is_there(folder))
         return show_folder(args, folder, err);
     TRY(run_read(&run, folder, err));
     standing_of(&standing, folder, &run);

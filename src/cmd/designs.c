@@ -163,12 +163,12 @@ typedef struct {
 static int is_run(char path[PATH_MAX])
 {
     static const char DATABASE[] = "run.sqlite";
-    char there[PATH_MAX], *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     if (strcmp(name, DATABASE) == 0) {
         snprintf(slash ? slash : name, slash ? 1 : 2, "%s", slash ? "" : ".");
         return 1;
     }
-    return run_path(path, there, sizeof there);
+    return run_is_there(path);
 }
 
 static int is_there(const char *word, size_t length, Place *p)

@@ -222,9 +222,8 @@ Status show_full_model(const Args *args, Err *err)
 {
     static const char *const OTHERS[] = {"--records", "--csv", "--svg", "--replicates"};
     Settings s;
-    char database[PATH_MAX];
     const char *pga = args_value(args, "--pga");
-    const int is_run = run_path(args->operand, database, sizeof database);
+    const int is_run = run_is_there(args->operand);
     for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
         if (args_has(args, OTHERS[i]))
             return fail(err, STATUS_USAGE, "--full-model: leave %s out", OTHERS[i]);

@@ -75,29 +75,24 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 {
     const Evaluation own = *to;
     *to = *from;
-    to->x = own.x;
-    to->f = own.f;
-    to->sd = own.sd;
-    to->extra = own.extra;
     to->room = own.room;
     to->reason = "";
     if (from->reason && from->reason[0]) {
         snprintf(to->room, REASON_MAX, "%s", from->reason);
         to->reason = to->room;
     }
-    copy_numbers(to->x, from->x, n_var);
-    copy_numbers(to->f, from->f, n_obj);
-    copy_numbers(to->sd, from->sd, n_obj);
-    copy_numbers(to->extra, from->extra, n_extra);
+#define X(array, width)                                                                                                \
+    to->array = own.array;                                                                                             \
+    copy_numbers(to->array, from->array, width);
+    EVALUATION_ARRAYS(X)
+#undef X
 }
 
 static void point_row(EvaluationTable *t, size_t i)
 {
-    Evaluation *e = &t->row[i];
-    e->x = t->x + i * t->n_var;
-    e->f = t->f + i * t->n_obj;
-    e->sd = t->sd + i * t->n_obj;
-    e->extra = t->extra + i * t->n_extra;
+#define X(array, width) t->row[i].array = t->array + i * t->width;
+    EVALUATION_ARRAYS(X)
+#undef X
 }
 
 /* Room for n of them; the old array, and *lacks, without memory. */
@@ -114,10 +109,9 @@ static Status grow(EvaluationTable *t, Err *err)
     const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
     int lacks = 0;
     t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
-    t->x = widen(t->x, n_max * t->n_var, sizeof *t->x, &lacks);
-    t->f = widen(t->f, n_max * t->n_obj, sizeof *t->f, &lacks);
-    t->sd = widen(t->sd, n_max * t->n_obj, sizeof *t->sd, &lacks);
-    t->extra = widen(t->extra, n_max * t->n_extra, sizeof *t->extra, &lacks);
+#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
+    EVALUATION_ARRAYS(X)
+#undef X
     for (size_t i = 0; i < t->n_used; i++)
         point_row(t, i);
     if (lacks)
@@ -134,18 +128,14 @@ static void set_unknown(double v[], size_t n)
 
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
-    *e = (Evaluation){.kind = KIND_UNFINISHED,
-                      .reason = "",
-                      .room = e->room,
-                      .seconds = NAN,
-                      .violation = NAN,
-                      .x = e->x,
-                      .f = e->f,
-                      .sd = e->sd,
-                      .extra = e->extra};
-    set_unknown(e->f, n_obj);
-    set_unknown(e->sd, n_obj);
-    set_unknown(e->extra, n_extra);
+    const Evaluation own = *e;
+    *e = (Evaluation){
+        .kind = KIND_UNFINISHED, .reason = "", .room = own.room, .seconds = NAN, .violation = NAN, .x = own.x};
+#define X(array, width)                                                                                                \
+    e->array = own.array;                                                                                              \
+    set_unknown(e->array, width);
+    RESULT_ARRAYS(X)
+#undef X
 }
 
 Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
@@ -184,9 +174,8 @@ void evaluation_table_free(EvaluationTable *t)
     for (size_t i = 0; i < t->n_used; i++)
         free(t->row[i].room);
     free(t->row);
-    free(t->x);
-    free(t->f);
-    free(t->sd);
-    free(t->extra);
+#define X(array, width) free(t->array);
+    EVALUATION_ARRAYS(X)
+#undef X
     *t = evaluation_table(t->n_var, t->n_obj, t->n_extra);
 }

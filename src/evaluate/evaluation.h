@@ -66,6 +66,10 @@ EvaluationKind kind_of_word(const char *word); /* KIND_UNFINISHED: no other kind
 
 enum { REASON_MAX = 160 };
 
+/* The arrays of numbers of an evaluation: x, and what its simulations answer. */
+#define RESULT_ARRAYS(X)     X(f, n_obj) X(sd, n_obj) X(extra, n_extra)
+#define EVALUATION_ARRAYS(X) X(x, n_var) RESULT_ARRAYS(X)
+
 typedef struct {
     long id, generation;
     EvaluationKind kind;

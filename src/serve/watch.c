@@ -185,11 +185,11 @@ static void add(Watch *w, const char *folder, const char *name)
 static void find_in(Watch *w)
 {
     struct dirent **entries;
-    char path[PATH_MAX + NAME_MAX + 2], database[PATH_MAX + NAME_MAX + 16];
+    char path[PATH_MAX + NAME_MAX + 2];
     const int n = scandir(w->folder, &entries, NULL, versionsort);
     for (int i = 0; i < n; i++) {
         snprintf(path, sizeof path, "%s/%s", w->folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] != '.' && strlen(path) < PATH_MAX && run_path(path, database, sizeof database))
+        if (entries[i]->d_name[0] != '.' && strlen(path) < PATH_MAX && run_is_there(path))
             add(w, path, entries[i]->d_name);
         free(entries[i]);
     }
@@ -220,9 +220,8 @@ const char *watch_name(Watch *w, size_t i)
 
 static Status find_runs(Watch *w, const char *folder, Err *err)
 {
-    char database[PATH_MAX];
     const char *slash = strrchr(w->folder, '/');
-    w->is_run = run_path(w->folder, database, sizeof database);
+    w->is_run = run_is_there(w->folder);
     if (w->is_run)
         add(w, w->folder, slash && slash[1] ? slash + 1 : w->folder);
     else

@@ -22,6 +22,7 @@ struct Database {
     sqlite3_stmt *kept[KEPT_STATEMENTS]; /* prepared, the one used last first */
     dev_t device; /* of the file that was opened for writing, and its number there; 0: none was */
     ino_t file;
+    double version; /* of what it holds, as this connection has left it; 0: nothing was asked yet */
 };
 
 const char *database_path(const Database *d)
@@ -203,6 +204,20 @@ Status database_number(Database *d, const char *sql, double otherwise, double *v
     return database_each(d, sql, take_number, value, err);
 }
 
+/* Of a number that changes where another connection has written. */
+Status database_begin(Database *d, Err *err)
+{
+    double version;
+    TRY(database_do(d, err, "BEGIN IMMEDIATE", ""));
+    Status status = database_number(d, "PRAGMA data_version", 0, &version, err);
+    if (status == STATUS_OK && d->version > 0 && version != d->version)
+        status = fail(err, STATUS_IO, "%s: another process has written to it, which works on the same run", d->path);
+    d->version = version;
+    if (status != STATUS_OK)
+        database_do(d, NULL, "ROLLBACK", "");
+    return status;
+}
+
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
 /* File systems of several machines, by the number that each has in Linux (linux/magic.h, and the sources of Lustre,
@@ -323,12 +338,13 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
     if (mode == DATABASE_WRITE)
         TRY(database_do(d, err, d->is_shared ? "PRAGMA journal_mode=DELETE" : "PRAGMA journal_mode=WAL", ""));
     if (mode == DATABASE_WRITE)
-        TRY(database_do(d, err, "PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
+        TRY(database_do(d, err, "PRAGMA synchronous=FULL", ""));
     struct stat there;
     if (mode == DATABASE_WRITE && stat(d->path, &there) == 0) {
         d->device = there.st_dev;
         d->file = there.st_ino;
     }
+    TRY(database_number(d, "PRAGMA data_version", 0, &d->version, err));
     return check(d, mode, err);
 }
 

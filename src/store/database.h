@@ -25,7 +25,7 @@
 
 enum {
     DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
-    DATABASE_FORMAT = 5 /* raised with every change of the tables */
+    DATABASE_FORMAT = 6 /* raised with every change of the tables */
 };
 
 typedef struct Database Database;
@@ -38,6 +38,10 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
 void database_grow(Database *d);  /* what was there is read: from here on rows may be longer than the file was */
 void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
+
+/* A transaction that writes; STATUS_IO where another connection has written since this one was opened, or since its own
+ * last transaction: a process whose lock was removed does not mix its rows with those of the next one. */
+Status database_begin(Database *d, Err *err);
 
 /* A full disk or refused memory makes SQLite roll the whole transaction back by itself: asked after every fault. */
 int database_in_transaction(const Database *d);

@@ -38,6 +38,7 @@ typedef struct {
     double hypervolume;     /* share of a box about the first sample that the front dominates; results/README.md */
     double seconds;         /* of work on the run until then, all sessions together */
     char finished[24];      /* UTC */
+    long members;           /* digest of the designs on the search's front (store/tables.h) */
 } RunGeneration;
 
 /* When a design was on the search's front. */
@@ -48,7 +49,9 @@ typedef struct {
 
 /* One start of `imtet optimize`. */
 typedef struct {
+    long number;
     char started[24], ended[24], host[72], stopped[128]; /* ended, stopped: empty while it runs or when it was killed */
+    char program[128];
     long pid, threads, simulated_before;
     double seconds;                         /* that it lasted, as far as is stored */
     double search_s, waited_s, surrogate_s; /* of the search; of it waiting for simulations, at the surrogate; NAN */
@@ -73,11 +76,9 @@ typedef struct {
     long planned_evals;
     long tried_to_polish; /* spread-out designs, at the end of a search of polished_at simulations */
     long polished_at;
-    void *
-        state; /* (n_state bytes) of the search at the end of generation state_generation; NULL: none is finished yet */
+    void *state; /* (n_state bytes) of the search at the end of the last generation; NULL: none is finished yet */
     size_t n_state;
-    long state_generation; /* the last one; where that one's state is damaged, the one before */
-    int state_is_damaged;  /* that of no generation is what was written */
+    int state_is_damaged; /* neither copy of it is what was written */
 } Run;
 
 void run_free(Run *run);

@@ -17,15 +17,7 @@ typedef struct {
     Run *run;
     Database *d;
     EvaluationTable polished; /* rows that go behind those of the search */
-    uint64_t front;           /* digest of the designs on the search's front */
-    long front_as_stored;     /* ... with the newest state */
-    int has_front_as_stored;
 } Loading;
-
-static void *one_more(void *list, size_t n, size_t size)
-{
-    return n & (n - 1) ? list : realloc(list, (n ? 2 * n : 1) * size); /* at powers of two */
-}
 
 static Status no_memory(const Loading *l, size_t n, const char *what, Err *err)
 {
@@ -33,23 +25,6 @@ static Status no_memory(const Loading *l, size_t n, const char *what, Err *err)
 }
 
 /* -- settings and generations -------------------------------------------------------------------------------------- */
-
-long run_generation_digest(const RunGeneration *g)
-{
-    const long whole[] = {g->number, g->simulated, g->failed, g->front};
-    const double numbers[] = {g->surrogate_error, g->hypervolume, g->seconds};
-    uint64_t hash = HASH_SEED;
-    for (size_t i = 0; i < sizeof whole / sizeof whole[0]; i++)
-        hash = digest_whole(whole[i], hash);
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        hash = digest_number(numbers[i], hash);
-    return (long)digest_text(g->finished, hash);
-}
-
-long run_state_digest(long generation, const void *bytes, size_t n)
-{
-    return (long)hash_fnv1a(bytes, n, digest_whole(generation, HASH_SEED));
-}
 
 /* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
 static int floors_of(const Run *run, int n_var)
@@ -84,87 +59,17 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     return run->schema.n_var == (size_t)n_var ? STATUS_OK : database_damaged(l->d, err, "it has %ld variables", n_var);
 }
 
-static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
-{
-    Loading *l = user;
-    Run *run = l->run;
-    RunGeneration *wider = one_more(run->generation, run->n_generations, sizeof *wider);
-    if (!wider)
-        return no_memory(l, run->n_generations, "generations", err);
-    run->generation = wider;
-    RunGeneration *g = &wider[run->n_generations++];
-    *g = (RunGeneration){.number = (long)sqlite3_column_int64(row, 0),
-                         .simulated = (long)sqlite3_column_int64(row, 1),
-                         .failed = (long)sqlite3_column_int64(row, 2),
-                         .front = (long)sqlite3_column_int64(row, 3),
-                         .surrogate_error = column_number(row, 4),
-                         .hypervolume = column_number(row, 5),
-                         .seconds = column_number(row, 6)};
-    snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 7));
-    run->n_finished = (size_t)g->simulated;
-    return (long)sqlite3_column_int64(row, 8) == run_generation_digest(g)
-               ? STATUS_OK
-               : database_damaged(l->d, err, "generation %ld is not what was written", g->number);
-}
-
-static Status take_session(sqlite3_stmt *row, void *user, Err *err)
+/* Of two copies the first that is what was written. */
+static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
     Run *run = l->run;
-    RunSession *wider = one_more(run->session, run->n_sessions, sizeof *wider);
-    if (!wider)
-        return no_memory(l, run->n_sessions, "sessions", err);
-    run->session = wider;
-    RunSession *s = &wider[run->n_sessions++];
-    *s = (RunSession){.pid = (long)sqlite3_column_int64(row, 3),
-                      .threads = (long)sqlite3_column_int64(row, 4),
-                      .simulated_before = (long)sqlite3_column_int64(row, 5),
-                      .seconds = column_number(row, 6),
-                      .is_final = sqlite3_column_int(row, 8),
-                      .search_s = column_number(row, 9),
-                      .waited_s = column_number(row, 10),
-                      .surrogate_s = column_number(row, 11)};
-    snprintf(s->started, sizeof s->started, "%s", column_text(row, 0));
-    snprintf(s->ended, sizeof s->ended, "%s", column_text(row, 1));
-    snprintf(s->host, sizeof s->host, "%s", column_text(row, 2));
-    snprintf(s->stopped, sizeof s->stopped, "%s", column_text(row, 7));
-    return STATUS_OK;
-}
-
-static Status take_mark(sqlite3_stmt *row, void *user, Err *err)
-{
-    Loading *l = user;
-    Run *run = l->run;
-    RunMark *wider = one_more(run->mark, run->n_marks, sizeof *wider);
-    if (!wider)
-        return no_memory(l, run->n_marks, "designs", err);
-    run->mark = wider;
-    const RunMark m = {(long)sqlite3_column_int64(row, 0), (int)column_whole(row, 1, NEVER),
-                       (int)column_whole(row, 2, NEVER)};
-    run->mark[run->n_marks++] = m;
-    if (m.left == NEVER)
-        l->front ^= digest_member(m.id);
-    return STATUS_OK;
-}
-
-/* The newest first; one that is not what was written gives way to the one before. */
-static Status take_state(sqlite3_stmt *row, void *user, Err *err)
-{
-    Loading *l = user;
-    Run *run = l->run;
-    const long generation = (long)sqlite3_column_int64(row, 0);
     const size_t n = (size_t)sqlite3_column_bytes(row, 1);
     const void *bytes = sqlite3_column_blob(row, 1);
-    const int is_whole = (long)sqlite3_column_int64(row, 2) == run_state_digest(generation, bytes, n);
-    if (!run->state && sqlite3_column_type(row, 3) != SQLITE_NULL) {
-        l->has_front_as_stored = 1;
-        l->front_as_stored = (long)sqlite3_column_int64(row, 3);
-    }
-    if (run->state && (!run->state_is_damaged || !is_whole))
+    if (run->state && !run->state_is_damaged)
         return STATUS_OK;
     free(run->state);
-    run->state_generation = generation;
-    run->state_is_damaged = !is_whole;
+    run->state_is_damaged = sqlite3_column_int64(row, 2) != state_digest(column_whole(row, 0, 0), bytes, n);
     run->n_state = n;
     run->state = malloc(n + 1);
     if (!run->state)
@@ -174,29 +79,34 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
+static Status check_front(const Loading *l, Err *err)
+{
+    const Run *run = l->run;
+    uint64_t members = 0;
+    for (size_t i = 0; i < run->n_marks; i++)
+        members ^= run->mark[i].left == NEVER ? digest_member(run->mark[i].id) : 0;
+    return run->n_generations == 0 || (long)members == run->generation[run->n_generations - 1].members
+               ? STATUS_OK
+               : database_damaged(l->d, err, "its front is not what was written");
+}
+
 static Status load_head(Loading *l, Err *err)
 {
+    Run *run = l->run;
     TRY(database_each(
         l->d, "SELECT settings, provenance, planned_evals, n_var, tried_to_polish, polished_at, digest FROM run",
         take_head, l, err));
-    if (!l->run->schema.column)
+    if (!run->schema.column)
         return database_damaged(l->d, err, "it has no settings");
-    TRY(tables_check(l->d, &l->run->schema, err));
-    TRY(database_each(l->d,
-                      "SELECT number, simulated, failed, front, surrogate_error, hypervolume, seconds, finished, "
-                      "digest FROM generation ORDER BY number",
-                      take_generation, l, err));
-    TRY(database_each(
-        l->d,
-        "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final, search, "
-        "waited, surrogate FROM session ORDER BY number",
-        take_session, l, err));
-    TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front ORDER BY evaluation", take_mark, l, err));
-    TRY(database_each(l->d, "SELECT generation, bytes, digest, front FROM state ORDER BY generation DESC LIMIT 2",
-                      take_state, l, err));
-    return !l->has_front_as_stored || (long)l->front == l->front_as_stored
-               ? STATUS_OK
-               : database_damaged(l->d, err, "its front is not what was written");
+    TRY(tables_check(l->d, &run->schema, err));
+    TRY(records_read(l->d, TABLE_GENERATION, &run->generation, &run->n_generations, err));
+    TRY(records_read(l->d, TABLE_SESSION, &run->session, &run->n_sessions, err));
+    TRY(records_read(l->d, TABLE_FRONT, &run->mark, &run->n_marks, err));
+    TRY(database_each(l->d, "SELECT generation, bytes, digest FROM state ORDER BY copy", take_state, l, err));
+    if (run->n_generations > 0)
+        run->n_finished = (size_t)run->generation[run->n_generations - 1].simulated;
+    run->state_is_damaged |= run->n_generations > 0 && !run->state;
+    return check_front(l, err);
 }
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
@@ -341,9 +251,16 @@ Status run_load(Run *run, Database *d, const char *folder, Err *err)
     return load(run, d, folder, 1, err);
 }
 
-int run_path(const char *folder, char path[], size_t size)
+int run_is_there(const char *folder)
 {
-    return snprintf(path, size, "%s/run.sqlite", folder) < (int)size && access(path, F_OK) == 0;
+    char path[PATH_MAX];
+    return snprintf(path, sizeof path, "%s/run.sqlite", folder) < PATH_MAX && access(path, F_OK) == 0;
+}
+
+Status run_wanted(const char *folder, Err *err)
+{
+    return run_is_there(folder) ? STATUS_OK
+                                : fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
 }
 
 Status run_read(Run *run, const char *folder, Err *err)
@@ -351,8 +268,8 @@ Status run_read(Run *run, const char *folder, Err *err)
     char path[PATH_MAX];
     Database *d;
     memset(run, 0, sizeof *run);
-    if (!run_path(folder, path, sizeof path))
-        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
+    TRY(run_wanted(folder, err));
+    snprintf(path, sizeof path, "%s/run.sqlite", folder);
     Status status = database_open(&d, path, DATABASE_READ, err);
     if (status == STATUS_OK)
         status = run_load(run, d, folder, err);

@@ -8,17 +8,13 @@
 #include "store/database.h"
 #include "store/run.h"
 
-/* The database of a run's folder; 1 where there is one. */
-int run_path(const char *folder, char path[], size_t size);
+int run_is_there(const char *folder);
+Status run_wanted(const char *folder, Err *err); /* else STATUS_MISSING */
 
 Status run_read(Run *run, const char *folder, Err *err);
 Status run_load(Run *run, Database *d, const char *folder, Err *err);
 
 /* All but the rows: no table, no front, but the marks of it. */
 Status run_load_head(Run *run, Database *d, const char *folder, Err *err);
-
-/* Check values (store/tables.h) of a generation and of the state of the search at its end. */
-long run_generation_digest(const RunGeneration *g);
-long run_state_digest(long generation, const void *bytes, size_t n);
 
 #endif

@@ -28,8 +28,7 @@ struct RunStore {
     long *polished;             /* (n_polished) ids of it, ascending */
     size_t n_polished;
 
-    EvaluationTable waiting;     /* rows for the next commit or the end of their generation */
-    size_t n_stored;             /* evaluations of the search, those that wait included */
+    size_t n_stored;             /* evaluations of the search */
     int is_lost;                 /* a transaction was rolled back: nothing more is written */
     double last_commit;          /* [s] of the clock */
     double last_generation;      /* ... */
@@ -38,7 +37,7 @@ struct RunStore {
     uint64_t front;              /* digest of those on it */
     Hypervolume *hypervolume;    /* that the front dominates; NULL: no design has succeeded yet */
     size_t n_measured;           /* designs that it has seen */
-    long session;
+    RunSession session;
     Append text, events; /* log.txt, log.jsonl */
 };
 
@@ -160,17 +159,16 @@ static Status read_open_rows(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-static Status load_run(RunStore *store, int whole, Err *err)
+static Status load_run(RunStore *store, Err *err)
 {
     TRY(open_database(store, err));
-    TRY(whole ? run_load(&store->run, store->db, store_folder(store), err)
-              : run_load_head(&store->run, store->db, store_folder(store), err));
+    TRY(run_load_head(&store->run, store->db, store_folder(store), err));
     store->has_run = 1;
     database_grow(store->db);
     return read_open_rows(store, err);
 }
 
-static Status open_store(RunStore **out, const char *folder, int fresh, int whole, Err *err)
+Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
 {
     *out = NULL;
     RunStore *store = calloc(1, sizeof *store);
@@ -178,7 +176,7 @@ static Status open_store(RunStore **out, const char *folder, int fresh, int whol
         return fail(err, STATUS_NO_MEMORY, "no memory for a run");
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(&store->folder, "run.sqlite"))
-        status = folder_advise(store_folder(store), load_run(store, whole, err), err);
+        status = folder_advise(store_folder(store), load_run(store, err), err);
     if (status == STATUS_OK)
         status = check_nothing_lost(store, err);
     if (status == STATUS_OK)
@@ -186,20 +184,6 @@ static Status open_store(RunStore **out, const char *folder, int fresh, int whol
     else
         store_free(store);
     return status;
-}
-
-Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
-{
-    return open_store(out, folder, fresh, 0, err);
-}
-
-Status store_open_run(RunStore **out, const char *folder, Err *err)
-{
-    char path[PATH_MAX];
-    *out = NULL;
-    if (!run_path(folder, path, sizeof path))
-        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
-    return open_store(out, folder, 0, 1, err);
 }
 
 /* The journal goes first: left alone it would be taken for that of the next database. */
@@ -242,16 +226,10 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
     return append_open(&store->events, &store->folder, "log.jsonl", err);
 }
 
-static void take_schema(RunStore *store, const Schema *schema)
-{
-    store->schema = schema;
-    store->waiting = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra);
-}
-
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
     char path[PATH_MAX];
-    take_schema(store, schema);
+    store->schema = schema;
     folder_path(&store->folder, "run.sqlite", path);
     TRY(tables_create(path, schema, used, provenance, err));
     TRY(open_database(store, err));
@@ -265,7 +243,11 @@ static Status begin(RunStore *store, Err *err)
 {
     if (store->is_lost)
         return fail(err, STATUS_IO, "%s: nothing more is written after a fault", database_path(store->db));
-    return database_in_transaction(store->db) ? STATUS_OK : database_do(store->db, err, "BEGIN IMMEDIATE", "");
+    if (database_in_transaction(store->db))
+        return STATUS_OK;
+    const Status status = database_begin(store->db, err);
+    store->is_lost = status != STATUS_OK;
+    return status;
 }
 
 /* What is not committed cannot be: rows that came later would stand behind a gap. */
@@ -273,7 +255,6 @@ static Status lose(RunStore *store, Status status)
 {
     if (database_in_transaction(store->db))
         database_do(store->db, NULL, "ROLLBACK", "");
-    store->waiting.n = 0;
     store->is_lost = 1;
     return status;
 }
@@ -285,23 +266,11 @@ static Status commit(RunStore *store, Status status, Err *err)
     return status == STATUS_OK ? STATUS_OK : lose(store, status);
 }
 
-static Status insert_waiting(RunStore *store, Err *err)
-{
-    for (size_t i = 0; i < store->waiting.n; i++) {
-        Evaluation e = store->waiting.row[i];
-        e.id = id_of(store, (size_t)e.id - 1);
-        TRY(rows_insert(store->db, store->schema, &e, err));
-    }
-    return STATUS_OK;
-}
-
 Status store_flush(RunStore *store, Err *err)
 {
-    if (store->is_lost || !store->db || (store->waiting.n == 0 && !database_in_transaction(store->db)))
+    if (store->is_lost || !store->db || !database_in_transaction(store->db))
         return STATUS_OK;
-    TRY(begin(store, err));
-    TRY(commit(store, insert_waiting(store, err), err));
-    store->waiting.n = 0;
+    TRY(commit(store, STATUS_OK, err));
     store->last_commit = clock_seconds();
     folder_note(&store->folder, store->n_stored);
     return STATUS_OK;
@@ -309,25 +278,29 @@ Status store_flush(RunStore *store, Err *err)
 
 /* -- a session ----------------------------------------------------------------------------------------------------- */
 
-/* What is_of_the_next has left out. */
-static Status drop_lost(RunStore *store, Err *err)
+static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
-    const Run *run = &store->run;
-    const long next = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
-    TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND generation > ?", "i", next));
-    store->n_stored = run->n_finished + store->unfinished.n;
-    return run->settings->search.asynchronous == SWITCH_OFF
-               ? STATUS_OK
-               : database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i",
-                             store->n_stored > 0 ? id_of(store, store->n_stored - 1) : 0L);
+    Evaluation row = *e;
+    row.id = id_of(store, (size_t)e->id - 1);
+    return rows_insert(store->db, store->schema, &row, err);
+}
+
+/* Without what is_of_the_next has left out. */
+static Status renew_unfinished(RunStore *store, Err *err)
+{
+    TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL", ""));
+    for (size_t i = 0; i < store->unfinished.n; i++)
+        TRY(insert(store, &store->unfinished.row[i], err));
+    store->n_stored = store->run.n_finished + store->unfinished.n;
+    return STATUS_OK;
 }
 
 /* At once: with the new limits alone a run that is killed before its next session would be finished for good. */
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err)
 {
-    take_schema(store, schema);
+    store->schema = schema;
     TRY(begin(store, err));
-    Status status = drop_lost(store, err);
+    Status status = renew_unfinished(store, err);
     if (status == STATUS_OK)
         status = tables_set_settings(store->db, used, &store->run, err);
     if (status == STATUS_OK && goes_on)
@@ -336,20 +309,28 @@ Status store_resume(RunStore *store, const Schema *schema, const Settings *used,
     return make_ready(store, used, store->run.provenance, err);
 }
 
+static Status put_session(RunStore *store, Err *err)
+{
+    TRY(begin(store, err));
+    return record_put(store->db, TABLE_SESSION, &store->session, err);
+}
+
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err)
 {
-    char started[24], host[65] = "";
-    double number;
-    utc_now(started);
-    gethostname(host, sizeof host - 1);
-    TRY(database_do(store->db, err,
-                    "INSERT INTO session(started, host, pid, program, threads, simulated_before, seconds, is_final) "
-                    "VALUES (?, ?, ?, ?, ?, ?, 0, 0)",
-                    "ttitii", started, host, (long)getpid(), program, (long)threads, (long)n_simulated));
-    store->last_commit = clock_seconds();
-    TRY(database_number(store->db, "SELECT last_insert_rowid()", 0, &number, err));
-    store->session = (long)number;
-    return STATUS_OK;
+    RunSession *s = &store->session;
+    const size_t n = store->run.n_sessions;
+    *s = (RunSession){.number = n > 0 ? store->run.session[n - 1].number + 1 : 1,
+                      .pid = (long)getpid(),
+                      .threads = threads,
+                      .simulated_before = (long)n_simulated,
+                      .search_s = NAN,
+                      .waited_s = NAN,
+                      .surrogate_s = NAN};
+    utc_now(s->started);
+    gethostname(s->host, sizeof s->host - 1);
+    snprintf(s->program, sizeof s->program, "%s", program);
+    TRY(put_session(store, err));
+    return store_flush(store, err);
 }
 
 typedef struct {
@@ -384,16 +365,13 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
 
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 {
-    const size_t n = store->waiting.n;
-    const Status status = evaluation_table_append(&store->waiting, e, err);
-    if (status != STATUS_OK) {
-        store->waiting.n = n; /* without the half of it */
-        return status;
-    }
+    TRY(begin(store, err));
+    const Status status = insert(store, e, err);
+    if (status != STATUS_OK)
+        return database_in_transaction(store->db) ? status : lose(store, status);
     store->n_stored++;
-    if (e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
-        TRY(store_flush(store, err));
-    return STATUS_OK;
+    return e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S ? store_flush(store, err)
+                                                                                      : STATUS_OK;
 }
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
@@ -444,33 +422,12 @@ static Status measure_front(RunStore *store, const SearchView *v, Err *err)
 
 /* -- generations --------------------------------------------------------------------------------------------------- */
 
-/* Of the rows of the generation those that wait get their kind before they are stored; `waited` (v->n - n_known). */
-static void finish_waiting(RunStore *store, const SearchView *v, unsigned char waited[])
-{
-    for (size_t i = 0; i < store->waiting.n; i++) {
-        Evaluation *e = &store->waiting.row[i];
-        const size_t row = (size_t)e->id - 1;
-        if (row < store->n_known || row >= v->n)
-            continue;
-        e->kind = (EvaluationKind)v->kind[row];
-        e->generation = (long)v->generation[row];
-        waited[row - store->n_known] = 1;
-    }
-}
-
 static Status store_rows(RunStore *store, const SearchView *v, Err *err)
 {
-    unsigned char *waited = calloc(v->n - store->n_known + 1, 1);
-    if (!waited)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n - store->n_known);
-    finish_waiting(store, v, waited);
-    Status status = insert_waiting(store, err);
-    for (size_t i = store->n_known; i < v->n && status == STATUS_OK; i++)
-        if (!waited[i - store->n_known])
-            status = rows_finish(store->db, id_of(store, i), (EvaluationKind)v->kind[i], (long)v->generation[i], err);
-    free(waited);
-    if (status != STATUS_OK || v->is_asynchronous)
-        return status;
+    for (size_t i = store->n_known; i < v->n; i++)
+        TRY(rows_finish(store->db, id_of(store, i), (EvaluationKind)v->kind[i], (long)v->generation[i], err));
+    if (v->is_asynchronous)
+        return STATUS_OK;
     /* what another program or machine had asked for in this generation before it was cut short */
     store->n_stored = v->n;
     return database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i",
@@ -518,57 +475,31 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                        .front = (long)v->n_front,
                        .surrogate_error = v->surrogate_error,
                        .hypervolume = store_hypervolume(store),
-                       .seconds = seconds};
+                       .seconds = seconds,
+                       .members = (long)store->front};
     utc_now(g.finished);
-    return database_do(store->db, err,
-                       "INSERT INTO generation(number, simulated, failed, front, surrogate_error, "
-                       "hypervolume, seconds, finished, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                       "iiiidddti", g.number, g.simulated, g.failed, g.front, g.surrogate_error, g.hypervolume,
-                       g.seconds, g.finished, run_generation_digest(&g));
+    return record_put(store->db, TABLE_GENERATION, &g, err);
 }
 
-/* The states of two generations are kept: one that the disk has damaged gives way to the one before. */
+/* Twice: one that the disk has damaged gives way to its copy. */
 static Status store_state(RunStore *store, const SearchView *v, Err *err)
 {
     const long generation = (long)v->generation_now;
-    TRY(database_do(store->db, err, "DELETE FROM state WHERE generation < ?", "i", generation - 1));
-    return database_do(
-        store->db, err, "INSERT OR REPLACE INTO state(generation, bytes, digest, front) VALUES (?, ?, ?, ?)", "ibii",
-        generation, v->state, v->n_state, run_state_digest(generation, v->state, v->n_state), (long)store->front);
+    for (long copy = 1; copy <= 2; copy++)
+        TRY(database_do(store->db, err, "INSERT OR REPLACE INTO state VALUES (?, ?, ?, ?)", "iibi", copy, generation,
+                        v->state, v->n_state, state_digest(generation, v->state, v->n_state)));
+    return STATUS_OK;
 }
 
-static Status put_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+static Status put_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
     if (!v->state)
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
     TRY(store_rows(store, v, err));
     TRY(store_front_changes(store, v, err));
     TRY(store_moment(store, v, seconds, err));
-    TRY(database_do(store->db, err,
-                    "UPDATE session SET seconds = ?, search = ?, waited = ?, surrogate = ? WHERE number = ?", "ddddi",
-                    session, v->seconds, v->waited_s, v->surrogate_s, store->session));
+    TRY(put_session(store, err));
     return store_state(store, v, err);
-}
-
-/* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
- * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
-static Status put_whole_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
-{
-    TRY(begin(store, err));
-    TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
-    Status status = put_generation(store, v, seconds, session, err);
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, "RELEASE generation", "");
-    if (status == STATUS_OK) {
-        store->waiting.n = 0;
-        return STATUS_OK;
-    }
-    if (!database_in_transaction(store->db) ||
-        database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") != STATUS_OK)
-        return lose(store, status);
-    for (size_t i = 0; i < store->waiting.n; i++)
-        store->waiting.row[i].kind = KIND_UNFINISHED;
-    return status;
 }
 
 /* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk.
@@ -580,40 +511,29 @@ static int is_due(RunStore *store, const SearchView *v)
     return v->is_last || now >= store->last_commit + COMMIT_S || now >= before + GENERATION_S;
 }
 
+/* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
+ * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
 Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(measure_front(store, v, err));
-    TRY(put_whole_generation(store, v, seconds, session, err));
+    TRY(begin(store, err));
+    TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
+    store->session.seconds = session;
+    store->session.search_s = v->seconds;
+    store->session.waited_s = v->waited_s;
+    store->session.surrogate_s = v->surrogate_s;
+    Status status = put_generation(store, v, seconds, err);
+    if (status == STATUS_OK)
+        status = database_do(store->db, err, "RELEASE generation", "");
+    if (status != STATUS_OK)
+        return database_in_transaction(store->db) &&
+                       database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") == STATUS_OK
+                   ? status
+                   : lose(store, status);
     if (!is_due(store, v))
         return STATUS_OK;
     TRY(store_flush(store, err));
     return database_check_place(store->db, err);
-}
-
-/* What is known of later generations is taken out again, their evaluations stay. A design that left the front, came
- * back in one of them and is taken off again by the next one has lost its first leaving: its digest is not known. */
-static Status step_back(RunStore *store, Err *err)
-{
-    const Run *run = &store->run;
-    const long last = run->state_generation;
-    for (size_t g = 0; g < run->n_generations; g++)
-        if (run->generation[g].number > last)
-            TRY(rows_unfinish(store->db, run->generation[g].number, err));
-    TRY(database_do(store->db, err, "DELETE FROM front WHERE entered > ?", "i", last));
-    TRY(database_do(store->db, err, "UPDATE front SET left = NULL WHERE left > ?", "i", last));
-    TRY(database_do(store->db, err, "DELETE FROM generation WHERE number > ?", "i", last));
-    TRY(database_do(store->db, err, "DELETE FROM state WHERE generation > ?", "i", last));
-    TRY(database_do(store->db, err, "UPDATE evaluation SET generation = ? WHERE kind IS NULL", "i", last + 1));
-    return database_do(store->db, err, "UPDATE state SET front = NULL", "");
-}
-
-Status store_step_back(RunStore *store, Err *err)
-{
-    TRY(begin(store, err));
-    TRY(commit(store, step_back(store, err), err));
-    run_free(&store->run);
-    TRY(run_load_head(&store->run, store->db, store_folder(store), err));
-    return read_open_rows(store, err);
 }
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
@@ -654,14 +574,23 @@ Status store_read(RunStore *store, Run *run, Err *err)
     return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), err), err);
 }
 
+Status store_write_front(RunStore *store, Run *run, Err *err)
+{
+    TRY(store_read(store, run, err));
+    const Status status = export_front(run, err);
+    if (status != STATUS_OK)
+        run_free(run);
+    return status;
+}
+
 static Status end_session(RunStore *store, const char *stopped, int is_final, double session, Err *err)
 {
-    char ended[24];
-    utc_now(ended);
-    TRY(store_flush(store, err));
-    return database_do(store->db, err,
-                       "UPDATE session SET ended = ?, stopped = ?, is_final = ?, seconds = ? WHERE number = ?", "ttidi",
-                       ended, stopped, (long)is_final, session, store->session);
+    RunSession *s = &store->session;
+    utc_now(s->ended);
+    snprintf(s->stopped, sizeof s->stopped, "%s", stopped);
+    s->is_final = is_final;
+    s->seconds = session;
+    return put_session(store, err);
 }
 
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
@@ -669,9 +598,7 @@ Status store_close(RunStore *store, const char *stopped, int is_final, double se
     Run last = {0};
     Status status = end_session(store, stopped, is_final, session, err);
     if (status == STATUS_OK)
-        status = store_read(store, &last, err);
-    if (status == STATUS_OK)
-        status = export_front(&last, err);
+        status = store_write_front(store, &last, err);
     if (status == STATUS_OK)
         status = append_close(&store->events, err);
     if (status == STATUS_OK)
@@ -695,7 +622,6 @@ void store_free(RunStore *store)
     free(store->was_on_front);
     free(store->polished);
     evaluation_table_free(&store->unfinished);
-    evaluation_table_free(&store->waiting);
     hypervolume_free(store->hypervolume);
     folder_release(&store->folder);
     free(store);
@@ -713,34 +639,15 @@ static Status insert_polished(RunStore *store, const Evaluation *design, long *i
     *id = e.id = (long)last + 1;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;
-    return rows_insert(store->db, store->schema, &e, err);
+    return rows_insert(store->db, store->schema ? store->schema : &store->run.schema, &e, err);
 }
 
-Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, Err *err)
+Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id, Err *err)
 {
-    long id;
     TRY(begin(store, err));
-    Status status = better ? insert_polished(store, better, &id, err) : STATUS_OK;
+    Status status = better ? insert_polished(store, better, id, err) : STATUS_OK;
     if (status == STATUS_OK)
         status = database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", (long)n_tried,
                              (long)n_simulated);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
-}
-
-Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err)
-{
-    Run now;
-    long id = 0;
-    Status status = begin(store, err);
-    store->schema = &store->run.schema;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
-        status = insert_polished(store, &designs[i], &id, err);
-        if (first_id && i == 0)
-            *first_id = id;
-    }
-    TRY(status == STATUS_OK ? store_flush(store, err) : lose(store, status));
-    TRY(store_read(store, &now, err));
-    status = export_front(&now, err);
-    run_free(&now);
-    return status;
 }

@@ -12,6 +12,7 @@
  * committed together, likewise. What a kill can cost is what was under way and COMMIT_S of evaluations. The end of a
  * generation is whole or not there: kinds, front, hypervolume, state of the search.
  *
+ * Rivals      what another process writes, as where `lock` was removed, ends the session (database_begin)
  * Faults      on a full disk or without memory SQLite may roll back all that is not committed: then nothing more is
  *             written in this session, what waits is dropped, and the run is resumed from the last commit
  * Damage      digests of all rows but those of `session` are checked when a run is read (store/tables.h), and the text
@@ -19,7 +20,7 @@
  *             that is removed while the run goes on is put back at the end of a generation, which ends the session
  *
  * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
- *             store_open_run -> store_add_evaluations -> store_free
+ *             store_open -> store_polished -> store_write_front -> store_free
  * Threads     one at a time
  * Errors      STATUS_IO with file and cause */
 #ifndef IMTET_STORE_STORE_H
@@ -62,10 +63,6 @@ Status store_forget_empty(RunStore *store, Err *err);
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err);
 
-/* Where store_run's state is not that of the last generation, which is damaged: as if that generation were not
- * finished. Its evaluations stay. Before store_resume; store_run is read again. */
-Status store_step_back(RunStore *store, Err *err);
-
 /* A start of the program on this run; to be called after one of the two. */
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err);
 
@@ -81,19 +78,18 @@ double store_hypervolume(const RunStore *store); /* of the last generation; NAN:
 __attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err, const char *format, ...);
 Status store_event(RunStore *store, json_t *event, Err *err);
 
-/* One more design of the finished search has been tried to polish; `better` (NULL: it did not become better) joins the
- * run as in store_add_evaluations. */
-Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, Err *err);
+/* One more design of the finished search has been tried to polish, n_tried of a search of n_simulated; `better` (NULL:
+ * it did not become better) joins the run: it gets the next id, *id, and the kind `polished`. The search does not see
+ * it: a run that is resumed later does what it would have done without. */
+Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id,
+                      Err *err);
+
+/* store_read, and front.csv written from it. */
+Status store_write_front(RunStore *store, Run *run, Err *err);
 
 /* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then,
  * for run_free; front.csv is written. The store is released in any case. */
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
-
-/* Designs from outside the search, polished ones say, into a run that is there and has no session now: they get the
- * next ids and the kind `polished`, and front.csv is written again. The search does not see them: a run that is resumed
- * later does what it would have done without them. first_id may be NULL. */
-Status store_open_run(RunStore **out, const char *folder, Err *err);
-Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err);
 
 #endif

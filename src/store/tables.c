@@ -1,56 +1,155 @@
 #include "store/tables.h"
 
 #include <errno.h>
+#include <math.h>
 #include <limits.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 #include "store/output.h"
 
-/* -- the text of the tables ---------------------------------------------------------------------------------------- */
+/* -- the tables: a line for every column --------------------------------------------------------------------------- */
 
-static const char BEFORE_EVALUATION[] =
-    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL,"
-    " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL,"
-    " tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0, digest INTEGER NOT NULL);"
-    "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
-    " front INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL,"
-    " seconds REAL NOT NULL, finished TEXT NOT NULL, digest INTEGER NOT NULL);"
-    "CREATE TABLE front(evaluation INTEGER PRIMARY KEY REFERENCES evaluation(id), entered INTEGER NOT NULL,"
-    " left INTEGER);"
-    "CREATE TABLE state(generation INTEGER PRIMARY KEY, bytes BLOB NOT NULL, digest INTEGER NOT NULL, front INTEGER);"
-    "CREATE TABLE session(number INTEGER PRIMARY KEY, started TEXT NOT NULL, ended TEXT, host TEXT, pid INTEGER,"
-    " program TEXT, threads INTEGER, simulated_before INTEGER, seconds REAL, stopped TEXT, is_final INTEGER,"
-    " search REAL, waited REAL, surrogate REAL);"
-    "CREATE TABLE evaluation(id INTEGER PRIMARY KEY, generation INTEGER NOT NULL, kind TEXT, outcome TEXT NOT NULL,"
-    " reason TEXT NOT NULL, seconds REAL, violation REAL, digest INTEGER NOT NULL";
-static const char REPLICATES[] = ");CREATE TABLE replicates(evaluation INTEGER PRIMARY KEY"
-                                 " REFERENCES evaluation(id) ON DELETE CASCADE";
+typedef enum { WHOLE, MARK, REAL, TEXT, REASON, OUTCOME, KIND } FieldType;
 
-enum { N_TABLES = 7 };
+/* A column, and where the record of its row has the value. */
+typedef struct {
+    const char *name, *declared;
+    FieldType type;
+    size_t at, size;
+} Field;
 
-/* Columns of `evaluation` before the numbers; of `replicates` there is one. */
-enum { ID, GENERATION, KIND, OUTCOME, REASON, SECONDS, VIOLATION, DIGEST, N_FIXED };
+#define FIELD(record, member, name, declared, type)                                                                    \
+    {                                                                                                                  \
+        name, declared, type, offsetof(record, member), sizeof((record){0}.member)                                     \
+    }
 
-static size_t n_numbers(const Schema *s)
+static const Field EVALUATION[] = {
+    FIELD(Evaluation, id, "id", "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(Evaluation, generation, "generation", "INTEGER NOT NULL", WHOLE),
+    FIELD(Evaluation, kind, "kind", "TEXT", KIND),
+    FIELD(Evaluation, outcome, "outcome", "TEXT NOT NULL", OUTCOME),
+    FIELD(Evaluation, reason, "reason", "TEXT NOT NULL", REASON),
+    FIELD(Evaluation, seconds, "seconds", "REAL", REAL),
+    FIELD(Evaluation, violation, "violation", "REAL", REAL),
+};
+
+static const Field GENERATION[] = {
+    FIELD(RunGeneration, number, "number", "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunGeneration, simulated, "simulated", "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, failed, "failed", "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, front, "front", "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, surrogate_error, "surrogate_error", "REAL", REAL),
+    FIELD(RunGeneration, hypervolume, "hypervolume", "REAL", REAL),
+    FIELD(RunGeneration, seconds, "seconds", "REAL NOT NULL", REAL),
+    FIELD(RunGeneration, finished, "finished", "TEXT NOT NULL", TEXT),
+    FIELD(RunGeneration, members, "members", "INTEGER NOT NULL", WHOLE),
+};
+
+static const Field FRONT[] = {
+    FIELD(RunMark, id, "evaluation", "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunMark, entered, "entered", "INTEGER NOT NULL", MARK),
+    FIELD(RunMark, left, "left", "INTEGER", MARK),
+};
+
+static const Field SESSION[] = {
+    FIELD(RunSession, number, "number", "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunSession, started, "started", "TEXT NOT NULL", TEXT),
+    FIELD(RunSession, ended, "ended", "TEXT", TEXT),
+    FIELD(RunSession, host, "host", "TEXT", TEXT),
+    FIELD(RunSession, pid, "pid", "INTEGER", WHOLE),
+    FIELD(RunSession, program, "program", "TEXT", TEXT),
+    FIELD(RunSession, threads, "threads", "INTEGER", WHOLE),
+    FIELD(RunSession, simulated_before, "simulated_before", "INTEGER", WHOLE),
+    FIELD(RunSession, seconds, "seconds", "REAL", REAL),
+    FIELD(RunSession, stopped, "stopped", "TEXT", TEXT),
+    FIELD(RunSession, is_final, "is_final", "INTEGER", MARK),
+    FIELD(RunSession, search_s, "search", "REAL", REAL),
+    FIELD(RunSession, waited_s, "waited", "REAL", REAL),
+    FIELD(RunSession, surrogate_s, "surrogate", "REAL", REAL),
+};
+
+typedef struct {
+    const char *name;
+    int has_digest; /* of the row, behind its fields */
+    const Field *field;
+    size_t n, size; /* fields; bytes of a record */
+} TableColumns;
+
+#define TABLE(name, has_digest, fields, record)                                                                        \
+    {                                                                                                                  \
+        name, has_digest, fields, sizeof fields / sizeof *fields, sizeof(record)                                       \
+    }
+
+static const TableColumns ROWS = TABLE("evaluation", 1, EVALUATION, Evaluation);
+static const TableColumns RECORDS[N_RECORD_TABLES] = {
+    [TABLE_GENERATION] = TABLE("generation", 1, GENERATION, RunGeneration),
+    [TABLE_FRONT] = TABLE("front", 0, FRONT, RunMark),
+    [TABLE_SESSION] = TABLE("session", 0, SESSION, RunSession),
+};
+
+static const char OTHERS[] =
+    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL, "
+    "planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL, "
+    "tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0, digest INTEGER NOT NULL);"
+    "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "
+    "digest INTEGER NOT NULL);";
+
+enum { N_TABLES = N_RECORD_TABLES + 3 };
+
+/* Numbers of an evaluation that follow its digest: n columns named after those of the schema from `first` on, and the
+ * array of the record that has them. */
+typedef struct {
+    size_t n, first, array;
+    const char *end; /* of their names */
+} Numbers;
+
+enum { N_NUMBERS = 4 };
+
+static void numbers_of(const Schema *s, Numbers list[N_NUMBERS])
 {
-    return s->n_var + s->n_obj + s->n_extra;
+    const Numbers all[] = {
+        {s->n_var, 0, offsetof(Evaluation, x), ""},
+        {s->n_obj, s->n_var, offsetof(Evaluation, f), ""},
+        {s->n_extra, s->n_var + s->n_obj, offsetof(Evaluation, extra), ""},
+        {s->has_spread ? s->n_obj : 0, s->n_var, offsetof(Evaluation, sd), "_sd"},
+    };
+    memcpy(list, all, sizeof all);
 }
 
-/* Both tables are read by one query. */
+static double *array_of(const Evaluation *e, const Numbers *n)
+{
+    return *(double *const *)(const void *)((const char *)e + n->array);
+}
+
+static size_t n_columns(const Schema *s)
+{
+    Numbers list[N_NUMBERS];
+    size_t n = ROWS.n + 1;
+    numbers_of(s, list);
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        n += list[k].n;
+    return n;
+}
+
 Status tables_have_room(const Schema *s, Err *err)
 {
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
-    const size_t others = N_FIXED + 1 + 2 * s->n_obj + s->n_extra;
+    const size_t others = n_columns(s) - s->n_var;
     return s->n_var + others <= COLUMNS_MAX ? STATUS_OK
                                             : fail(err, STATUS_BAD_DATA,
                                                    "problem.variables = %zu: a run has room for %zu variables beside "
                                                    "%zu objectives (SQLite: %d columns)",
                                                    s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
 }
+
+/* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
 /* Names become identifiers of SQL: in double quotes, which are doubled inside. */
 static void put_column(FILE *f, const char *name, const char *end)
@@ -61,20 +160,33 @@ static void put_column(FILE *f, const char *name, const char *end)
     fprintf(f, "%s\" REAL", end);
 }
 
+static void put_table(FILE *f, const TableColumns *t)
+{
+    fprintf(f, "CREATE TABLE %s(", t->name);
+    for (size_t i = 0; i < t->n; i++)
+        fprintf(f, "%s%s %s", i > 0 ? ", " : "", t->field[i].name, t->field[i].declared);
+    fputs(t->has_digest ? ", digest INTEGER NOT NULL" : "", f);
+}
+
 /* To be freed. */
 static Status tables_text(const Schema *s, char **text, Err *err)
 {
     size_t length;
+    Numbers list[N_NUMBERS];
     *text = NULL;
     FILE *f = open_memstream(text, &length);
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
-    fputs(BEFORE_EVALUATION, f);
-    for (size_t c = 0; c < n_numbers(s); c++)
-        put_column(f, s->column[c].name, "");
-    fputs(REPLICATES, f);
-    for (size_t k = 0; k < s->n_obj; k++)
-        put_column(f, schema_objective(s, k)->name, "_sd");
+    fputs(OTHERS, f);
+    for (RecordTable t = 0; t < N_RECORD_TABLES; t++) {
+        put_table(f, &RECORDS[t]);
+        fputs(");", f);
+    }
+    put_table(f, &ROWS);
+    numbers_of(s, list);
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        for (size_t c = 0; c < list[k].n; c++)
+            put_column(f, s->column[list[k].first + c].name, list[k].end);
     fputs(");", f);
     return fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
 }
@@ -105,6 +217,47 @@ Status tables_check(Database *db, const Schema *schema, Err *err)
     return k.n_known == N_TABLES ? STATUS_OK
                                  : database_damaged(db, err, "%d of its %d tables are not those of this run",
                                                     N_TABLES - k.n_known, N_TABLES);
+}
+
+/* -- digests ------------------------------------------------------------------------------------------------------- */
+
+/* A step for 64 bits: FNV-1a a word at a time, its high bits mixed into the low ones. */
+static uint64_t digest_whole(long value, uint64_t hash)
+{
+    hash = (hash ^ (uint64_t)value) * HASH_PRIME;
+    return hash ^ hash >> 32;
+}
+
+static uint64_t digest_numbers(size_t n, const double values[], uint64_t hash)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double known = isfinite(values[i]) ? values[i] + 0.0 : -1e308;
+        long bits;
+        memcpy(&bits, &known, sizeof bits);
+        hash = digest_whole(bits, hash);
+    }
+    return hash;
+}
+
+static uint64_t digest_text(const char *text, uint64_t hash)
+{
+    return hash_fnv1a(text, strlen(text) + 1, hash);
+}
+
+uint64_t digest_member(long id)
+{
+    return digest_whole(id, HASH_SEED);
+}
+
+long state_digest(long generation, const void *bytes, size_t n)
+{
+    return (long)hash_fnv1a(bytes, n, digest_whole(generation, HASH_SEED));
+}
+
+/* Kind and generation of an evaluation change after it is written: their part is joined to the rest by exclusive or. */
+static uint64_t digest_kind(EvaluationKind kind, long generation)
+{
+    return kind == KIND_UNFINISHED ? 0 : digest_text(kind_word(kind), digest_whole(generation, HASH_SEED));
 }
 
 /* -- a new database ------------------------------------------------------------------------------------------------ */
@@ -184,87 +337,194 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
     return status;
 }
 
-/* -- rows ---------------------------------------------------------------------------------------------------------- */
+/* -- records ------------------------------------------------------------------------------------------------------- */
 
-static uint64_t digest_numbers(size_t n, const double values[], uint64_t hash)
+static int bind_number(sqlite3_stmt *s, int i, double value)
 {
-    for (size_t i = 0; i < n; i++)
-        hash = digest_number(values[i], hash);
+    return isfinite(value) ? sqlite3_bind_double(s, i, value) : sqlite3_bind_null(s, i);
+}
+
+static int bind_words(sqlite3_stmt *s, int i, const char *text)
+{
+    return text ? sqlite3_bind_text(s, i, text, -1, SQLITE_STATIC) : sqlite3_bind_null(s, i);
+}
+
+static int bind_field(sqlite3_stmt *s, int i, const Field *f, const char *record)
+{
+    const void *at = record + f->at;
+    const char *text = at;
+    switch (f->type) {
+    case WHOLE:
+        return sqlite3_bind_int64(s, i, *(const long *)at);
+    case MARK:
+        return *(const int *)at == NEVER ? sqlite3_bind_null(s, i) : sqlite3_bind_int(s, i, *(const int *)at);
+    case REAL:
+        return bind_number(s, i, *(const double *)at);
+    case TEXT:
+        return bind_words(s, i, text[0] ? text : NULL);
+    case REASON:
+        text = *(const char *const *)at;
+        return bind_words(s, i, text ? text : "");
+    case OUTCOME:
+        return bind_words(s, i, outcome_word(*(const Outcome *)at));
+    default:
+        return bind_words(
+            s, i, *(const EvaluationKind *)at == KIND_UNFINISHED ? NULL : kind_word(*(const EvaluationKind *)at));
+    }
+}
+
+/* A reason is SQLite's until the next row. A word for no outcome counts as one, which its row's digest does not fit. */
+static void take_field(sqlite3_stmt *row, int i, const Field *f, char *record)
+{
+    void *at = record + f->at;
+    Outcome outcome;
+    switch (f->type) {
+    case WHOLE:
+        *(long *)at = (long)sqlite3_column_int64(row, i);
+        break;
+    case MARK:
+        *(int *)at = (int)column_whole(row, i, NEVER);
+        break;
+    case REAL:
+        *(double *)at = column_number(row, i);
+        break;
+    case TEXT:
+        snprintf(at, f->size, "%s", column_text(row, i));
+        break;
+    case REASON:
+        *(const char **)at = column_text(row, i);
+        break;
+    case OUTCOME:
+        outcome = outcome_of_word(column_text(row, i));
+        *(Outcome *)at = outcome == OUTCOME_COUNT ? OUTCOME_ERROR : outcome;
+        break;
+    case KIND:
+        *(EvaluationKind *)at = kind_of_word(column_text(row, i));
+        break;
+    }
+}
+
+static uint64_t digest_field(const Field *f, const char *record, uint64_t hash)
+{
+    const void *at = record + f->at;
+    switch (f->type) {
+    case WHOLE:
+        return digest_whole(*(const long *)at, hash);
+    case REAL:
+        return digest_numbers(1, at, hash);
+    case TEXT:
+        return digest_text(at, hash);
+    case REASON:
+        return digest_text(*(const char *const *)at ? *(const char *const *)at : "", hash);
+    case OUTCOME:
+        return digest_text(outcome_word(*(const Outcome *)at), hash);
+    default:
+        return hash;
+    }
+}
+
+static uint64_t digest_record(const TableColumns *t, const void *record)
+{
+    uint64_t hash = HASH_SEED;
+    for (size_t i = 0; i < t->n; i++)
+        hash = digest_field(&t->field[i], record, hash);
     return hash;
 }
 
-/* Of all but kind and generation. */
-static uint64_t digest_row(const Schema *s, const Evaluation *e)
-{
-    uint64_t hash = digest_whole(e->id, HASH_SEED);
-    hash = digest_text(e->reason, digest_text(outcome_word(e->outcome), hash));
-    hash = digest_number(e->violation, digest_number(e->seconds, hash));
-    hash = digest_numbers(s->n_obj, e->f, digest_numbers(s->n_var, e->x, hash));
-    return digest_numbers(s->n_obj, e->sd, digest_numbers(s->n_extra, e->extra, hash));
-}
-
-/* INSERT with n places. */
-static Status prepare_insert(Database *db, const char *table, size_t n, sqlite3_stmt **s, Err *err)
+/* INSERT with n places, and the fields bound to the first of them. */
+static Status prepare_insert(Database *db, const TableColumns *t, size_t n, const void *record, sqlite3_stmt **s,
+                             Err *err)
 {
     char sql[4200]; /* 2 for each of 2,000 columns */
-    int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", table);
+    int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", t->name);
     for (size_t i = 1; i < n; i++, at += 2)
         memcpy(sql + at, ",?", 2);
     memcpy(sql + at, ")", 2);
-    return database_statement(db, sql, s, err);
+    TRY(database_statement(db, sql, s, err));
+    for (size_t i = 0; i < t->n; i++)
+        bind_field(*s, (int)i + 1, &t->field[i], record);
+    return STATUS_OK;
 }
 
-/* Behind column `at`; NULL is bound for what is not known. */
-static int bind_numbers(sqlite3_stmt *s, int at, size_t n, const double values[])
+Status record_put(Database *db, RecordTable table, const void *record, Err *err)
 {
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(values[i]))
-            sqlite3_bind_double(s, ++at, values[i]);
-        else
-            sqlite3_bind_null(s, ++at);
-    return at;
-}
-
-static Status insert_numbers(Database *db, const Schema *schema, const Evaluation *e, Err *err)
-{
+    const TableColumns *t = &RECORDS[table];
     sqlite3_stmt *s;
-    TRY(prepare_insert(db, "evaluation", N_FIXED + n_numbers(schema), &s, err));
-    sqlite3_bind_int64(s, ID + 1, e->id);
-    sqlite3_bind_int64(s, GENERATION + 1, e->generation);
-    if (e->kind != KIND_UNFINISHED)
-        sqlite3_bind_text(s, KIND + 1, kind_word(e->kind), -1, SQLITE_STATIC);
-    else
-        sqlite3_bind_null(s, KIND + 1);
-    sqlite3_bind_text(s, OUTCOME + 1, outcome_word(e->outcome), -1, SQLITE_STATIC);
-    int code = sqlite3_bind_text(s, REASON + 1, e->reason, -1, SQLITE_TRANSIENT);
-    bind_numbers(s, SECONDS, 2, (const double[]){e->seconds, e->violation});
-    sqlite3_bind_int64(s, DIGEST + 1, (long)(digest_row(schema, e) ^ digest_kind(e->kind, e->generation)));
-    int at = bind_numbers(s, N_FIXED, schema->n_var, e->x);
-    at = bind_numbers(s, at, schema->n_obj, e->f);
-    bind_numbers(s, at, schema->n_extra, e->extra);
-    return code == SQLITE_OK ? database_run(db, s, err)
-                             : fail(err, STATUS_NO_MEMORY, "%s: out of memory", database_path(db));
+    TRY(prepare_insert(db, t, t->n + (size_t)t->has_digest, record, &s, err));
+    if (t->has_digest)
+        sqlite3_bind_int64(s, (int)t->n + 1, (long)digest_record(t, record));
+    return database_run(db, s, err);
+}
+
+typedef struct {
+    Database *db;
+    const TableColumns *table;
+    char *list;
+    size_t n;
+} Records;
+
+static Status take_record(sqlite3_stmt *row, void *user, Err *err)
+{
+    Records *r = user;
+    const TableColumns *t = r->table;
+    if ((r->n & (r->n - 1)) == 0) { /* at powers of two */
+        char *wider = realloc(r->list, (r->n > 0 ? 2 * r->n : 1) * t->size);
+        if (!wider)
+            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows of %s", database_path(r->db), r->n, t->name);
+        r->list = wider;
+    }
+    char *record = r->list + r->n++ * t->size;
+    memset(record, 0, t->size);
+    for (size_t i = 0; i < t->n; i++)
+        take_field(row, (int)i, &t->field[i], record);
+    if (t->has_digest && sqlite3_column_int64(row, (int)t->n) != (long)digest_record(t, record))
+        return database_damaged(r->db, err, "%s %lld is not what was written", t->name, sqlite3_column_int64(row, 0));
+    return STATUS_OK;
+}
+
+Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err *err)
+{
+    char sql[64];
+    Records r = {.db = db, .table = &RECORDS[table]};
+    snprintf(sql, sizeof sql, "SELECT * FROM %s ORDER BY 1", r.table->name);
+    const Status status = database_each(db, sql, take_record, &r, err);
+    memcpy(list, &r.list, sizeof r.list);
+    *n = r.n;
+    return status;
+}
+
+/* -- rows of evaluations ------------------------------------------------------------------------------------------- */
+
+/* Generation and kind are not in it (digest_kind). */
+static uint64_t digest_row(const Schema *s, const Evaluation *e)
+{
+    Numbers list[N_NUMBERS];
+    Evaluation row = *e;
+    row.generation = 0;
+    uint64_t hash = digest_record(&ROWS, &row);
+    numbers_of(s, list);
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        hash = digest_numbers(list[k].n, array_of(e, &list[k]), hash);
+    return hash;
 }
 
 Status rows_insert(Database *db, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
+    Numbers list[N_NUMBERS];
     Evaluation row = *e;
     sqlite3_stmt *s;
     for (size_t k = 0; k < schema->n_obj; k++)
         none[k] = NAN;
-    row.reason = e->reason ? e->reason : "";
     row.f = e->outcome == OUTCOME_OK ? e->f : none;
     row.sd = e->sd ? e->sd : none;
-    TRY(insert_numbers(db, schema, &row, err));
-    size_t k = 0;
-    while (k < schema->n_obj && !isfinite(row.sd[k]))
-        k++;
-    if (k == schema->n_obj)
-        return STATUS_OK;
-    TRY(prepare_insert(db, "replicates", 1 + schema->n_obj, &s, err));
-    sqlite3_bind_int64(s, 1, row.id);
-    bind_numbers(s, 1, schema->n_obj, row.sd);
+    TRY(prepare_insert(db, &ROWS, n_columns(schema), &row, &s, err));
+    int at = (int)ROWS.n + 1;
+    sqlite3_bind_int64(s, at, (long)(digest_row(schema, &row) ^ digest_kind(e->kind, e->generation)));
+    numbers_of(schema, list);
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        for (size_t i = 0; i < list[k].n; i++)
+            bind_number(s, ++at, array_of(&row, &list[k])[i]);
     return database_run(db, s, err);
 }
 
@@ -281,71 +541,40 @@ Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, 
                       database_path(db), id);
 }
 
-Status rows_unfinish(Database *db, long generation, Err *err)
-{
-    for (EvaluationKind kind = 0; kind < KIND_UNFINISHED; kind++) {
-        const long digest = (long)digest_kind(kind, generation);
-        if (kind != KIND_POLISHED)
-            TRY(database_do(db, err,
-                            "UPDATE evaluation SET kind = NULL, digest = (digest | ?) - (digest & ?) "
-                            "WHERE kind = ? AND generation = ?",
-                            "iiti", digest, digest, kind_word(kind), generation));
-    }
-    return STATUS_OK;
-}
-
 typedef struct {
     Database *db;
     const Schema *schema;
     EvaluationTable room; /* of one row */
     EvaluationFn take;
     void *user;
-    int has_replicates;
+    Numbers list[N_NUMBERS];
 } Reading;
-
-static int take_numbers(sqlite3_stmt *row, int at, size_t n, double values[])
-{
-    for (size_t i = 0; i < n; i++, at++)
-        values[i] = column_number(row, at);
-    return at;
-}
 
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
-    const Schema *s = r->schema;
-    const Evaluation *e = r->room.row;
-    Evaluation *to = r->room.row;
-    to->id = (long)sqlite3_column_int64(row, ID);
-    to->generation = (long)sqlite3_column_int64(row, GENERATION);
-    to->kind = kind_of_word(column_text(row, KIND));
-    to->seconds = column_number(row, SECONDS);
-    to->violation = column_number(row, VIOLATION);
-    const Outcome outcome = outcome_of_word(column_text(row, OUTCOME));
-    if (outcome == OUTCOME_COUNT)
-        return database_damaged(r->db, err, "the outcome of evaluation %ld cannot be read", e->id);
-    to->outcome = outcome;
-    to->reason = column_text(row, REASON);
-    int at = take_numbers(row, N_FIXED, s->n_var, to->x);
-    at = take_numbers(row, at, s->n_obj, to->f);
-    at = take_numbers(row, at, s->n_extra, to->extra);
-    if (r->has_replicates)
-        take_numbers(row, at + 1, s->n_obj, to->sd);
-    if ((uint64_t)sqlite3_column_int64(row, DIGEST) != (digest_row(s, e) ^ digest_kind(e->kind, e->generation)))
+    Evaluation *e = r->room.row;
+    int at = (int)ROWS.n;
+    for (size_t i = 0; i < ROWS.n; i++)
+        take_field(row, (int)i, &EVALUATION[i], (char *)e);
+    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, at);
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        for (size_t i = 0; i < r->list[k].n; i++)
+            array_of(e, &r->list[k])[i] = column_number(row, ++at);
+    if (digest != (digest_row(r->schema, e) ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
-    evaluation_set_outcome(to, outcome, to->reason);
+    evaluation_set_outcome(e, e->outcome, e->reason);
     return r->take(e, r->user, err);
 }
 
 Status rows_each(Database *db, const Schema *s, const char *where, EvaluationFn take, void *user, Err *err)
 {
     char sql[200];
-    double has_replicates;
     Evaluation *row;
-    TRY(database_number(db, "SELECT EXISTS (SELECT * FROM replicates)", 0, &has_replicates, err));
-    Reading r = {db, s, evaluation_table(s->n_var, s->n_obj, s->n_extra), take, user, has_replicates > 0.0};
-    snprintf(sql, sizeof sql, "SELECT * FROM evaluation%s WHERE %s ORDER BY id",
-             r.has_replicates ? " LEFT JOIN replicates ON replicates.evaluation = id" : "", where);
+    Reading r = {
+        .db = db, .schema = s, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra), .take = take, .user = user};
+    numbers_of(s, r.list);
+    snprintf(sql, sizeof sql, "SELECT * FROM evaluation WHERE %s ORDER BY id", where);
     Status status = evaluation_table_add(&r.room, &row, err);
     if (status == STATUS_OK)
         status = evaluation_table_give_room(row, err);

@@ -43,14 +43,14 @@ static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *
 static Status store_refined(RunStore *store, const FinalPolish *p, const Refined *refined, size_t n_tried, Err *err)
 {
     const Evaluation *better = refined_counts(refined) ? &refined->designs.row[1] : NULL;
-    return store_polished(store, better, n_tried, p->n_simulated, err);
+    return store_polished(store, better, n_tried, p->n_simulated, &(long){0}, err);
 }
 
 /* A design that cannot be polished, one that fails with more replicates say, is logged and left out. */
 static Status leave_out(RunStore *store, const FinalPolish *p, size_t row, size_t n_tried, const Err *why, Err *err)
 {
     TRY(store_log(store, err, "design %zu is not polished: %s", row + 1, why->text));
-    return store_polished(store, NULL, n_tried, p->n_simulated, err);
+    return store_polished(store, NULL, n_tried, p->n_simulated, NULL, err);
 }
 
 static Status polish_chosen(RunStore *store, const FinalPolish *p, const Run *run, size_t *n_tried, size_t *n_better,

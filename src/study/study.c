@@ -13,7 +13,6 @@
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
 #include "analysis/estimate.h"
-#include "store/export.h"
 #include "store/provenance.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
@@ -35,7 +34,6 @@ typedef struct {
     size_t generation;         /* that is under way */
     size_t first_generation;   /* of this session */
     double next_shown;         /* [s] of the clock, of the progress within it */
-    long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;           /* why it stopped: the signal, the time */
     long failures[2];          /* in a row up to now: of whole evaluations, of those of the cheap level alone */
     int failing;               /* search.failures_max of them; 2: of the cheap level */
@@ -237,19 +235,6 @@ static Status check_state(const Study *study, const Run *run, Err *err)
                       study->summary->folder, study->summary->folder);
 }
 
-/* The last generation is made again from the state of the one before, with the evaluations that are there. */
-static Status leave_damaged_state(Study *study, Err *err)
-{
-    const Run *run = store_run(study->store);
-    StopReason unused;
-    const size_t n = run->n_generations;
-    if ((!study->has_new_limits && came_to_its_end(run, &unused)) || !run->state || n == 0 ||
-        run->state_generation == run->generation[n - 1].number)
-        return STATUS_OK;
-    study->left_generation = run->generation[n - 1].number;
-    return store_step_back(study->store, err);
-}
-
 /* Of search.max_evals. */
 static Status count_evaluations(Study *study, Err *err)
 {
@@ -280,7 +265,6 @@ static Status resume(Study *study, Err *err)
                                         .lines = study->differences},
                           study->evaluations_before, &study->has_new_limits, err));
     TRY(check_state(study, run, err));
-    TRY(leave_damaged_state(study, err));
     study->seconds_before = sum->seconds;
     study->generation = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
@@ -341,8 +325,7 @@ static SearchStart find_start(const Study *study)
                          .row = later->row,
                          .state = run->state,
                          .n_state = run->n_state,
-                         .on_front =
-                             run->schema.is_noisy || study->left_generation != 0 ? NULL : store_on_front(study->store),
+                         .on_front = run->schema.is_noisy ? NULL : store_on_front(study->store),
                          .each = run->n_finished > 0 ? store_each_finished : NULL,
                          .user = study->store};
 }
@@ -497,27 +480,12 @@ static void tell_records(const Study *study)
         o->record(tower_record(t, i), o->user);
 }
 
-static Status tell_left_generation(const Study *study, Err *err)
-{
-    static const char WORDS[] =
-        "the state after generation %ld is damaged; the one before is resumed, no evaluation is lost";
-    if (study->left_generation == 0)
-        return STATUS_OK;
-    if (study->differences) {
-        fprintf(study->differences, "%s: ", study->summary->folder);
-        fprintf(study->differences, WORDS, study->left_generation);
-        fputc('\n', study->differences);
-    }
-    return store_log(study->store, err, WORDS, study->left_generation);
-}
-
 static Status work(Study *study, Err *err)
 {
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
     tell_records(study);
     TRY(study_log_start(study->store, study->adapter, &study->used.search, study->summary->n_before, err));
-    TRY(tell_left_generation(study, err));
     TRY(run_search(study, err));
     TRY(study->status);
     TRY(polish(study, err));
@@ -528,13 +496,12 @@ static Status work(Study *study, Err *err)
 static Status take_finished(Study *study, Err *err)
 {
     Run run;
-    TRY(store_read(study->store, &run, err));
-    const Status status = export_front(&run, err);
-    if (status == STATUS_OK && study->options->run)
+    TRY(store_write_front(study->store, &run, err));
+    if (study->options->run)
         *study->options->run = run;
     else
         run_free(&run);
-    return status;
+    return STATUS_OK;
 }
 
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
