@@ -76,10 +76,9 @@ static pid_t start(const Prey *prey, const char *folder, int by_folder)
 /* What the database tells: 0 where there is none yet, -1 where it cannot be read. */
 static int look(const char *folder, Run *h)
 {
-    char path[256];
     Err err = {0};
     memset(h, 0, sizeof *h);
-    if (!run_path(folder, path, sizeof path))
+    if (!run_is_there(folder))
         return 0;
     if (run_read(h, folder, &err) == STATUS_OK)
         return 1;
