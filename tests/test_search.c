@@ -316,7 +316,6 @@ static void test_probes_get_more_of_a_batch_while_they_are_better_than_predicted
     assert_close(probe_share_after(1, 0.02), PROBE_SHARE + PROBE_WEIGHT * (PROBE_PAY - PROBE_SHARE), 1e-12);
     assert_close(probe_share_after(1, 0.009), PROBE_SHARE * (1.0 - PROBE_WEIGHT), 1e-12);
     assert_close(probe_share_after(200, 0.02), PROBE_SHARE_MAX, 1e-12);
-    assert_close(probe_share_after(200, -0.02), PROBE_SHARE_MIN, 1e-12); /* never none: a find would be missed */
 }
 
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
@@ -743,7 +742,7 @@ static Status evaluate_waves(size_t n, const double X[], const size_t draws[], d
 static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
 {
     double best = INFINITY;
-    SearchConfig c = config(36, 108); /* probes without waves begin with INFILL_ALONE 6 = 108 */
+    SearchConfig c = config(36, 108);
     c.seed = seed;
     fresh(NULL);
     world(&here, 6, 2);
@@ -759,7 +758,7 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
 }
 
 /* The valleys next to the lowest one are at 1 + 2 0.16 at least. Of 72 designs after the sample a share between
- * PROBE_SHARE_MIN and PROBE_SHARE_MAX probes, in the mean over the seeds. */
+ * 0.03 and PROBE_SHARE_MAX probes, in the mean over the seeds. */
 static void test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else(void **state)
 {
     (void)state;
@@ -771,7 +770,7 @@ static void test_single_variables_are_probed_where_there_are_waves_along_them_an
         in_lowest += best_of_waves(5, seed, &n) < 1.32;
         probes += n;
     }
-    assert_less(PROBE_SHARE_MIN * 72 * SEEDS, probes);
+    assert_less(0.03 * 72 * SEEDS, probes);
     assert_less(probes, PROBE_SHARE_MAX * 72 * SEEDS);
     assert_less(SEEDS / 2, in_lowest);
 }

@@ -19,40 +19,32 @@ enum { LOOK_AHEAD_SHARE = 4 };       /* asynchronous: batch / this designs wait 
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 
-enum { VECTOR_EVALS = 5 };  /* evaluations of the budget for each vector */
-enum { VECTORS_FEW = 200 }; /* small budgets: twice as many vectors, up to this number */
-enum { VECTORS_MAX = 400 }; /* most vectors */
+enum { VECTORS = 200 }; /* or the population, where that is more */
 
 /* -- offspring.c --------------------------------------------------------------------------------------------------- */
 
-enum { INNER_GENERATIONS = 10 };    /* of variation and selection on the surrogate between two batches */
-enum { DESCENTS_PER_DESIGN = 2 };   /* descents on the surrogate for each design of a batch */
-static const double PROBE_R2 = 0.9; /* leave-one-out R2 of every objective above which probes are made without waves */
+enum { INNER_GENERATIONS = 10 };  /* of variation and selection on the surrogate between two batches */
+enum { DESCENTS_PER_DESIGN = 2 }; /* descents on the surrogate for each design of a batch */
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 
 enum { DESCENT_STEPS = 30 };                   /* steps of a descent */
 static const double DESCENT_STEP_FIRST = 0.05; /* first step in each variable */
 static const double DESCENT_STEP_MAX = 0.2;    /* longest step */
-static const double DESCENT_GROW = 1.2;        /* factor of the step where the derivative keeps its sign */
-static const double DESCENT_SHRINK = 0.5;      /* ... where it changes */
 static const double SUCCESS_POWER = 2.0;       /* of the predicted success in the weight of a gain */
 static const double SUCCESS_MIN = 0.5;         /* predicted success below which a failure is predicted */
 static const double PENALTY = 10.0;            /* weight of violated limits, in their ranges, and of failures */
 
 /* -- surrogate.c: fit ---------------------------------------------------------------------------------------------- */
 
-static const double R2_MIN = 0.2;    /* mean leave-one-out R2 of the objectives below which no surrogate is used */
-static const double R2_CHANCE = 2.0; /* this / root(n) more: what tuning explains in n values without any pattern */
-enum { RETUNE_SHARE = 10 };          /* tuned again when n has grown by n / this */
-enum { RETUNE_SHARE_MANY = 5 };      /* ... beyond surrogate_max, where no centre is more than before */
-enum { SPREAD_CENTRES_SHARE = 4 };   /* beyond surrogate_max: centres / this are spread over all evaluations */
+static const double R2_MIN = 0.3;  /* mean leave-one-out R2 of the objectives below which no surrogate is used */
+enum { RETUNE_SHARE = 10 };        /* tuned again when n has grown by n / this */
+enum { SPREAD_CENTRES_SHARE = 4 }; /* beyond surrogate_max: centres / this are spread over all evaluations */
 
 /* -- infill.c: criteria -------------------------------------------------------------------------------------------- */
 
 static const double PBI_THETA = 5.0;     /* weight of the distance from the vector */
 static const double RAY_START = 1.1;     /* reference point of the hypervolume scalarisation, in widths of the front */
-static const double WEIGHT_MIN = 1e-3;   /* smallest component of a ray's direction */
 static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's derivative, in widths of the front */
 
 /* -- infill_select.c: infill selection ----------------------------------------------------------------------------- */
@@ -63,9 +55,7 @@ static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered w
 
 static const double AGREEMENT_MIN = 0.15;    /* running mean of Kendall's tau below which no infill is selected */
 static const double AGREEMENT_WEIGHT = 0.25; /* of one batch in that mean and in that of the failure rate */
-enum { INFILL_ALONE = 18 };                  /* evaluations per variable before probes are made without waves */
 static const double PROBE_SHARE = 0.1;       /* of a batch, for probes along single variables, at first */
-static const double PROBE_SHARE_MIN = 0.03;  /* least share of a batch for probes, so that a find is not missed */
 static const double PROBE_SHARE_MAX = 0.3;   /* greatest share of a batch for probes */
 static const double PROBE_FIND = 0.01;       /* a find is better than predicted by this, in ranges of the archive */
 static const double PROBE_PAY = 2.5;         /* share of a batch for probes of which all are finds */

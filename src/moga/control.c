@@ -34,7 +34,7 @@ size_t control_variation(const SurrogateControl *c, size_t size)
 
 double control_probe_share(const SurrogateControl *c)
 {
-    return fmin(fmax(c->probe_share, PROBE_SHARE_MIN), PROBE_SHARE_MAX);
+    return fmin(c->probe_share, PROBE_SHARE_MAX);
 }
 
 /* -- results of a batch -------------------------------------------------------------------------------------------- */

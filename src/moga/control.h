@@ -20,7 +20,7 @@ enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
 
 typedef struct {
     double agreement, failure_rate;
-    double probe_share;    /* of a batch, before it is kept within its bounds */
+    double probe_share;    /* of a batch, where that is not too much */
     size_t n_kept;         /* results since agreement was judged last: */
     double *F, *predicted; /* (AGREEMENT_RESULTS_MIN - 1 + results of a batch, n_obj) the caller's memory */
 } SurrogateControl;

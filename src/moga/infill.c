@@ -10,12 +10,15 @@
 #include "moga/constants.h"
 #include "moga/normalisation.h"
 
+/* Component of a ray along an axis of which the others are 0. */
+static const double LEAST = 1e-9;
+
 struct Infill {
     InfillKind kind;
     size_t n_obj, n_dir, n_max, n;
     Normalisation normalisation;
     double *unit, *across; /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
-    double *over;          /* (n_obj, n_dir) 1 / component, at most 1 / WEIGHT_MIN */
+    double *over;          /* (n_obj, n_dir) 1 / component, at most 1e9 */
     double *row;           /* (n_dir) */
     double *best_value;    /* (n_dir) of the front, lowered by what is picked */
     size_t *best;          /* (n_dir) row of the front that has it */
@@ -64,7 +67,7 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     for (size_t r = 0; r < q->n_dir; r++)
         for (size_t k = 0; k < q->n_obj; k++) {
             q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k];
-            q->over[k * q->n_dir + r] = 1.0 / fmax(q->unit[r * q->n_obj + k], WEIGHT_MIN);
+            q->over[k * q->n_dir + r] = 1.0 / fmax(q->unit[r * q->n_obj + k], LEAST);
         }
     return STATUS_OK;
 }
@@ -153,7 +156,7 @@ static double ray_slope(const Infill *q, const double w[], const double f[], dou
 {
     double length = -DBL_MAX, sum = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
-        slope[k] = (normalised(&q->normalisation, k, f[k]) - RAY_START) / fmax(w[k], WEIGHT_MIN);
+        slope[k] = (normalised(&q->normalisation, k, f[k]) - RAY_START) / fmax(w[k], LEAST);
         length = fmax(length, slope[k]);
     }
     for (size_t k = 0; k < q->n_obj; k++) {
@@ -161,7 +164,7 @@ static double ray_slope(const Infill *q, const double w[], const double f[], dou
         sum += slope[k];
     }
     for (size_t k = 0; k < q->n_obj; k++)
-        slope[k] /= sum * fmax(w[k], WEIGHT_MIN) * q->normalisation.width[k];
+        slope[k] /= sum * fmax(w[k], LEAST) * q->normalisation.width[k];
     return length;
 }
 

@@ -104,16 +104,13 @@ static void add_descended(Search *s)
 
 /* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the
  * golden section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. As far as objectives
- * have waves; late in a search also where the surrogate is right about all that it has seen: a converged search sees
- * nothing of what lies elsewhere. Their number is rounded at random, or a small share would never come to a whole
- * one. */
+ * have waves. Their number is rounded at random, or a small share would never come to a whole one. */
 static void add_probes(Search *s)
 {
     const Problem *p = s->problem;
     Offspring *o = &s->offspring;
     static const double GOLDEN = 0.61803398874989485;
-    const int is_right = s->archive.n >= INFILL_ALONE * p->n_var && surrogate_explained(s->surrogate) > PROBE_R2;
-    const double wanted = s->archive.n_front == 0 ? 0.0 : is_right ? 1.0 : surrogate_waves(s->surrogate);
+    const double wanted = s->archive.n_front == 0 ? 0.0 : surrogate_waves(s->surrogate);
     Random random = random_stream(s->config->seed, RANDOM_PROBES, (uint32_t)s->generation, 0);
     const double share = wanted * control_probe_share(&s->control);
     const size_t first = o->members.n, n = (size_t)(share * (double)batch_size(s) + random_uniform(&random));

@@ -9,18 +9,16 @@
  *       evolved     INNER_GENERATIONS generations of variation and selection on the surrogate; a share of the pairs, as
  *                   many as objectives have waves, is mutated over the whole box
  *       descended   descents on the surrogate along reference vectors, from the best design of each
- *       probes      designs of the front with one variable elsewhere, where objectives have waves or the search is late
- *                   and the surrogate right about all that it has seen
+ *       probes      designs of the front with one variable elsewhere, where objectives have waves
  *       variation   children of the population; the only offspring where the surrogate is not used
  *   4 Infill selection of a batch (infill_select.c)
  *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is that
  *                   of lower confidence bounds, prediction minus OPTIMISM times its error in every objective: where the
  *                   surrogate errs more there is more to find
  *       variation   as many children of variation as infill loses to failures, those with the greatest predicted gain
- *       probes      times the share of objectives with waves, or whole after INFILL_ALONE evaluations per variable
- *                   where every objective has an R2 above PROBE_R2: a share that grows while probes are better than
- *                   predicted and falls where they are not (control.h). What a surrogate knows of one valley says
- *                   nothing of the others, and what is gained at once is no measure of it
+ *       probes      times the share of objectives with waves a share that grows while probes are better than predicted
+ *                   and falls where they are not (control.h). What a surrogate knows of one valley says nothing of the
+ *                   others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted
  *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by

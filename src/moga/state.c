@@ -7,17 +7,11 @@
 
 /* -- memory -------------------------------------------------------------------------------------------------------- */
 
-/* Reference vectors of infill: one for VECTOR_EVALS evaluations of the budget; of small budgets twice as many, up to
- * VECTORS_FEW. */
+/* Reference vectors of infill. */
 static size_t n_vectors(const Search *s)
 {
-    const SearchConfig *c = s->config;
-    const size_t n_obj = s->problem->n_obj, one_each = search_planned(s) / VECTOR_EVALS,
-                 few = 2 * one_each < VECTORS_FEW ? 2 * one_each : VECTORS_FEW,
-                 wanted = one_each > few ? one_each : few, min = n_obj > c->population ? n_obj : c->population;
-    if (n_obj < 2)
-        return 1;
-    return wanted < min ? min : wanted < VECTORS_MAX ? wanted : VECTORS_MAX;
+    const size_t population = s->config->population;
+    return s->problem->n_obj < 2 ? 1 : population < VECTORS ? VECTORS : population;
 }
 
 static void layout(void *search, Carve *c)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/carve.h"
+#include "base/rprop.h"
 #include "base/stat.h"
 #include "moga/constants.h"
 #include "moga/dominance.h"
@@ -201,8 +202,7 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
             s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
     }
     measure_ranges(s, a);
-    const size_t share = a->n > s->n_max ? RETUNE_SHARE_MANY : RETUNE_SHARE;
-    const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + share - 1) / share;
+    const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE;
     TRY((tuning ? rbf_tune : rbf_fit)(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
     s->n_tuned = tuning ? a->n : s->n_tuned;
     s->fitted = 1;
@@ -225,7 +225,7 @@ int surrogate_is_usable(const Surrogate *s)
     double explained = 0.0;
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
         explained += fmax(rbf_explained(s->rbf, k), 0.0) / (double)s->problem->n_obj;
-    return s->fitted && explained > R2_MIN + R2_CHANCE / sqrt((double)s->n);
+    return s->fitted && explained > R2_MIN;
 }
 
 double surrogate_waves(const Surrogate *s)
@@ -234,14 +234,6 @@ double surrogate_waves(const Surrogate *s)
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
         n += rbf_is_additive(s->rbf, k);
     return n / (double)s->problem->n_obj;
-}
-
-double surrogate_explained(const Surrogate *s)
-{
-    double least = s->fitted ? 1.0 : 0.0;
-    for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
-        least = fmin(least, rbf_explained(s->rbf, k));
-    return least;
 }
 
 const double *surrogate_ranges(const Surrogate *s)
@@ -381,11 +373,8 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
         memcpy(w->best, u, n_var * sizeof *u);
     }
     for (size_t d = 0; d < n_var; d++) {
-        const double same_sign = w->g[d] * w->g_last[d];
-        w->step[d] *= same_sign > 0.0 ? DESCENT_GROW : same_sign < 0.0 ? DESCENT_SHRINK : 1.0;
-        w->g_last[d] = same_sign < 0.0 ? 0.0 : w->g[d];
-        if (w->g_last[d] != 0.0)
-            u[d] = fmin(fmax(u[d] - copysign(fmin(w->step[d], DESCENT_STEP_MAX), w->g[d]), 0.0), 1.0);
+        const double move = rprop_move(w->g[d], &w->g_last[d], &w->step[d]);
+        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -DESCENT_STEP_MAX), DESCENT_STEP_MAX), 0.0), 1.0);
     }
 }
 

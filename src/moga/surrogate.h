@@ -3,7 +3,7 @@
  * Objectives and constraints are the outputs of one Rbf on the unit cube. Beyond `surrogate_max` designs three quarters
  * of the centres are those nearest to the front, the rest is spread evenly over the order of evaluation, which begins
  * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again
- * when the archive has grown by a tenth, beyond `surrogate_max` by a fifth.
+ * when the archive has grown by a tenth.
  *
  *   chance   probability that a predicted design keeps every limit, each normal about its prediction with the local
  *            leave-one-out error, times that it succeeds: another Rbf on 1 where designs succeeded and 0 where they
@@ -32,14 +32,11 @@ void surrogate_free(Surrogate *s); /* NULL is fine */
 Status surrogate_fit(Surrogate *s, const Archive *archive, Infill *near, Err *err);
 void surrogate_drop(Surrogate *s); /* as if it had never been fitted */
 
-/* It is fitted, and its mean leave-one-out R2 over the objectives exceeds R2_MIN + R2_CHANCE / root(n). */
+/* It is fitted, and its mean leave-one-out R2 over the objectives exceeds R2_MIN. */
 int surrogate_is_usable(const Surrogate *s);
 
 /* Share of the objectives with waves along single variables: their kernels have an additive part (rbf/rbf.h). */
 double surrogate_waves(const Surrogate *s);
-
-/* Least leave-one-out R2 of the objectives; 0: not fitted. */
-double surrogate_explained(const Surrogate *s);
 
 const double *
 surrogate_ranges(const Surrogate *s); /* (n_obj) of the objectives in the archive, 1 where all are equal */

@@ -7,18 +7,14 @@
 enum { TUNE_CENTRES_MAX = 250 };            /* centres that the likelihood is computed on, at n^3 each */
 enum { TUNE_STEPS_FIRST = 16 };             /* steps for every form, at the first tuning */
 enum { TUNE_STEPS = 8 };                    /* steps for the present form and one other, later */
-static const double TUNE_STEP_THETA = 0.5;  /* first step of log theta and log nugget */
-static const double TUNE_STEP_WARP = 0.2;   /* first step of log a, log b */
-static const double TUNE_GROW = 1.2;        /* factor of the step where the derivative keeps its sign */
-static const double TUNE_SHRINK = 0.5;      /* ... where it changes */
+static const double TUNE_STEP = 0.5;        /* first step of each logarithm */
 static const double THETA_MIN = 1e-4;       /* bounds of theta */
 static const double THETA_MAX = 50.0;       /* ... */
 static const double THETA_PRIOR_SD = 1.4;   /* of log theta about its mean over the variables */
 static const double WARP_MIN = 0.1;         /* bounds of a and b */
 static const double WARP_MAX = 8.0;         /* ... */
 static const double WARP_PRIOR_SD = 0.0015; /* of log a and log b about 0, for each centre */
-static const double NUGGET_MIN = 1e-8;      /* bounds of the nugget */
-static const double NUGGET_MAX = 1.0;       /* ... */
+static const double NUGGET_MIN = 1e-8;      /* least nugget; 1: all of the variance is noise */
 static const double NUGGET_START = 1e-4;    /* smallest nugget that tuning starts from */
 
 /* -- tune.c: the additive part of a kernel ------------------------------------------------------------------------- */
@@ -31,7 +27,5 @@ static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in varianc
 /* -- rbf.c --------------------------------------------------------------------------------------------------------- */
 
 static const double ADDITIVE_SHARE = 0.5; /* of the kernel is its additive part, the rest is as without it */
-static const double NEAREST = 1e-4;       /* a variable nearer to its bounds is warped as if it were so far away */
-enum { CENTRES_PER_COEFFICIENT = 2 };     /* a quadratic tail takes so many centres for each coefficient */
 
 #endif

@@ -91,7 +91,7 @@ void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], Rb
 int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], const double K[],
                  RbfForm *form);
 
-/* Twice as many centres as coefficients at least, else a simpler tail. */
+/* More centres than coefficients, else a simpler tail. */
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim);
 
 /* Generalised least squares for the tail, then the weights, from the factor in k->A and the data in k->y:

@@ -173,7 +173,7 @@ static double tail_value(size_t n_dim, size_t column, const double x[], size_t x
 
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
 {
-    if (tail == RBF_QUADRATIC && n >= CENTRES_PER_COEFFICIENT * (1 + 2 * n_dim))
+    if (tail == RBF_QUADRATIC && n > 1 + 2 * n_dim)
         return 1 + 2 * n_dim;
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }
@@ -184,7 +184,7 @@ int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const doub
         model_matrix(m, n, C, S, *form, k->noise, K, k->A);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
-        if (form->nugget >= NUGGET_MAX)
+        if (form->nugget >= 1.0)
             return 0;
     }
 }
@@ -327,7 +327,7 @@ size_t rbf_left_out(const Rbf *m)
 
 static double log_away(double u)
 {
-    return log(u < NEAREST ? NEAREST : u);
+    return log(u < 1e-9 ? 1e-9 : u);
 }
 
 static void place(Rbf *m, size_t i, size_t d, double u)

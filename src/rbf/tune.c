@@ -4,6 +4,7 @@
 #include <omp.h>
 #include <string.h>
 
+#include "base/rprop.h"
 #include "rbf/constants.h"
 #include "rbf/kernel.h"
 #include "rbf/model.h"
@@ -34,7 +35,7 @@ static double min_parameter(const Rbf *m, size_t i)
 
 static double max_parameter(const Rbf *m, size_t i)
 {
-    return log(i < m->n_dim ? THETA_MAX : i < m->n_dim + 2 ? WARP_MAX : NUGGET_MAX);
+    return log(i < m->n_dim ? THETA_MAX : i < m->n_dim + 2 ? WARP_MAX : 1.0);
 }
 
 /* Minus the logarithm of the priors, and its gradient. */
@@ -137,7 +138,7 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
-        k->step[i] = i < m->n_dim || i == i_nugget ? TUNE_STEP_THETA : TUNE_STEP_WARP;
+        k->step[i] = TUNE_STEP;
         last[i] = 0.0;
     }
     for (int step = 0; step < steps; step++) {
@@ -146,16 +147,11 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
             best = l;
             memcpy(k->best_p, p, n_p * sizeof *p);
         } else if (!(l < INFINITY)) {
-            p[i_nugget] = fmin(p[i_nugget] + log(10.0), log(NUGGET_MAX));
+            p[i_nugget] = fmin(p[i_nugget] + log(10.0), 0.0);
             continue;
         }
-        for (size_t i = 0; i < n_p; i++) {
-            const double same_sign = g[i] * last[i];
-            k->step[i] *= same_sign > 0.0 ? TUNE_GROW : same_sign < 0.0 ? TUNE_SHRINK : 1.0;
-            last[i] = same_sign < 0.0 ? 0.0 : g[i];
-            if (last[i] != 0.0)
-                p[i] = fmin(fmax(p[i] - copysign(k->step[i], g[i]), min_parameter(m, i)), max_parameter(m, i));
-        }
+        for (size_t i = 0; i < n_p; i++)
+            p[i] = fmin(fmax(p[i] + rprop_move(g[i], &last[i], &k->step[i]), min_parameter(m, i)), max_parameter(m, i));
     }
     read_parameters(m, k->best_p, shape, &form->nugget);
 }
