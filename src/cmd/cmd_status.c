@@ -41,7 +41,7 @@ static Failures failures_of(const Run *run)
     return f;
 }
 
-/* -- for people ---------------------------------------------------------------------------------------------------- */
+/* -- one run ------------------------------------------------------------------------------------------------------- */
 
 static void print_head(const char *folder, const Run *run, const Standing *s)
 {
@@ -83,36 +83,6 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
         printf("resume it with: imtet optimize %s\n", folder);
 }
 
-/* The first, the last, and some evenly between. */
-static void print_generations(const Run *run, double expected)
-{
-    const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
-    char worked[32], hypervolume[32];
-    if (n == 0)
-        return;
-    printf("\n%12s %10s %8s %8s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume", "after");
-    for (size_t r = 0; r < rows; r++) {
-        const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
-        const RunGeneration *g = &run->generation[i];
-        duration_words(g->seconds, worked);
-        number_words(g->hypervolume, 4, hypervolume);
-        printf("%12ld %10ld %8ld %8ld %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume, worked);
-    }
-    printf("hypervolume: standard error %.4f at most\n", hypervolume_error(0.5));
-    if (run_is_screened(run))
-        puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
-    show_expected_gain(expected);
-}
-
-static void print_failures(const Failures *f)
-{
-    for (size_t k = 0; k < f->n_outcomes; k++)
-        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], outcome_word(f->first[k]->outcome),
-               f->first[k]->reason, f->count[k] > 1 ? ", for example" : "");
-}
-
-/* -- for programs -------------------------------------------------------------------------------------------------- */
-
 static json_t *json_generations(const Run *run)
 {
     json_t *list = json_array();
@@ -128,6 +98,39 @@ static json_t *json_generations(const Run *run)
     }
     return list;
 }
+
+/* The first, the last, and some evenly between. */
+static void print_generations(const Run *run, double expected)
+{
+    static const char *const UNSHOWN[] = {"hypervolume_error", "surrogate_error", "finished"};
+    const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
+    json_t *all = json_generations(run), *table = json_array();
+    for (size_t r = 0; r < rows; r++) {
+        json_t *row = json_array_get(all, rows > 1 ? r * (n - 1) / (rows - 1) : 0);
+        figures_put(row, "hypervolume", json_number_value(json_object_get(row, "hypervolume")),
+                    json_number_value(json_object_get(row, "hypervolume_error")), NAN);
+        for (size_t i = 0; i < sizeof UNSHOWN / sizeof UNSHOWN[0]; i++)
+            json_object_del(row, UNSHOWN[i]);
+        json_array_append(table, row);
+    }
+    if (n > 0)
+        putchar('\n');
+    figures_print(table);
+    json_decref(all);
+    if (n > 0 && run_is_screened(run))
+        puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
+    if (n > 0)
+        show_expected_gain(expected);
+}
+
+static void print_failures(const Failures *f)
+{
+    for (size_t k = 0; k < f->n_outcomes; k++)
+        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], outcome_word(f->first[k]->outcome),
+               f->first[k]->reason, f->count[k] > 1 ? ", for example" : "");
+}
+
+/* -- for programs -------------------------------------------------------------------------------------------------- */
 
 static json_t *json_sessions(const Run *run)
 {
@@ -215,68 +218,65 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
 
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
 
-/* One line or one object; a run that cannot be read says why and the others follow. */
-static void list_run(const char *name, const char *folder, json_t *list)
+/* A run that cannot be read says why, and the others follow. */
+static void add_run(json_t *list, const char *folder)
 {
     Run run;
     Standing s;
     Err err = {0};
+    json_t *row = figures_row(list);
+    json_object_set_new(row, "run", json_words(folder));
     if (run_read(&run, folder, &err) != STATUS_OK) {
-        if (list)
-            json_array_append_new(list, json_pack("{s:o, s:s, s:o}", "run", json_words(folder), "state", "unreadable",
-                                                  "reason", json_words(err.text)));
-        else
-            printf("%-24s unreadable: %s\n", name, err.text);
+        json_object_update_new(row, json_pack("{s:s, s:o}", "state", "unreadable", "reason", json_words(err.text)));
         return;
     }
     standing_of(&s, folder, &run);
-    const RunSession *last = run.n_sessions > 0 ? &run.session[run.n_sessions - 1] : NULL;
-    const char *started = last ? last->started : "-";
-    char hypervolume[32];
-    number_words(s.hypervolume, 4, hypervolume);
-    if (list)
-        json_array_append_new(list, json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", json_words(folder),
-                                              "state", state_words(s.state), "simulated",
-                                              (json_int_t)s.progress.simulated, "max_evals", (json_int_t)s.max_evals,
-                                              "failed", (json_int_t)s.n_failed, "front", (json_int_t)run.n_front,
-                                              "hypervolume", json_number(s.hypervolume), "started", started));
-    else
-        printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.progress.simulated,
-               s.max_evals, s.n_failed, run.n_front, hypervolume, started);
+    json_object_update_new(row, json_pack("{s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "state", state_words(s.state),
+                                          "simulated", (json_int_t)s.progress.simulated, "max_evals",
+                                          (json_int_t)s.max_evals, "failed", (json_int_t)s.n_failed, "front",
+                                          (json_int_t)run.n_front, "hypervolume", json_number(s.hypervolume), "started",
+                                          run.n_sessions > 0 ? run.session[run.n_sessions - 1].started : "-"));
     run_free(&run);
 }
 
-static size_t list_folder(const char *folder, int n, struct dirent *const entries[], json_t *list)
+/* Without hypervolumes: each is a share of a box of that run alone. */
+static void print_runs(json_t *list)
 {
-    char path[PATH_MAX + 288];
-    size_t found = 0;
-    for (int i = 0; i < n; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] == '.' || !run_is_there(path))
-            continue;
-        if (found++ == 0 && !list)
-            printf("%-24s %-10s %20s %7s %7s %12s  %s\n", "run", "state", "simulated", "failed", "front", "hypervolume",
-                   "last start");
-        list_run(entries[i]->d_name, path, list);
+    size_t i;
+    json_t *row;
+    json_array_foreach(list, i, row)
+    {
+        const char *slash = strrchr(json_string_value(json_object_get(row, "run")), '/');
+        json_object_del(row, "hypervolume");
+        if (json_object_get(row, "reason"))
+            json_object_set(row, " ", json_object_get(row, "reason"));
+        json_object_del(row, "reason");
+        if (slash)
+            json_object_set_new(row, "run", json_string(slash + 1));
     }
-    return found;
+    figures_print(list);
 }
 
 static Status show_folder(const Args *args, const char *folder, Err *err)
 {
+    char path[PATH_MAX + 288];
     struct dirent **entries;
     const int n = scandir(folder, &entries, NULL, versionsort);
     if (n < 0)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
-    json_t *list = args_has(args, "--json") ? json_array() : NULL;
-    const size_t found = list_folder(folder, n, entries, list);
-    for (int i = 0; i < n; i++)
+    json_t *list = json_array();
+    for (int i = 0; i < n; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+        if (entries[i]->d_name[0] != '.' && run_is_there(path))
+            add_run(list, path);
         free(entries[i]);
+    }
     free(entries);
-    if (list)
+    if (args_has(args, "--json"))
         return show_json(list, err);
-    if (found == 0)
+    if (json_array_size(list) == 0)
         printf("%s: no runs\n", folder);
+    print_runs(list);
     return STATUS_OK;
 }
 

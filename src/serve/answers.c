@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "moga/hypervolume.h"
 #include "report/report_json.h"
+#include "settings/settings.h"
 
 static json_t *json_of_numbers(const Look *look, const char *name)
 {
@@ -144,6 +145,14 @@ static Status check_pair(const Look *const look[2], Err *err)
                 : fail(err, STATUS_BAD_DATA, "the two runs have other objectives: their fronts cannot be compared");
 }
 
+/* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */
+static void name_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    (void)flags, (void)was, (void)is;
+    if (strncmp(key, "search.", 7) != 0 && strncmp(key, "run.", 4) != 0)
+        json_array_append_new(user, json_string(key));
+}
+
 Status answer_against(const Look *const look[2], const char *const name[2], json_t **out, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
@@ -157,7 +166,10 @@ Status answer_against(const Look *const look[2], const char *const name[2], json
                      : fail(err, STATUS_NO_MEMORY, "no memory for a front");
         runs = json_append(runs, one);
     }
-    *out = status == STATUS_OK ? json_pack("{s:o}", "runs", runs) : NULL;
+    json_t *differences = json_array();
+    settings_compare(look[0]->run.settings, look[1]->run.settings, name_difference, differences);
+    *out = status == STATUS_OK ? json_pack("{s:o, s:O}", "runs", runs, "differences", differences) : NULL;
+    json_decref(differences);
     if (status != STATUS_OK)
         json_decref(runs);
     return status == STATUS_OK && !*out ? fail(err, STATUS_NO_MEMORY, "no memory for two fronts") : status;

@@ -31,7 +31,7 @@ function progressPart() {
       `${count(status.failed)} failed; ${count(status.front)} on the front after generation ${Math.max(0, status.generation)}, hypervolume ${status.hypervolume === null ? "\u2013" : show(100 * status.hypervolume)} %`;
     bar.max = status.max_evals;
     bar.value = status.simulated;
-    if (!part.dataset.state) grid.hidden = !isOn; // a finished run has both pictures below
+    if (!part.dataset.state) part.hidden = status.state === "finished"; // all of it stands below
     part.dataset.state = status.state;
     if (status.generation === generation) return;
     generation = status.generation;

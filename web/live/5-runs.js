@@ -5,16 +5,17 @@ async function runsPart() {
   if (runs.length < 2) return;
   const part = livePart("runs", "Runs of this folder", "provenance"), here = +location.pathname.split("/").at(-2), body = element("div");
   const row = (r) => line([element("a", { href: `../${r.at}/` }, r.name), r.state,
-    ...(r.state === "unreadable" ? [r.reason, "", "", ""] : [`${count(r.simulated)} of ${count(r.max_evals)}`, count(r.failed), count(r.front), show(r.hypervolume && 100 * r.hypervolume)]),
+    ...(r.state === "unreadable" ? [r.reason, "", ""] : [`${count(r.simulated)} of ${count(r.max_evals)}`, count(r.failed), count(r.front)]),
     r.at === here || r.state === "unreadable" ? "" : plainButton("Compare", () => against(body, r))], { class: r.at === here && "chosen" });
-  part.append(table("all-runs", ["run", "state", "simulated", "failed", "front", "hypervolume %", ""], runs.map(row)), body);
+  part.append(table("all-runs", ["run", "state", "simulated", "failed", "front", ""], runs.map(row)), body);
 }
 
 async function against(body, other) {
   body.classList.add("stale");
   try {
-    const { runs } = await ask(`against/${other.at}`), colours = [BLUE, VERMILLION];
+    const { runs, differences } = await ask(`against/${other.at}`), colours = [BLUE, VERMILLION];
     refill(body, (host) => {
+      if (differences.length) host.append(element("p", { class: "warn" }, `Two different problems, so that neither front is the better one: ${differences.join(", ")} differ.`));
       host.append(legend(runs.map((r, i) => [`${r.name}: ${count(r.f.length)} on the front`, colours[i]])));
       const grid = host.appendChild(element("div", { class: "grid2" }));
       const strip = grid.appendChild(element("figure", {}, element("h3", {}, "Both fronts")));
