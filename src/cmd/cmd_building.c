@@ -74,14 +74,17 @@ static Status make_core(const Args *args, Model *m, Err *err)
 static Status open_model(const Args *args, Model *m, Err *err)
 {
     struct stat st;
-    const size_t n = strlen(args->operand);
-    const char *end = args->operand + (n > 4 ? n - 4 : 0);
-    m->has_core =
-        strcmp(end, ".ini") == 0 || (strcmp(end, ".tcl") != 0 && stat(args->operand, &st) == 0 && S_ISREG(st.st_mode));
+    const char *name = args->operand, *end = name + (strlen(name) > 4 ? strlen(name) - 4 : 0);
+    const int is_there = stat(name, &st) == 0;
+    m->has_core = strcmp(end, ".ini") == 0 || (strcmp(end, ".tcl") != 0 && is_there && S_ISREG(st.st_mode));
     settings_defaults(&m->s);
+    if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0)
+        return fail(err, STATUS_MISSING, "%s: No such file or folder", name);
     if (!m->has_core)
-        TRY(option_put_path(m->s.building.model, args->operand, err));
+        TRY(option_put_path(m->s.building.model, name, err));
     TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
+    if (m->s.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower: %s has no building", name);
     if (args_has(args, "--design") && !m->has_core)
         return fail(err, STATUS_USAGE, "--design is of a CONFIG, which has a core");
     TRY(building_load(&m->b, &m->s.building, err));
@@ -101,10 +104,10 @@ static void print_building(const Model *m)
     double between = mass;
     for (int j = 0; j < m->b.n; j++)
         between -= row_mass(&m->b, j);
-    printf("%s: %d floor%s, %.5g kg, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", mass,
+    printf("%s: %d floor%s, %.0f kg, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", mass,
            1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
-        printf("of it %.4g kg are between the floors\n", between);
+        printf("of it %.0f kg are between the floors\n", between);
     if (m->frame.n_nodes)
         printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n_nodes, m->frame.n_elements,
                m->frame.n_sections, m->frame.n_ties);
@@ -113,7 +116,7 @@ static void print_building(const Model *m)
 static void print_core(const Model *m)
 {
     const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
-    printf("core of %.4g kg", m->core.mass_kg);
+    printf("core of %.0f kg", m->core.mass_kg);
     if (m->s.core.section == CORE_EFFECTIVE)
         printf(" (effective section)");
     else
@@ -122,23 +125,40 @@ static void print_core(const Model *m)
            core_theory_word(m->s.core.theory), bending, shearing, 100 * (shearing / bending - 1));
 }
 
-static void print_table(const Model *m)
+/* Floors, then modes, in the order of both; and what stands beside them of a core. */
+static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *cores)
 {
     const Building *b = &m->b;
-    const BuildingModel *all = &b->model;
     double z = 0;
-    printf("\nfloor    z [m]  storey [m]    mass [kg]     mode  period [s]  freq [Hz]  mass [%%]  damping [%%]%s\n",
-           m->has_core ? "  core [Hz]  mass [%]  zero gap [Hz]" : "");
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
-        printf("%5d %8.3f %11.3f %12.5g    %5d %11.4g %10.4g %9.3g %12.3g", j + 1, z, b->storey_m[j], row_mass(b, j),
-               j + 1, 2 * M_PI / all->omega[j], all->omega[j] / (2 * M_PI),
-               100 * share(all->gamma[j], building_mass(b)), 100 * all->zeta[j]);
+        json_array_append_new(floors, json_pack("{s:i, s:f, s:f, s:f}", "floor", j + 1, "z_m", z, "storey_m",
+                                                b->storey_m[j], "mass_kg", row_mass(b, j)));
+        json_array_append_new(
+            modes, json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", b->model.omega[j] / (2 * M_PI), "mass_share",
+                             share(b->model.gamma[j], building_mass(b)), "damping", b->model.zeta[j]));
         if (m->has_core)
-            printf(" %10.4g %9.3g %14.4g", m->core.omega[j] / (2 * M_PI), 100 * share(m->core.gamma[j], moved_mass(m)),
-                   m->zero_gap[j]);
-        putchar('\n');
+            json_array_append_new(cores, json_pack("{s:f, s:f, s:f}", "core_hz", m->core.omega[j] / (2 * M_PI),
+                                                   "core_mass_share", share(m->core.gamma[j], moved_mass(m)),
+                                                   "zero_gap_hz", m->zero_gap[j]));
     }
+}
+
+static void print_table(const Model *m)
+{
+    json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
+    add_rows(m, floors, modes, cores);
+    for (size_t j = 0; j < json_array_size(floors); j++) {
+        json_t *row = json_array_get(floors, j);
+        json_object_set_new(row, "period_s", json_real(2 * M_PI / m->b.model.omega[j]));
+        json_object_update(row, json_array_get(modes, j));
+        if (m->has_core)
+            json_object_update(row, json_array_get(cores, j));
+    }
+    putchar('\n');
+    figures_print(floors);
+    json_decref(modes);
+    json_decref(cores);
 }
 
 /* Shape of a mode on the floors, its largest 1. */
@@ -153,55 +173,46 @@ static json_t *json_shape(const BuildingModel *b, int n, int mode)
     return json_numbers((size_t)n, shape);
 }
 
-static void put_number(json_t *o, const char *list, double x)
+/* Mode by mode; those of the core as they stand in `cores`. */
+static void put_core(json_t *o, const Model *m, const json_t *cores)
 {
-    json_array_append_new(json_object_get(o, list), json_number(x));
-}
-
-static void put_core(json_t *o, const Model *m)
-{
-    static const char *const LISTS[] = {"building_hz",     "building_mass_share", "building_damping",
-                                        "building_shapes", "building_horizontal", "core_hz",
-                                        "core_mass_share", "zero_gap_hz"};
     const BuildingModel *b = &m->b.model;
-    json_object_update_new(o, json_pack("{s:f, s:f, s:f, s:s, s:f, s:f}", "t_base_m", m->design.t_base, "t_top_m",
-                                        m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory",
-                                        core_theory_word(m->s.core.theory), "core_timoshenko_hz",
-                                        m->by_theory[CORE_TIMOSHENKO], "core_euler_bernoulli_hz",
-                                        m->by_theory[CORE_EULER_BERNOULLI]));
-    for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++)
-        json_object_set_new(o, LISTS[i], json_array());
-    for (int i = 0; i < m->b.n; i++) {
-        put_number(o, "building_hz", b->omega[i] / (2 * M_PI));
-        put_number(o, "building_mass_share", share(b->gamma[i], building_mass(&m->b)));
-        put_number(o, "building_damping", b->zeta[i]);
-        json_array_append_new(json_object_get(o, "building_shapes"), json_shape(b, m->b.n, i));
-        json_array_append_new(json_object_get(o, "building_horizontal"), json_boolean(b->like[i] >= 0));
-        put_number(o, "core_hz", m->core.omega[i] / (2 * M_PI));
-        put_number(o, "core_mass_share", share(m->core.gamma[i], moved_mass(m)));
-        put_number(o, "zero_gap_hz", m->zero_gap[i]);
+    double hz[FLOORS_MAX], shares[FLOORS_MAX];
+    const size_t n = (size_t)m->b.n;
+    const char *key;
+    json_t *shapes = json_array(), *horizontal = json_array(), *value;
+    for (size_t i = 0; i < n; i++) {
+        hz[i] = b->omega[i] / (2 * M_PI);
+        shares[i] = share(b->gamma[i], building_mass(&m->b));
+        json_array_append_new(shapes, json_shape(b, m->b.n, (int)i));
+        json_array_append_new(horizontal, json_boolean(b->like[i] >= 0));
+    }
+    json_object_update_new(
+        o, json_pack("{s:f, s:f, s:f, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "t_base_m", m->design.t_base, "t_top_m",
+                     m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory",
+                     core_theory_word(m->s.core.theory), "core_timoshenko_hz", m->by_theory[CORE_TIMOSHENKO],
+                     "core_euler_bernoulli_hz", m->by_theory[CORE_EULER_BERNOULLI], "building_hz", json_numbers(n, hz),
+                     "building_mass_share", json_numbers(n, shares), "building_damping", json_numbers(n, b->zeta),
+                     "building_shapes", shapes, "building_horizontal", horizontal));
+    json_object_foreach(json_array_get(cores, 0), key, value)
+    {
+        json_t *list = json_array();
+        for (size_t i = 0; i < n; i++)
+            json_array_append(list, json_object_get(json_array_get(cores, i), key));
+        json_object_set_new(o, key, list);
     }
 }
 
 static Status print_json(const Model *m, Err *err)
 {
-    const Building *b = &m->b;
-    const BuildingModel *all = &b->model;
-    json_t *floors = json_array(), *modes = json_array();
-    double z = 0;
-    for (int j = 0; j < b->n; j++) {
-        z += b->storey_m[j];
-        json_array_append_new(floors, json_pack("{s:i, s:f, s:f, s:f}", "floor", j + 1, "z_m", z, "storey_m",
-                                                b->storey_m[j], "mass_kg", row_mass(b, j)));
-        json_array_append_new(modes,
-                              json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", all->omega[j] / (2 * M_PI),
-                                        "mass_share", share(all->gamma[j], building_mass(b)), "damping", all->zeta[j]));
-    }
+    json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
+    add_rows(m, floors, modes, cores);
     json_t *o = json_pack("{s:o, s:f, s:i, s:i, s:o, s:o}", "model", json_words(m->s.building.model), "mass_kg",
-                          building_mass(b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
+                          building_mass(&m->b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
                           floors, "modes", modes);
     if (m->has_core)
-        put_core(o, m);
+        put_core(o, m, cores);
+    json_decref(cores);
     return show_json(o, err);
 }
 

@@ -30,6 +30,16 @@ void figures_put(json_t *row, const char *column, double value, double error, do
     json_object_set_new(row, column, json_string(text));
 }
 
+/* Behind the point, of a number that is known: 0.03, not 0.03000. */
+static void drop_zeros(char *text)
+{
+    size_t n = strchr(text, '.') && !strchr(text, 'e') ? strlen(text) : 0;
+    while (n > 0 && text[n - 1] == '0')
+        n--;
+    if (n > 0)
+        text[n - (text[n - 1] == '.')] = 0;
+}
+
 /* How the cell is shown; empty where the row has none. */
 static void cell_words(const json_t *cell, char text[CELL_MAX])
 {
@@ -38,7 +48,9 @@ static void cell_words(const json_t *cell, char text[CELL_MAX])
     else if (json_is_integer(cell))
         snprintf(text, CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
     else
-        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, NAN, NAN, text);
+        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, text);
+    if (json_is_real(cell))
+        drop_zeros(text);
 }
 
 /* Characters, not bytes. */

@@ -2,8 +2,7 @@
  *
  *   table   a JSON array of rows; a row is an object, a column a key of it, in the order in which the rows bring them
  *   cell    text, a whole number, a number, or none (null, or left out)
- *   shown   aligned under the names on standard output, numbers with the digits that are known (base/figure.h); as CSV,
- *           numbers with all digits; as JSON
+ *   shown   aligned under the names on standard output, numbers with four digits; as CSV and JSON with all of them
  *
  * Ownership  figures_print, figures_csv and show_json take the reference; rows are borrowed from their table */
 #ifndef IMTET_CMD_SHOW_H
@@ -15,7 +14,8 @@
 
 json_t *figures_row(json_t *table); /* a further one */
 
-/* error: the likely one; sd: standard deviation; NAN: not known. */
+/* As text with the digits that are known (base/figure.h). error: the likely one; sd: standard deviation; NAN: not
+ * known. */
 void figures_put(json_t *row, const char *column, double value, double error, double sd);
 void figures_print(json_t *table);
 Status figures_csv(json_t *table, const char *path, Err *err);
