@@ -1,6 +1,7 @@
 /* `imtet check`: what it says of a sound building, and which warning each implausible one gets. */
 #include "program.h"
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "motion/motion_scale.h"
@@ -289,6 +290,44 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
     assert_close(f.base_shear, psa / 9.81, 1e-12);
     assert_close(f.first_mode_mass, 1, 1e-12);
     motion_free(&m);
+}
+
+/* Of processors, so that other load does not count. */
+static double processor_seconds(void)
+{
+    struct rusage u;
+    getrusage(RUSAGE_CHILDREN, &u);
+    return (double)(u.ru_utime.tv_sec + u.ru_stime.tv_sec) + 1e-6 * (double)(u.ru_utime.tv_usec + u.ru_stime.tv_usec);
+}
+
+TEST(the_time_of_a_study_counts_its_search_and_its_baselines)
+{
+    if (SANITIZED) /* only the simulation is timed, the rest is slower there too */
+        skip();
+    write_building(1, 1, 0);
+    static const char STUDY[] = "@/six.ini --set sim.duration_s=5 --set search.max_evals=150 --set search.polish=0 "
+                                "--set search.threads=1";
+    char words[300];
+    snprintf(words, sizeof words, "check %s --json", STUDY);
+    json_t *o = json_of(words);
+    const double expected = number(json_object_get(o, "study"), "seconds");
+    const double simulated = 150 * number(json_object_get(o, "study"), "simulation_s");
+    json_decref(o);
+    const double begun = processor_seconds();
+    snprintf(words, sizeof words, "optimize %s --out @/timed", STUDY);
+    free(output_of(words));
+    const double took = processor_seconds() - begun;
+    print_message("%.3f s expected (simulations %.3f s), %.3f s taken\n", expected, simulated, took);
+    assert_less(took / 4, expected);
+    assert_less(expected, 4 * took);
+}
+
+TEST(a_core_as_wide_as_the_building_is_asked_about)
+{
+    write_building(1, 1, 0);
+    expect_warnings("core.width_m", "--set core.width_m=9"); /* 21 m high, its plan not known */
+    expect(0, "is 49 % of the building's width of 30.48 m", "check configs/quick.ini --set core.width_m=15");
+    expect(65, "1 fault\n", "check configs/quick.ini --pga 0 --set motion.target=nonsense");
 }
 
 TEST(a_study_of_the_most_floors_ends_with_its_baselines)

@@ -13,6 +13,7 @@
 #include "cmd/warnings.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
+#include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/tables.h"
 #include "sim/sim.h"
@@ -40,12 +41,17 @@ static const double GOLDEN_RATIO = 0.6180339887498949; /* its multiples modulo 1
 
 /* ---- findings ------------------------------------------------------------------------------------------------- */
 
-/* One that was found before is not said again. */
+/* One that was found before is not said again, also where it was found in a line of the file. */
 static void fault(Check *c, const char *text)
 {
-    for (size_t i = 0; i < json_array_size(c->faults); i++)
-        if (strcmp(json_string_value(json_array_get(c->faults, i)), text) == 0)
+    size_t i;
+    json_t *known;
+    json_array_foreach(c->faults, i, known)
+    {
+        const size_t n = json_string_length(known), own = strlen(text);
+        if (own <= n && strcmp(json_string_value(known) + n - own, text) == 0)
             return;
+    }
     json_array_append_new(c->faults, json_string(text));
     if (!c->as_json)
         fprintf(stderr, "%s\n", text);
@@ -157,6 +163,39 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     return 1;
 }
 
+/* Width of a plane frame [m], else the height of the building, whose plan is not known. */
+static double plan_width(const CheckedScene *p, const char **what)
+{
+    Frame f = {0};
+    double least = INFINITY, most = -INFINITY;
+    *what = "width";
+    if (frame_is(p->s->building.model) && frame_read(&f, &p->s->building, &(Err){0}) == STATUS_OK)
+        for (int i = 0; i < f.n_nodes; i++) {
+            least = fmin(least, f.node[i].x);
+            most = fmax(most, f.node[i].x);
+        }
+    frame_free(&f);
+    if (most > least)
+        return most - least;
+    *what = "height (its plan is not known)";
+    return p->summary.height_m;
+}
+
+/* Share of the plan's width that is asked about. */
+static const double PLAN_SHARE_MAX = 0.4;
+
+static void ask_about_plan(Check *c, const CheckedScene *p)
+{
+    const char *what;
+    const double side = p->design.side > 0 ? p->design.side : p->s->core.width_m, width = plan_width(p, &what);
+    char text[160];
+    if (p->s->core.section == CORE_EFFECTIVE || !(side > PLAN_SHARE_MAX * width))
+        return;
+    snprintf(text, sizeof text, "%.4g m is %.0f %% of the building's %s of %.4g m: is there room for such a core?",
+             side, 100 * side / width, what, width);
+    warn("core.width_m", text, c);
+}
+
 static int summarise(Check *c, CheckedScene *p)
 {
     Err e = {0};
@@ -169,6 +208,7 @@ static int summarise(Check *c, CheckedScene *p)
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
+    ask_about_plan(c, p);
     if (p->motion.warning[0])
         warn("motion.record", p->motion.warning, c);
     if (p->s->sim.duration_s > duration(&p->motion)) {
@@ -226,29 +266,48 @@ static Status time_simulation(const CheckedScene *p, SimResult *result, Err *err
     return status;
 }
 
-static long processors(void)
+/* What a study does beside its simulations, for the time that it takes: per evaluation and objective, growing with the
+ * root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and record.
+ * Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives, within 30 %,
+ * and of `imtet evaluate` of the quick study. Their simulations: of 16 designs for the gaps, and some with baselines. */
+static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045;
+enum { CLOSING_SIMULATIONS = 24 };
+
+/* Wall times [s] of a study: search and baselines beside the simulations, and all of it. */
+static void expected_times(const CheckedScene *p, long simulations, long threads, double each_s, size_t n_obj,
+                           double *search_s, double *baselines_s, double *all_s)
 {
-    const long n = sysconf(_SC_NPROCESSORS_ONLN);
-    return n > 0 ? n : 1;
+    const SearchOptions *o = &p->s->search;
+    const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
+    const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
+    const double growth = sqrt((double)p->space.n_var / VARIABLES);
+    *search_s = o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
+    *baselines_s = DEVICES_S * (double)p->building.n * n_records;
+    *all_s = all * each_s / (double)threads + *search_s + *baselines_s;
 }
 
 static void describe_study(Check *c, const CheckedScene *p)
 {
     Err e = {0};
     SimResult r;
+    double search_s, baselines_s, all_s;
+    const Settings *s = p->s;
     if (!note(c, time_simulation(p, &r, &e), "simulation", &e))
         return;
-    const Settings *s = p->s;
+    const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
+                                                               : here > 0            ? here
+                                                                                     : 1;
     const long records = 1 + (long)(strcmp(s->motion.records, "none") == 0 ? 0 : list_count(s->motion.records));
     const long simulations = s->search.max_evals * s->sim.replicates * records;
-    const long threads = s->search.threads > 0 ? s->search.threads : processors();
-    const double seconds = (double)simulations * r.seconds / (double)threads;
+    expected_times(p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")),
+                   &search_s, &baselines_s, &all_s);
     json_object_set_new(c->out, "study",
-                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f}", "variables", p->space.n_var,
-                                  "gap_m", s->design.gap_m.at[0], s->design.gap_m.at[1], "thickness_m",
+                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f, s:f, s:f}", "variables",
+                                  p->space.n_var, "gap_m", s->design.gap_m.at[0], s->design.gap_m.at[1], "thickness_m",
                                   s->design.thickness_m.at[0], s->design.thickness_m.at[1], "simulations",
                                   (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
-                                  "impacts", (json_int_t)r.impacts, "seconds", seconds));
+                                  "impacts", (json_int_t)r.impacts, "search_s", search_s, "baselines_s", baselines_s,
+                                  "seconds", all_s));
 }
 
 static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
@@ -305,18 +364,13 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
 
 static void print_value(const json_t *value)
 {
+    char text[FIGURES_CELL_MAX];
     size_t i;
     json_t *item;
-    if (json_is_string(value))
-        printf(" %s", json_string_value(value));
-    else if (json_is_number(value))
-        printf(" %.4g", json_number_value(value));
-    else
-        json_array_foreach(value, i, item)
-        {
-            printf("%s", i ? "," : "");
-            print_value(item);
-        }
+    json_array_foreach(value, i, item) print_value(item);
+    figures_cell(value, text);
+    if (!json_is_array(value))
+        printf(" %s", text);
 }
 
 /* What was found, a line for each figure: its unit is the end of its name. */

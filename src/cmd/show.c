@@ -14,8 +14,6 @@
 
 /* ---- tables ------------------------------------------------------------------------------------------------------ */
 
-enum { CELL_MAX = 600 };
-
 json_t *figures_row(json_t *table)
 {
     json_t *row = json_object();
@@ -40,13 +38,12 @@ static void drop_zeros(char *text)
         text[n - (text[n - 1] == '.')] = 0;
 }
 
-/* How the cell is shown; empty where the row has none. */
-static void cell_words(const json_t *cell, char text[CELL_MAX])
+void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX])
 {
     if (!cell || json_is_string(cell))
-        snprintf(text, CELL_MAX, "%s", cell ? json_string_value(cell) : "");
+        snprintf(text, FIGURES_CELL_MAX, "%s", cell ? json_string_value(cell) : "");
     else if (json_is_integer(cell))
-        snprintf(text, CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
+        snprintf(text, FIGURES_CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
     else
         figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, text);
     if (json_is_real(cell))
@@ -67,12 +64,12 @@ static json_t *columns_of(json_t *table)
 {
     json_t *columns = json_object(), *row, *cell;
     const char *name;
-    char text[CELL_MAX];
+    char text[FIGURES_CELL_MAX];
     size_t i;
     json_array_foreach(table, i, row) json_object_foreach(row, name, cell)
     {
         const json_int_t before = json_integer_value(json_object_get(columns, name));
-        cell_words(cell, text);
+        figures_cell(cell, text);
         const int head = width_of(name), own = width_of(text), width = head > own ? head : own;
         if (!before || width > before)
             json_object_set_new(columns, name, json_integer(width));
@@ -85,11 +82,11 @@ static void print_row(json_t *columns, const json_t *row)
 {
     const char *name, *gap = "";
     json_t *width;
-    char text[CELL_MAX];
+    char text[FIGURES_CELL_MAX];
     json_object_foreach(columns, name, width)
     {
         if (row)
-            cell_words(json_object_get(row, name), text);
+            figures_cell(json_object_get(row, name), text);
         else
             snprintf(text, sizeof text, "%s", name);
         const int blanks = (int)json_integer_value(width) - width_of(text), is_word = !*gap || *name == ' ';
@@ -115,11 +112,11 @@ void figures_print(json_t *table)
 
 static void write_cell(FILE *out, const json_t *cell)
 {
-    char text[CELL_MAX], safe[CELL_MAX];
+    char text[FIGURES_CELL_MAX], safe[FIGURES_CELL_MAX];
     if (json_is_real(cell)) {
         print_number(out, json_real_value(cell));
     } else if (cell && !json_is_null(cell)) {
-        cell_words(cell, text);
+        figures_cell(cell, text);
         cell_text(safe, sizeof safe, text);
         fputs(safe, out);
     }

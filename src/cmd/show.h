@@ -17,6 +17,11 @@ json_t *figures_row(json_t *table); /* a further one */
 /* As text with the digits that are known (base/figure.h). error: the likely one; sd: standard deviation; NAN: not
  * known. */
 void figures_put(json_t *row, const char *column, double value, double error, double sd);
+
+/* A cell as it is shown; NULL: empty. */
+enum { FIGURES_CELL_MAX = 600 };
+void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX]);
+
 void figures_print(json_t *table);
 Status figures_csv(json_t *table, const char *path, Err *err);
 Status show_json(json_t *all, Err *err);
