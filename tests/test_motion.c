@@ -46,9 +46,8 @@ TEST(units_are_found_in_names_and_comments)
               ".04,-0.30581039755351681957\n6e-2,0\n",
               UNIT_FROM_FILE, "csv");
     must_read("\"time\" ; \"acceleration\"\n0 ; 1\n0.02 ; 2\n0.04 ; -3\n0.06 ; 0\n", UNIT_M_S2, "csv");
-    must_read(
-        "\xef\xbb\xbf# column names win over this, units: cm/s2\ntime_s,accel_m_s2\n0.00,1\n0.02,2\n0.04,-3\n0.06,0\n",
-        UNIT_FROM_FILE, "csv");
+    must_read("\xef\xbb\xbf# units: s, m/s2\ntime_s,accel_m_s2\n0.00,1\n0.02,2\n0.04,-3\n0.06,0\n", UNIT_FROM_FILE,
+              "csv");
 }
 
 TEST(both_forms_of_a_peer_header_are_read)

@@ -311,7 +311,12 @@ static const struct {
     {"equals.at2", "OF G", "OF FEET", "the unit 'FEET' of its acceleration is not known"},
     {"one.tspair", "m/s**2", "mm/s**2", "the unit 'mm/s**2' of its acceleration is not known"},
     {"simcenter.json", ": 43", ": 50", "'SYN-1' has 43 samples, but numSteps announces 50"},
-    {"simcenter.json", "\"type\"", "\"factor\": 9.81, \"type\"", "\"factor\" is not 1; multiply the samples by it"},
+    {"simcenter.json", "\"type\"", "\"scale_factor\": 9.81, \"type\"", "\"scale_factor\" is not 1; multiply the"},
+    {"simcenter.json", "\"Seismic\"", "\"Wind\"", "not an acceleration: \"type\" is \"Wind\""},
+    {"one.cosmos.v1", "cm/sec2(04)", "cm/sec2(02)", ":46: the unit in words, 'cm/sec2', is not the one of its code 2"},
+    {"one.cosmos.v1", "cm/sec2(04)", "cm/sec2(05)", ":46: the unit in words, 'cm/sec2', is not the one of its code 5"},
+    {"cwb.dat", "(sec): 0", "(sec): 2", "43 rows, but its header announces 2 s every 0.01 s"},
+    {"cwb.dat", "     0.150 ", "     0.170 ", "time 0.16 s does not come after 0.17 s"},
     {"equals.at2", "SEC", "MIN", ":4: no usable time step"},
     {"one.tspair", "100 sps", "200 sps", "its header says a step of 0.005 s, its times one of 0.01 s"},
     {"cwb.dat", "(Hz): 100", "(Hz): 200", "its header says a step of 0.005 s, its times one of 0.01 s"},
@@ -468,22 +473,23 @@ TEST(a_sac_header_of_velocities_or_of_fewer_samples_is_refused)
     }
 }
 
-/* A tar of two members; the second one cut to `length`. */
-static Text two_members(const char *first, const char *second, const Text *content, size_t length)
+/* A tar of n members; the second one cut to `length`. */
+static Text members(int n, const char *const names[], const Text *content, size_t length)
 {
-    Text out = {calloc(1, 1 << 16), 0};
+    const size_t room = (size_t)(n + 4) * (content->length + 2048);
+    Text out = {calloc(1, room), 0};
     struct archive *a = archive_write_new();
     struct archive_entry *entry = archive_entry_new();
     assert_true(out.text && a && entry);
     archive_write_set_format_ustar(a);
-    assert_int_equal(archive_write_open_memory(a, out.text, 1 << 16, &out.length), ARCHIVE_OK);
-    for (int i = 0; i < 2; i++) {
+    assert_int_equal(archive_write_open_memory(a, out.text, room, &out.length), ARCHIVE_OK);
+    for (int i = 0; i < n; i++) {
         archive_entry_clear(entry);
-        archive_entry_set_pathname(entry, i ? second : first);
+        archive_entry_set_pathname(entry, names[i]);
         archive_entry_set_filetype(entry, AE_IFREG);
-        archive_entry_set_size(entry, (la_int64_t)(i ? length : content->length));
+        archive_entry_set_size(entry, (la_int64_t)(i == 1 ? length : content->length));
         assert_int_equal(archive_write_header(a, entry), ARCHIVE_OK);
-        archive_write_data(a, content->text, i ? length : content->length);
+        archive_write_data(a, content->text, i == 1 ? length : content->length);
     }
     archive_entry_free(entry);
     archive_write_free(a);
@@ -493,8 +499,8 @@ static Text two_members(const char *first, const char *second, const Text *conte
 TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders)
 {
     Text one = read_specimen("one.knet");
-    Text broken = two_members("a.NS", "b.NS", &one, one.length - 60);
-    Text twins = two_members("x/a.NS", "y/a.NS", &one, one.length);
+    Text broken = members(2, (const char *const[]){"a.NS", "b.NS"}, &one, one.length - 60);
+    Text twins = members(2, (const char *const[]){"x/a.NS", "y/a.NS"}, &one, one.length);
     Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "two.tar", broken.text, broken.length, &(MotionHow){0}, &err),
                      STATUS_BAD_DATA);
@@ -507,6 +513,27 @@ TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_fo
     free(one.text);
     free(broken.text);
     free(twins.text);
+}
+
+/* Names of members that differ in their middle only are shown as long as that shows. */
+TEST(the_channels_of_an_archive_are_listed_by_names_that_differ)
+{
+    enum { N = 26 };
+    static char names[N][64];
+    const char *list[N];
+    for (int k = 0; k < N; k++) {
+        snprintf(names[k], sizeof names[k], "CE.23497.CHAN%c.20160224.acceleration.NS", 'A' + k);
+        list[k] = names[k];
+    }
+    Text one = read_specimen("one.knet"), all = members(N, list, &one, one.length);
+    Err err = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "a.tar", all.text, all.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "holds 26 channels: 1 'N-S"));
+    assert_non_null(strstr(err.text, "A.20160224"));
+    assert_non_null(strstr(err.text, "B.20160224"));
+    assert_non_null(strstr(err.text, "... 26; choose one by motion.channel (--channel)"));
+    free(one.text);
+    free(all.text);
 }
 
 TEST(a_channel_must_be_chosen_where_there_are_several)
@@ -1127,6 +1154,12 @@ TEST(a_long_line_and_many_records_take_no_square_of_their_length)
     assert_int_equal(motion_parse(&(Motion){0}, "six.mseed", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "more than 128 channels"));
     free(t.text);
+    t = repeated((Text){strdup("\n"), 1}, 1 << 20);
+    memcpy(t.text, "Origin Time", strlen("Origin Time"));
+    assert_int_equal(motion_parse(&(Motion){0}, "blank", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+    t.text[t.length - 1] = 'x';
+    assert_int_equal(motion_parse(&(Motion){0}, "blank", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+    free(t.text);
     assert_less((double)(clock() - began) / CLOCKS_PER_SEC, 2); /* 0.1 s; by the square minutes */
 }
 
@@ -1286,6 +1319,249 @@ TEST(names_too_long_for_a_message_lose_their_middle)
     assert_string_equal(out, "360 De...20160224.V2");
     name_shorten(out, 40, "360 Deg, CHAN001.V2");
     assert_string_equal(out, "360 Deg, CHAN001.V2");
+}
+
+/* ---- what was taken for something else -------------------------------------------------------------------------- */
+
+/* Rows "0.01 k, sin k" below a header. */
+static Text table_below(const char *header)
+{
+    Text t = {NULL, 0};
+    FILE *f = open_memstream(&t.text, &t.length);
+    assert_non_null(f);
+    fprintf(f, "%s\n", header);
+    for (int k = 0; k < 50; k++)
+        fprintf(f, "%.2f,%.9f\n", 0.01 * k, sin(k));
+    fclose(f);
+    return t;
+}
+
+/* NULL: read to its samples in the unit of how; else refused with these words. */
+static void expect(const char *header, const MotionHow *how, const char *says)
+{
+    Motion m;
+    Err err = {0};
+    Text t = table_below(header);
+    const Status s = motion_parse(&m, "there", t.text, t.length, how, &err);
+    if (says ? s != STATUS_BAD_DATA || !strstr(err.text, says) : s != STATUS_OK || m.n != 50 || m.dt_s != 0.01)
+        fail_msg("%s: '%s' and not '%s'", header, s == STATUS_OK ? "(read)" : err.text, says ? says : "(read)");
+    motion_free(&m);
+    free(t.text);
+}
+
+TEST(a_spectrum_is_no_motion_with_any_option)
+{
+    static const char *const SPECTRA[] = {"T [s],PSa [m/s^2]",
+                                          "Period (s),SA (g)",
+                                          "T(s),Sa(g)",
+                                          "Period [s],5% Damped Spectral Acceleration [g]",
+                                          "frequency_hz,amplitude [g]",
+                                          "f [Hz],a_g",
+                                          "T,psa_g",
+                                          "freq,Fourier amplitude [g]"};
+    static const MotionHow HOWS[] = {{0}, {.dt_s = 0.02}, {.dt_s = 0.02, .channel = "2"}, {.channel = "1"}};
+    for (size_t i = 0; i < sizeof SPECTRA / sizeof SPECTRA[0]; i++)
+        for (size_t k = 0; k < sizeof HOWS / sizeof HOWS[0]; k++)
+            expect(SPECTRA[i], &HOWS[k], "there:");
+    expect("frequency_hz,amplitude [g]", &HOWS[1], "there:1: 'frequency_hz,amplitude [g]' heads a spectrum");
+    expect("T [s],PSa [m/s^2]", &HOWS[3], "its channel 'PSa [m/s^2]' is not an acceleration");
+    expect("lag,a_g", &HOWS[0],
+           "there:1: the first column is 'lag', which is no time: name the one of the times time_s");
+    static const char *const TIMES[] = {"T [s],a_g", "Zeit;a_g", "elapsed time,a_g", "x [s],a_g", ",a_g", "TIEMPO,a_g"};
+    for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
+        expect(TIMES[i], &HOWS[0], NULL);
+    expect("Kobe record", &(MotionHow){.unit = UNIT_G}, NULL); /* a title, as many words as columns */
+}
+
+/* Periods without names, as programs for spectra print them, are resampled into a motion by no option. */
+TEST(unequal_steps_without_the_name_of_times_are_not_resampled)
+{
+    Motion m;
+    Err err = {0};
+    static const char text[] = "# units: g\n0.01 1\n0.02 2\n0.05 3\n0.1 2\n0.2 1\n";
+    assert_int_equal(motion_parse(&m, "there", text, strlen(text), &(MotionHow){.dt_s = 0.01}, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "name the column of its times time_s and set motion.dt_s"));
+}
+
+/* first, then second, in one text. */
+static Text joined(Text first, Text second)
+{
+    Text t = {malloc(first.length + second.length + 2), 0};
+    assert_non_null(t.text);
+    t.length = (size_t)sprintf(t.text, "%s\n", first.text);
+    memcpy(t.text + t.length, second.text, second.length + 1);
+    t.length += second.length;
+    free(first.text);
+    free(second.text);
+    return t;
+}
+
+TEST(a_record_behind_a_record_is_a_channel_in_every_format)
+{
+    for (int i = 0; i < N_SPECIMENS; i++) {
+        const int is_plain = strcmp(SPECIMENS[i].format, "csv") == 0;
+        Text t = joined(read_specimen(SPECIMENS[i].file), read_specimen("one.knet"));
+        Motion m = {0};
+        Err err = {0};
+        assert_int_equal(motion_parse(&m, "two", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+        if (!is_plain &&
+            (!strstr(err.text, "channels: 1 ") || !strstr(err.text, "'N-S'; choose one by motion.channel")))
+            fail_msg("%s: %s", SPECIMENS[i].file, err.text);
+        if (!is_plain) { /* the last channel is that of K-NET */
+            const char last[] = {strstr(err.text, "holds ")[6], 0};
+            CHECK_OK(motion_parse(&m, "two", t.text, t.length, &(MotionHow){.channel = last}, &err), &err);
+            assert_string_equal(m.format, "knet");
+            assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-4);
+            motion_free(&m);
+        }
+        free(t.text);
+    }
+}
+
+TEST(numbers_below_other_words_are_not_dropped_in_silence)
+{
+    Motion m;
+    Err err = {0};
+    Text t = joined(read_specimen("equals.at2"), (Text){strdup("Some words\n 1.0 2.0\n"), 21});
+    assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, "more numbers, below words, than the header announces"))
+        fail_msg("%s", err.text);
+    free(t.text);
+    t = joined(read_specimen("one_column.txt"), read_specimen("one_column.txt"));
+    assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "below the first sample; is it a second record?"));
+    free(t.text);
+}
+
+TEST(rows_that_are_missing_or_swapped_are_refused_where_they_carry_times)
+{
+    static const char *const EDITS[][2] = {{"     0.150   ", "     0.160   "}, {"     0.150   ", "     0.140   "}};
+    for (size_t i = 0; i < sizeof EDITS / sizeof EDITS[0]; i++) {
+        Text t = changed(read_specimen("cwb.dat"), EDITS[i][0], EDITS[i][1], 0);
+        Err err = {0};
+        assert_int_equal(motion_parse(&(Motion){0}, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, "does not come after"));
+        free(t.text);
+    }
+    Text t = read_specimen("cwb.dat");
+    Err err = {0};
+    char *row = strstr(t.text, "     0.150 "), *next = strchr(row, '\n') + 1;
+    memmove(row, next, strlen(next) + 1);
+    assert_int_equal(motion_parse(&(Motion){0}, "there", t.text, strlen(t.text), &FIRST, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "breaks the uniform step of 0.01 s"));
+    free(t.text);
+}
+
+TEST(a_stated_foreign_quantity_is_not_overruled_by_an_option)
+{
+    static const char *const FOREIGN[] = {
+        "Base shear [kN]", "Interstorey drift [-]", "v [cm/s]", "Arias [m/s]",   "v_cm_s",         "shear_kN",
+        "acc [mg]",        "acc [0.01 g]",          "u (mm)",   "acc (milli-g)", "acc_m/s/s/s (%)"};
+    static const char *const REMARKS[] = {"NS (filtered)", "acc (N)", "acc (N-S)", "acc [channel 1]", "NS"};
+    char header[80];
+    for (size_t i = 0; i < sizeof FOREIGN / sizeof FOREIGN[0]; i++) {
+        snprintf(header, sizeof header, "time_s,%s", FOREIGN[i]);
+        expect(header, &(MotionHow){.unit = UNIT_G},
+               "of its acceleration is not known; convert it to m/s2, cm/s2 or g");
+        expect(header, &(MotionHow){.unit = UNIT_M_S2}, "of its acceleration is not known");
+    }
+    for (size_t i = 0; i < sizeof REMARKS / sizeof REMARKS[0]; i++) {
+        snprintf(header, sizeof header, "time_s,%s", REMARKS[i]);
+        expect(header, &(MotionHow){0}, "does not say the unit");
+        expect(header, &(MotionHow){.unit = UNIT_G}, NULL);
+    }
+    Err err = {0};
+    Text t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, M/S", 1);
+    assert_int_equal(
+        motion_parse(&(Motion){0}, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2, .channel = "1"}, &err),
+        STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "the unit 'M/S' of its acceleration is not known"));
+    free(t.text);
+}
+
+TEST(two_units_in_one_file_are_refused)
+{
+    expect("# units: cm/s2\ntime_s,acc_g", &(MotionHow){0},
+           "there:2: the column 'acc_g' is in g, but the header above says cm_s2");
+    expect("# units: cm/s2\ntime_s,acc [m/s2]", &(MotionHow){.unit = UNIT_M_S2}, "is in m_s2, but the header above");
+    expect("# units: cm/s2\n# units: g\ntime_s,acc", &(MotionHow){0}, "states another unit than a line above");
+    expect("# units: s, g\ntime_s,acc (g)", &(MotionHow){0}, NULL);
+}
+
+/* Headers that programs write, and what their rows are by the first samples of the specimens. */
+TEST(what_other_programs_write_is_read)
+{
+    static const struct {
+        const char *file, *from, *to, *channel, *warning;
+        double factor;
+    } CASES[] = {
+        {"one.smc", "2 CORRECTED ACCELEROGRAM", "0 UNKNOWN", "1", "UNKNOWN, does not say what it holds", 1},
+        {"simcenter.json", ": 43", ": 42", "1", "its numSteps is one less than its samples", 1},
+        {"simcenter.json", "\"dT\"", "\"factor\": 2.5, \"dT\"", "1", "multiplied by the factor", 2.5},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        Motion m;
+        Err err = {0};
+        Text t = changed(read_specimen(CASES[i].file), CASES[i].from, CASES[i].to, 0);
+        CHECK_OK(motion_parse(&m, "there", t.text, t.length, &(MotionHow){.channel = CASES[i].channel}, &err), &err);
+        assert_int_equal(m.n, N_SAMPLES);
+        assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0] * CASES[i].factor, 1e-9);
+        assert_non_null(strstr(m.warning, CASES[i].warning));
+        motion_free(&m);
+        free(t.text);
+    }
+    static const char *const TABLES[] = {
+        ",time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n", "i,time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n",
+        "npts=3 dt=0.01 units=m/s2\n1\n2\n-3\n", "npts= 3 dt= 0.01 units= m/s2\n1 2\n-3\n",
+        "npts=3, dt=0.01, units=m/s2\n1 2 -3\n"};
+    for (size_t i = 0; i < sizeof TABLES / sizeof TABLES[0]; i++) {
+        Motion m;
+        Err err = {0};
+        CHECK_OK(parse_text(&m, TABLES[i], &err), &err);
+        assert_true(m.n == 3 && m.accel[0] == 1 && m.accel[1] == 2 && m.accel[2] == -3);
+        assert_close(m.dt_s, 0.01, 1e-15);
+        motion_free(&m);
+    }
+}
+
+/* OpenSees' .g3 and .dat: five or eight numbers a row, fewer in the last, sometimes a word behind them. */
+TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
+{
+    for (int width = 5; width <= 8; width += 3)
+        for (int with_word = 0; with_word < 2; with_word++) {
+            Motion m;
+            Err err = {0};
+            Text t = rows_of("", 20, width);
+            t.length -= 30; /* two numbers */
+            memcpy(t.text + t.length, with_word ? "\nend\n" : "\n", with_word ? 6 : 2);
+            const MotionHow how = {.unit = UNIT_M_S2, .dt_s = 0.02};
+            t.length = strlen(t.text);
+            CHECK_OK(motion_parse(&m, "rows", t.text, t.length, &how, &err), &err);
+            assert_true(m.n < (size_t)(20 * width) && m.n >= (size_t)(20 * width - 3));
+            for (size_t k = 0; k + 1 < m.n; k++)
+                assert_close(m.accel[k], sin((double)k), 1e-10);
+            motion_free(&m);
+            assert_int_equal(motion_parse(&m, "rows", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err),
+                             STATUS_BAD_DATA);
+            assert_non_null(strstr(err.text, "and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)"));
+            free(t.text);
+        }
+}
+
+TEST(a_record_that_its_agency_corrected_is_not_called_uncorrected)
+{
+    static const char *const CORRECTED[] = {"three.csmip.v2", "three.v2a", "three.cosmos.v2", "one.smc", "isesd.cor"};
+    static const char *const RAW[] = {"three.csmip.v1", "three.v1a", "one.cosmos.v1", "one.csmnc", "equals.at2"};
+    for (int i = 0; i < 10; i++) {
+        Motion m;
+        Err err = {0};
+        char path[128];
+        specimen_path(i < 5 ? CORRECTED[i] : RAW[i - 5], path);
+        CHECK_OK(motion_read(&m, path, &FIRST, &err), &err);
+        if (m.is_corrected != (i < 5))
+            fail_msg("%s: %d", path, m.is_corrected);
+        motion_free(&m);
+    }
 }
 
 int main(void)

@@ -298,6 +298,8 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
                                       "motion.target=eurocode8 ag=0.3 soil=F",
                                       "motion.target=eurocode8 ag=0.3 soil=A sds=1",
                                       "motion.target=asce7 sds=1",
+                                      "motion.target=asce7 sds=1 sd1=0.6 sds=2",
+                                      "motion.target=eurocode8 ag=0.3 soil=A ag=0.3",
                                       "motion.target=eurocode9 ag=1",
                                       "motion.target=asce7 sds=1x sd1=1",
                                       "motion.target=none ag=1",

@@ -79,6 +79,12 @@ static Status compute(Spectrum *s, Err *err)
     return s->is_processed ? compare_recorded(s, err) : STATUS_OK;
 }
 
+/* Does the displacement mean something? */
+static int is_corrected(const Spectrum *s)
+{
+    return s->motion.is_corrected || motion_is_corrected(&s->options);
+}
+
 static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
 {
     *s = (Spectrum){.options = *o};
@@ -251,7 +257,7 @@ static void draw_one(FILE *script, const void *user)
     write_history(script, s);
     snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
              m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
-             motion_is_corrected(&s->options) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
+             is_corrected(s) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
     fprintf(script, "EOD\nEND = %.7g\nset label 1 ", f->duration_s);
     gnuplot_quote(script, title);
     fprintf(script, " at screen 0.5,0.965 center noenhanced\n%s", PANELS);
@@ -295,10 +301,9 @@ static json_t *describe(const Spectrum *s)
                   {"psv_m_s", N_PERIODS, s->psv}, {"sd_m", N_PERIODS, s->sd},
                   {"accel_m_s2", m->n, m->accel}, {"velocity_m_s", m->n, s->velocity},
                   {"husid", m->n, s->husid},      {"displacement_m", m->n, s->displacement}};
-    json_t *o =
-        json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I}", "motion", json_words(m->name), "format", m->format, "channel",
-                  json_words(m->channel), "processed", json_words(m->processed), "corrected",
-                  motion_is_corrected(&s->options), "warning", json_words(m->warning), "samples", (json_int_t)m->n);
+    json_t *o = json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I}", "motion", json_words(m->name), "format", m->format,
+                          "channel", json_words(m->channel), "processed", json_words(m->processed), "corrected",
+                          is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n);
     for (size_t i = 0; i < sizeof NUMBERS / sizeof NUMBERS[0]; i++)
         json_object_set_new(o, NUMBERS[i].key, json_number(NUMBERS[i].x));
     for (size_t i = 0; i < sizeof ARRAYS / sizeof ARRAYS[0]; i++)
@@ -335,7 +340,7 @@ static void print_head(const Spectrum *s)
 static void print_figures(const Spectrum *s)
 {
     const MotionFigures *f = &s->figures, *r = &s->recorded;
-    const int corrected = motion_is_corrected(&s->options);
+    const int corrected = is_corrected(s);
     char before[3][48] = {"", "", ""};
     if (s->is_processed) {
         snprintf(before[0], sizeof before[0], ", recorded %.4f g", r->pga_m_s2 / GRAVITY);

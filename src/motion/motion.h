@@ -27,6 +27,7 @@ typedef struct {
     char channel[64]; /* its name in the file; empty where it has none */
     char processed[320]; /* what was done to the samples of the file; empty: nothing */
     char warning[240];   /* what does not fit in the file; empty: nothing */
+    int is_corrected;    /* by the agency, as the file says: its displacement means something */
     uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 

@@ -55,10 +55,10 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
             "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
             "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
             path);
-    if (!*unit && c->stated[0])
+    if (c->stated[0] && !c->counts)
         return fail(err, STATUS_BAD_DATA,
-                    "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and set "
-                    "motion.unit (--unit)",
+                    "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and write that "
+                    "unit in its place",
                     path, c->stated);
     if (!*unit)
         return fail(err, STATUS_BAD_DATA,
@@ -75,16 +75,42 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
 
 static int is_acceleration(const Channel *c)
 {
-    return strncasecmp(c->name, "vel", 3) != 0 && strncasecmp(c->name, "dis", 3) != 0;
+    const char *p = c->name, *end = p + strlen(p);
+    if (text_is(BEGINS, p, end, "vel|dis|period|freq") || text_is(HOLDS, p, end, "spectr|fourier"))
+        return 0;
+    for (; p < end; p += p < end) { /* "Sa(g)", "NS PSA" */
+        const char *word = p;
+        while (p < end && isalnum((unsigned char)*p))
+            p++;
+        if (text_is(EQUALS, word, p, "sa|psa|psv|fas"))
+            return 0;
+    }
+    return 1;
 }
 
 enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
 
-/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message. */
+/* Do names that are shortened to so many bytes still differ where they did? */
+static int tells_apart(const Record *r, size_t room)
+{
+    char a[CHANNEL_NAME_MAX + 1], b[CHANNEL_NAME_MAX + 1];
+    for (size_t i = 0; i < r->n_channels; i++)
+        for (size_t k = 0; k < i; k++) {
+            name_shorten(a, room, r->channel[i].name);
+            name_shorten(b, room, r->channel[k].name);
+            if (strcmp(a, b) == 0 && strcmp(r->channel[i].name, r->channel[k].name) != 0)
+                return 0;
+        }
+    return 1;
+}
+
+/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message, as far as they stay apart. */
 static void list_channels(const Record *r, char list[LIST_MAX])
 {
     const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
-    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 14 ? (int)each - 8 : 6;
+    int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 14 ? (int)each - 8 : 6;
+    while (shown < CHANNEL_NAME_MAX && !tells_apart(r, (size_t)shown))
+        shown++;
     size_t used = 0;
     list[0] = 0;
     for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
@@ -178,6 +204,7 @@ typedef struct {
     const char *path;
     const Row *base;
     size_t stride, n;
+    int is_timed;
 } Series;
 
 static const Row *row_at(const Series *s, size_t i)
@@ -216,8 +243,9 @@ static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err 
     return fail(
         err, STATUS_BAD_DATA,
         "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
-        "is missing, or the file must be resampled: set motion.dt_s",
-        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step);
+        "is missing, or the file must be resampled: %sset motion.dt_s",
+        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
+        s->is_timed ? "" : "name the column of its times time_s and ");
 }
 
 /* Film is digitized where its trace bends. */
@@ -362,7 +390,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
 {
     MotionUnit unit;
     double dt = c->dt, to_m_s2 = 1;
-    const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n};
+    const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n, .is_timed = c->is_timed};
     Err uneven = {0};
     Status status = STATUS_OK;
     if (dt == 0) {
@@ -370,7 +398,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         status = uniform_step(&s, &dt, &uneven);
     }
     TRY(check_step(&s, c, dt, status == STATUS_OK, err));
-    if (status != STATUS_OK && how->dt_s == 0)
+    if (status != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
     TRY(settle_unit(path, c, how, &unit, &to_m_s2, err));
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
@@ -511,6 +539,7 @@ static Status read_motion(Motion *m, Record *r, const char *path, const char *by
     if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
         snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
                  m->dt_s);
+    m->is_corrected = c->is_corrected;
     snprintf(m->name, sizeof m->name, "%s", path);
     snprintf(m->format, sizeof m->format, "%s", c->format);
     snprintf(m->channel, sizeof m->channel, "%s", c->name);

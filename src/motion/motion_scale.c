@@ -220,9 +220,16 @@ Status target_parse(const char *text, CodeSpectrum *out, Err *err)
     if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
         return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...",
                     text);
-    while ((word = strsep(&rest, " ")))
+    while ((word = strsep(&rest, " "))) {
+        const char *again = rest;
+        for (size_t n = strcspn(word, "=") + 1; *word && again; again = strchr(again, ' ')) {
+            again += strspn(again, " ");
+            if (strncmp(again, word, n) == 0)
+                return fail(err, STATUS_BAD_DATA, "motion.target: '%s' and '%s': one of them", word, again);
+        }
         if (*word)
             TRY(take_number(out, word, err));
+    }
     return out->kind == TARGET_NONE ? STATUS_OK : check_target(out, err);
 }
 

@@ -57,22 +57,10 @@ typedef struct Format {
 
 /* ---- headers ----------------------------------------------------------------------------------------------------- */
 
-/* Does the line begin with one of the words parted by |, or, anywhere, hold one? */
-static int is_any(const Lines *l, const char *words, int anywhere)
-{
-    char word[64];
-    for (size_t n; *words; words += n + (words[n] == '|')) {
-        n = strcspn(words, "|");
-        snprintf(word, sizeof word, "%.*s", (int)n, words);
-        if (anywhere ? line_has(l, word) : line_begins(l, word))
-            return 1;
-    }
-    return 0;
-}
-
 static int begins_channel(const Format *f, const Lines *l)
 {
-    return (!f->begins || is_any(l, f->begins, 0)) && (!f->has || is_any(l, f->has, 1));
+    return (!f->begins || text_is(BEGINS, l->from, l->to, f->begins)) &&
+           (!f->has || text_is(HOLDS, l->from, l->to, f->has));
 }
 
 static int recognise(const Format *f, Lines l)
@@ -84,6 +72,8 @@ static int recognise(const Format *f, Lines l)
             return 1;
     return 0;
 }
+
+static const Format *format_at(Lines l);
 
 static void take_words(const Format *f, const Lines *l, Header *h)
 {
@@ -115,6 +105,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
 {
     double n_lines = f->text_lines;
     int ended = !f->ends;
+    Lines ahead = {0};
     *h = (Header){.count = NAN, .dt = NAN, .width = f->width, .from = l->from};
     if (f->text_lines < 0 && !(number_behind(l->from, l->to, "with", &n_lines) && n_lines > 0 && n_lines <= 1000))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of text lines in '%.*s'", l->path, l->number,
@@ -123,7 +114,8 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
         take_words(f, l, h);
         h->last = l->from < l->to ? *l : h->last;
         ended |= f->ends && line_has(l, f->ends);
-        const Lines ahead = lines_ahead(l);
+        if (ahead.number <= l->number) /* not over the same blank lines again and again */
+            ahead = lines_ahead(l);
         if (f->integers   ? is_integers(&ahead)
             : n_lines > 0 ? i == (int)n_lines
                           : ended && ahead.from && !line_is_marker(&ahead) && !line_begins(&ahead, "--"))
@@ -244,7 +236,7 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
 static Status check_type(const Lines *type, Err *err)
 {
     const Lines whole = {.from = type->raw, .to = type->to};
-    if (!type->from || line_has(&whole, "accel") || !is_any(&whole, "veloc|displ", 1))
+    if (!type->from || line_has(&whole, "accel") || !text_is(HOLDS, whole.from, whole.to, "veloc|displ"))
         return STATUS_OK;
     return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s:%d: not an acceleration: '%.*s'", type->path, type->number,
                     line_shown(&whole), whole.from);
@@ -267,10 +259,10 @@ static void take_named_peak(const Format *f, const Header *h, Channel *c, const 
         take_peak(c, at, wave + 1, stop);
 }
 
-static Status column_channel(const Format *f, Record *r, const Lines *l, Header *h, Cell name, Channel shape, Err *err)
+static Status column_channel(const Format *f, Record *r, const Lines *l, Header *h, int k, Cell name, Channel shape,
+                             Err *err)
 {
     Channel *c;
-    const int k = (int)r->n_channels;
     const char *sign = memchr(name.from, '(', (size_t)(name.to - name.from));
     TRY(record_channel(r, l, &c, err));
     *c = shape;
@@ -281,6 +273,9 @@ static Status column_channel(const Format *f, Record *r, const Lines *l, Header 
     settle_channel(f, h, c, k);
     if (f->peak_of)
         take_named_peak(f, h, c, h->last.to);
+    if (h->at[DURATION].from && h->count > 1 && fabs(h->count - (double)c->n) * h->dt > 1) /* stated in whole seconds */
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu rows, but its header announces %g s every %g s", l->path,
+                    l->number, c->n, h->count * h->dt, h->dt);
     if (h->at[COUNT].from && h->count < (double)c->n && (double)c->n <= h->count + 16 && h->count >= 2 &&
         memchr(h->at[COUNT].from, '/', 4)) { /* as UNAM's files have them */
         c->n = (size_t)h->count;
@@ -296,7 +291,11 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
 {
     const Lines *names = h->at[NAMES].from ? &h->at[NAMES] : &h->last;
     size_t width = 0, n, k = 0, timed = 0;
-    while (lines_next_filled(l)) {
+    const size_t base = r->n;
+    for (Lines ahead = lines_ahead(l); ahead.from; ahead = lines_ahead(l)) {
+        if (!strchr("+-.0123456789", *ahead.from) && format_at(ahead))
+            break;
+        *l = ahead;
         TRY(record_add_cells(r, l, 0, &n, err));
         width = width ? width : n;
         if (n != width)
@@ -309,22 +308,36 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
             continue;
         timed |= k == 0 && find_word(name.from, name.to, "time") == name.from;
         if (k >= timed && k < width)
-            TRY(column_channel(f, r, l, h, name,
-                               (Channel){.scale = 1, .dt = !timed, .first = k, .stride = width, .n = r->n / width},
+            TRY(column_channel(f, r, l, h, (int)(k - timed), name,
+                               (Channel){.scale = 1,
+                                         .dt = !timed,
+                                         .is_timed = (int)timed,
+                                         .first = base + k,
+                                         .stride = width,
+                                         .n = (r->n - base) / width},
                                err));
         k++;
     }
     if (k != width)
         return fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow", l->path, names->number, k, width);
     if (timed)
-        record_set_times(r, width, 0);
+        record_set_times(r, base, width, 0);
     return STATUS_OK;
+}
+
+/* The line at `from`. */
+static int is_corrected(const char *from, const char *end)
+{
+    const size_t n = strcspn(from, "\r\n");
+    end = n < (size_t)(end - from) ? from + n : end;
+    return text_is(HOLDS, from, end, "corrected acc") && !text_is(HOLDS, from, end, "uncorrected");
 }
 
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 {
     Header h;
     Channel *c;
+    lines_next_filled(l);
     TRY(read_header(f, l, &h, err));
     TRY(check_type(&h.at[TYPE], err));
     if (f->parting)
@@ -343,6 +356,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     else
         TRY(settle_steps(f, l, &h, 0, err));
     settle_channel(f, &h, c, 0);
+    c->is_corrected = is_corrected(h.from, l->end) || (h.at[TYPE].from && is_corrected(h.at[TYPE].raw, l->end));
     return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
 }
 
@@ -391,13 +405,14 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
     h->width = format_width(l) ? format_width(l) : 10;
     h->at[COUNT] = h->at[TYPE] = *l;
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
-        h->dt = is_any(l, "pts/s|points/s|samples/s", 1) ? 1 / x : x;
-    const char *unit = find_word(l->from, l->to, " in units of ");
-    unit = unit ? unit + strlen(" in units of") : find_word(l->from, l->to, " in ");
-    if (unit) {
-        h->at[UNIT] = *l;
-        h->at[UNIT].from = unit + (strncasecmp(unit, " in ", 4) == 0 ? 3 : 0);
-    }
+        h->dt = text_is(HOLDS, l->from, l->to, "pts/s|points/s|samples/s") ? 1 / x : x;
+    static const char *const BEFORE_UNIT[] = {" in units of ", " in units ", " in "};
+    const char *unit = NULL;
+    for (int i = 0; i < 3 && !unit; i++)
+        if ((unit = find_word(l->from, l->to, BEFORE_UNIT[i]))) {
+            h->at[UNIT] = *l;
+            h->at[UNIT].from = unit + strlen(BEFORE_UNIT[i]);
+        }
     return STATUS_OK;
 }
 
@@ -411,6 +426,22 @@ static Status part_begins(Lines *l, const char *word, double *n_lines, Err *err)
         return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not announce the %s", l->path, l->number, line_shown(l),
                     l->from, word);
     return STATUS_OK;
+}
+
+/* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal, the others up to 9 are no
+ * accelerations in them. */
+static Status check_code(const Lines *unit, Err *err)
+{
+    static const MotionUnit CODES[] = {[2] = UNIT_G, [4] = UNIT_CM_S2, [10] = UNIT_CM_S2};
+    double code;
+    const char *open = unit->from ? memchr(unit->from, '(', (size_t)(unit->to - unit->from)) : NULL;
+    if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))
+        return STATUS_OK;
+    const MotionUnit said = unit_of(unit->from, open);
+    return !said || said == CODES[(int)code]
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s:%d: the unit in words, '%.*s', is not the one of its code %g",
+                      unit->path, unit->number, (int)(open - unit->from), unit->from, code);
 }
 
 /* COSMOS 1.20: an integer and a real header and comments, each under a line that says how many lines follow, then
@@ -446,7 +477,7 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
         h->at[DURATION].from += strlen("approx");
     if (h->at[UNIT].from)
         h->at[UNIT].from += strlen("units=");
-    return STATUS_OK;
+    return check_code(&h->at[UNIT], err);
 }
 
 /* USGS SMC (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held; 6 lines
@@ -459,7 +490,8 @@ enum { SMC_TEXT_LINES = 11 };
 
 static int smc_is(Lines l)
 {
-    return lines_next(&l) && (line_begins(&l, "*") || is_any(&l, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN", 1)) &&
+    return lines_next(&l) &&
+           (line_begins(&l, "*") || text_is(HOLDS, l.from, l.to, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN")) &&
            lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
 }
 
@@ -581,7 +613,7 @@ static int at2_is(Lines l)
     while (l.number < 8 && lines_next(&l)) {
         if (l.from < l.to && !strchr("#%!/", *l.from) && line_has(&l, "NPTS") && (has_title || line_has(&l, "DT")))
             return 1;
-        has_title |= is_any(&l, "TIME SERIES|TIME HISTORY", 1);
+        has_title |= text_is(HOLDS, l.from, l.to, "TIME SERIES|TIME HISTORY");
     }
     return 0;
 }
@@ -641,13 +673,11 @@ static double time_of_day(const char *from, const char *to)
 
 static Status tspair_read(Record *r, Lines *l, Err *err)
 {
-    while (lines_next_filled(l)) {
+    for (Lines ahead = lines_ahead(l); ahead.from && line_begins(&ahead, "TIMESERIES "); ahead = lines_ahead(l)) {
         Channel *c;
         Header h = {.count = NAN, .dt = NAN};
         double first = NAN, last = NAN;
-        if (!line_begins(l, "TIMESERIES "))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
-                        line_shown(l), l->from);
+        *l = ahead;
         TRY(record_channel(r, l, &c, err));
         TRY(series_more(l, &h, c, err));
         if (!(h.count >= 2 && h.dt > 0 && h.dt <= MOTION_STEP_MAX_S))
@@ -692,7 +722,10 @@ static const Format FORMATS[] = {
     {"jma", .begins = "SITE CODE", .within = 1, .parting = ",",
      .words = {{RATE, "SAMPLING RATE", ""}, {UNIT, "UNIT", ""}}},
     {"cwb", .begins = "#Earthquake Information", .within = 1, .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
-     .words = {{RATE, "#SampleRate(Hz)", ""}, {UNIT, "#AmplitudeUnit", ""}, {NAMES, "#DataSequence:", ""}}},
+     .words = {{RATE, "#SampleRate(Hz)", ""},
+               {DURATION, "#RecordLength(sec)", ""},
+               {UNIT, "#AmplitudeUnit", ""},
+               {NAMES, "#DataSequence:", ""}}},
     {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .within = 1, .parting = " ", .peak_of = "(%s)",
      .unit = UNIT_CM_S2, .words = {{COUNT, "NUMBER OF DATA", ":"}, {STEP, "SAMPLING INTERVAL", ":"}}},
     {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12, .ends = "DATOS DE ACELERACION:", .parting = "/",
@@ -767,31 +800,56 @@ static const Format FORMATS[] = {
                {TYPE, "", "TIME HISTORY"}}},
 };
 
-/* Channels lie one after the other, velocities, displacements and end marks between them. */
-static Status read_all(const Format *f, Record *r, Lines *l, Err *err)
+/* The format of a record that begins with line l. */
+static const Format *format_at(Lines l)
 {
-    if (f->refused)
-        return fail(err, STATUS_BAD_DATA, "%s: is not read: %s", l->path, f->refused);
-    if (f->read)
-        return f->read(r, l, err);
-    while (lines_next_filled(l)) {
-        const int begins = f->within == 1 && !f->is && (f->begins ? is_any(l, f->begins, 0) : is_any(l, f->has, 1));
-        if (r->n_channels > 0 && !begins)
-            continue;
-        TRY(read_channel(f, r, l, err));
+    l.next = l.raw;
+    l.number = 0;
+    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; i++)
+        if (recognise(&FORMATS[i], l))
+            return &FORMATS[i];
+    return NULL;
+}
+
+/* The record behind the samples, of this format or of another; NULL: none. End marks, velocities and displacements are
+ * passed over; other numbers below words would be dropped in silence. */
+static Status find_next(Lines *l, const Format **next, Err *err)
+{
+    int is_known = 1;
+    double x;
+    *next = NULL;
+    for (Lines ahead = lines_ahead(l); ahead.from; ahead = lines_ahead(l)) {
+        if (line_has_letters(&ahead) || !strchr("+-.0123456789", *ahead.from)) {
+            *next = format_at(ahead);
+            if (*next && !(*next)->refused)
+                return STATUS_OK;
+            is_known = *next || text_is(HOLDS, ahead.from, ahead.to, "veloc|displ| vel | dis");
+            *next = NULL;
+        } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
+            return fail(err, STATUS_BAD_DATA,
+                        "%s:%d: more numbers, below words, than the header announces; is it a second record? Keep one "
+                        "of them",
+                        l->path, ahead.number);
+        *l = ahead;
     }
     return STATUS_OK;
 }
 
+/* Records lie one after the other. */
 Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
-    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; i++)
-        if (recognise(&FORMATS[i], *l)) {
-            r->is_known = !FORMATS[i].refused;
-            TRY(read_all(&FORMATS[i], r, l, err));
-            for (size_t k = 0; k < r->n_channels; k++)
-                r->channel[k].format = FORMATS[i].name;
-            return STATUS_OK;
-        }
-    return columns_read(r, l, hints, err);
+    const Lines first = lines_ahead(l);
+    const Format *f = first.from ? format_at(first) : NULL;
+    if (!f)
+        return columns_read(r, l, hints, err);
+    if (f->refused)
+        return fail(err, STATUS_BAD_DATA, "%s: is not read: %s", l->path, f->refused);
+    for (r->is_known = 1; f;) {
+        const size_t before = r->n_channels;
+        TRY(f->read ? f->read(r, l, err) : read_channel(f, r, l, err));
+        for (size_t k = before; k < r->n_channels; k++)
+            r->channel[k].format = f->name;
+        TRY(find_next(l, &f, err));
+    }
+    return STATUS_OK;
 }

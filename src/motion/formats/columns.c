@@ -6,9 +6,12 @@
  *   names     the last line of words names the columns; a unit in a name, "acc [m/s2]" or "acc_m_s2", wins
  *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of
  *             samples or rows that follow; npts alone in the first row
- *   times     the column that is named so, else the first, unless there is only one, or the names or the numbers say
- *             that it is none; then the step must be known. 0, 1, 2, ... without such a name are numbers of samples
- *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
+ *   times     the column that is named so, else the first where it has no other name; with another name, which may be
+ *             that of a period or of a frequency, the step must be known. 0, 1, 2, ... without such a name are numbers
+ *             of samples
+ *   rows      numbers without names are read row by row as one long column where their number is the one that is
+ *             stated, or where the step is known and the last of rows too wide for the components of a station is
+ *             shorter
  *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
  *             digits, and where the names name one column and no number has a point */
 #include <ctype.h>
@@ -30,6 +33,8 @@ typedef struct {
     int odd_line, is_one;          /* odd_line 0: none; is_one: one column, no comma parts anything */
     double dt, count;              /* [s], of samples; 0: not stated */
     Channel all;                   /* unit, or stated, of every column that has none in its name */
+    int is_counted;                /* the first column counts rows */
+    int restated_line;             /* of a step, a count or a unit below the first row; 0: none */
     char wrong[160];               /* what is contradicted or not understood, and where */
     int wrong_line;                /* 0: nothing */
 } Plain;
@@ -55,6 +60,35 @@ static void take_number(Plain *t, double *have, double x, const char *what, cons
         note_wrong(t, l, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x, *have);
 }
 
+static int names_seconds(Cell c)
+{
+    return text_is(EQUALS, c.from, c.to, "s|sec|secs|second|seconds");
+}
+
+/* "time", "t [s]", "Zeit", or anything in seconds but a period. */
+static int names_times(Cell c)
+{
+    if (text_is(HOLDS, c.from, c.to, "period|freq"))
+        return 0;
+    if (text_is(HOLDS, c.from, c.to, "time") || text_is(BEGINS, c.from, c.to, "sec|zeit|tiempo|temps|tempo|zaman|czas"))
+        return 1;
+    const char *p = c.from;
+    Cell word = cell_next(&p, c.to, "_ ()[],");
+    if (text_is(EQUALS, word.from, word.to, "t"))
+        return 1;
+    while (p < c.to)
+        word = cell_next(&p, c.to, "_ ()[],");
+    return names_seconds(word);
+}
+
+/* The unit that the text begins with, where it begins with one. */
+static void take_unit(Channel *c, const char *from, const char *to)
+{
+    channel_unit(c, from, to);
+    if (!c->counts && !is_quantity(c->stated, c->stated + strlen(c->stated)))
+        c->stated[0] = 0;
+}
+
 enum { UNIT, STEP, RATE, COUNT };
 static const struct {
     const char *word;
@@ -78,7 +112,10 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
     double x;
     if (kind == UNIT) {
         Channel c = {.scale = 1};
-        channel_unit(&c, mark, l->to);
+        take_unit(&c, mark, l->to);
+        const char *next = memchr(mark, ',', (size_t)(l->to - mark)); /* "units: s, g" */
+        if (next && names_seconds((Cell){.from = c.stated, .to = c.stated + strlen(c.stated)}))
+            take_unit(&c, next + 1, l->to);
         if (c.unit && t->all.unit && c.unit != t->all.unit)
             note_wrong(t, l, "states another unit than a line above");
         if (!t->all.unit && c.scale == 1)
@@ -109,6 +146,7 @@ static void take_pairs(Plain *t, const Lines *l)
                 isalpha((unsigned char)at[n]) || find_word(at + n, mark, " per "))
                 continue;
             take_value(t, KEYS[i].kind, l, mark);
+            t->restated_line = t->n_rows ? l->number : 0;
         }
     }
 }
@@ -197,8 +235,10 @@ static void unit_in_name(Cell name, Channel *c)
         const char *close = open;
         while (close < name.to && !strchr("])", *close))
             close++;
+        if (open[-1] == '(' && close - open == 1 && strchr("NSEWUDVZ", *open)) /* a direction */
+            return;
         open += find_word(open, close, "in ") == open ? 3 : 0;
-        channel_unit(c, open, close);
+        take_unit(c, open, close);
         if (c->scale != 1 || (c->unit && unit_of(open, close) != c->unit)) { /* tenths, or more than a unit */
             c->unit = UNIT_FROM_FILE;
             c->scale = 1;
@@ -210,18 +250,24 @@ static void unit_in_name(Cell name, Channel *c)
         if ((p == name.from || strchr("_ ", p[-1])) &&
             !(p - name.from > 2 && isdigit((unsigned char)p[-2]) && isdigit((unsigned char)p[-3])))
             c->unit = unit_of(p, name.to);
+    for (const char *p = name.from + 1; p < name.to && !c->unit; p++)
+        if (p[-1] == '_' && text_is(EQUALS, p, name.to, "cm_s|m_s|mm_s|in_s|kn|mn|kpa|mpa|m|cm|mm|knm|rad|deg|mg|hz"))
+            snprintf(c->stated, sizeof c->stated, "%.*s", (int)(name.to - p), p);
 }
 
-static int names_times(Cell c)
+/* Times are seconds: a name that says otherwise is refused before it shakes a tower a thousand times too slowly, and
+ * periods, frequencies or whatever else the first column is said to be are no times. A title of two words above two
+ * columns is no name. */
+static Status check_times(const Plain *t, Cell name, int known, Err *err)
 {
-    const Lines l = {.from = c.from, .to = c.to};
-    return line_begins(&l, "time") || line_begins(&l, "sec") ||
-           (line_begins(&l, "t") && (c.to - c.from == 1 || !isalnum((unsigned char)c.from[1])));
-}
-
-/* Times are seconds: a name that says otherwise is refused before it shakes a tower a thousand times too slowly. */
-static Status times_are_seconds(const Plain *t, Cell name, Err *err)
-{
+    const Lines *l = &t->names;
+    const int is_title = !has_marks(l) && !text_is(HOLDS, l->from, l->to, "[|(|_");
+    if (!known && name.from < name.to && !is_title)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
+            "step of the samples (--set motion.dt_s=0.01)",
+            t->l->path, l->number, (int)(name.to - name.from), name.from);
     static const char *const OTHERS[] = {"ms", "msec", "us", "min", "minutes", "h", "hours"};
     for (const char *p = name.from; p <= name.to;) {
         const Cell word = cell_next(&p, name.to, "_ ()[],");
@@ -299,7 +345,15 @@ static Status read_rows(Plain *t, Err *err)
             take_names(t, l);
         } else {
             size_t n;
+            if (t->restated_line)
+                return fail(
+                    err, STATUS_BAD_DATA,
+                    "%s:%d: states a step, a unit or a number of samples below the first sample; is it a second "
+                    "record? Keep one of them",
+                    l->path, t->restated_line);
             const Status s = record_add_cells(t->r, l, has_decimal_commas(t), &n, err);
+            if (s != STATUS_OK && t->n_rows && is_words(l) && !has_marks(l) && !lines_ahead(l).from) /* "end" */
+                return STATUS_OK;
             if (s != STATUS_OK)
                 return err->sub != SUB_NO_NUMBER || is_table(t) ? s : fail_unknown(t, err);
             count_row(t, n, l->number);
@@ -385,7 +439,7 @@ static Status check_rows(const Plain *t, Err *err)
     return fail_sub(
         err, STATUS_BAD_DATA, SUB_RAGGED,
         "%s:%d: has %zu column%s where the lines above have %zu; one motion written row by row has its number "
-        "of samples above it, '# npts = %zu', and its step",
+        "of samples above it, '# npts = %zu', and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)",
         t->l->path, t->odd_line, t->odd_width, s, t->width, t->r->n);
 }
 
@@ -412,18 +466,29 @@ static int counts_samples(const Plain *t)
     return row[0].a == floor(row[0].a);
 }
 
+/* One motion row by row: the last row is shorter, none is as narrow as the components of a station, and the first
+ * column does not rise like times. */
+static int is_wrapped(const Plain *t)
+{
+    enum { COMPONENTS_MAX = 4 };
+    return t->width > COMPONENTS_MAX && t->odd_line && t->odd_row + 1 == t->n_rows && t->odd_width < t->width &&
+           !t->hints->channel && 4 * count_rises(t) < 3 * (t->n_rows - 1);
+}
+
 /* All columns but `skipped` become channels, at equal steps unless they are `timed`. */
 static Status name_channels(const Plain *t, size_t skipped, int timed, double stated_dt, Err *err)
 {
+    static const char *const UNITS[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
     const char *p = t->names.from;
     for (size_t k = 0; k < t->width; k++) {
         Channel *c;
         const Cell name = is_named(t) ? next_name(&t->names, &p) : (Cell){0};
-        if (k == skipped || (is_named(t) && name.from == name.to)) /* pandas does not name the numbers of its rows */
-            continue;
+        if (k == skipped || (k == 0 && t->is_counted) || (is_named(t) && name.from == name.to))
+            continue; /* pandas does not name the numbers of its rows */
         TRY(record_channel(t->r, t->l, &c, err));
         *c = (Channel){.scale = 1,
                        .other_dt = timed ? stated_dt : 0,
+                       .is_timed = timed && is_named(t),
                        .dt = timed ? 0 : t->dt,
                        .first = k,
                        .stride = t->width,
@@ -433,7 +498,10 @@ static Status name_channels(const Plain *t, size_t skipped, int timed, double st
             channel_name(c, name.from, name.to);
             unit_in_name(name, c);
         }
-        if (!c->unit && t->all.unit)
+        if (c->unit && t->all.unit && c->unit != t->all.unit)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: the column '%s' is in %s, but the header above says %s",
+                        t->l->path, t->names.number, c->name, UNITS[c->unit], UNITS[t->all.unit]);
+        if (!c->unit && !c->stated[0] && t->all.unit)
             c->unit = t->all.unit;
         if (!c->unit && !c->stated[0])
             memcpy(c->stated, t->all.stated, sizeof c->stated);
@@ -485,12 +553,15 @@ static Status read_columns(Plain *t, Err *err)
     const double stated_dt = t->dt;
     t->dt = stated_dt > 0 ? stated_dt : t->hints->dt_s;
     const size_t times = column_of_times(t, &known);
+    if (is_named(t) && !known && text_is(HOLDS, name_at(t, 0).from, name_at(t, 0).to, "period|freq|[hz|(hz|_hz"))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' heads a spectrum; a motion is a function of time", t->l->path,
+                    t->names.number, line_shown(&t->names), t->names.from);
     int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !known);
     if (t->width == 1 && !(t->dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
                     t->l->path, r->row[0].line);
-    if (t->width > 1 && !is_named(t) && t->dt > 0 && t->count == (double)r->n) {
+    if (t->width > 1 && !is_named(t) && t->dt > 0 && (t->count == (double)r->n || is_wrapped(t))) {
         t->width = 1;
         t->n_rows = r->n;
         return name_channels(t, 1, 0, 0, err);
@@ -504,7 +575,8 @@ static Status read_columns(Plain *t, Err *err)
     if (t->count > 1 && t->count != (double)t->n_rows && t->count != (double)r->n)
         return fail(err, STATUS_BAD_DATA, "%s: announces %g samples, but has %zu rows", t->l->path, t->count,
                     t->n_rows);
-    const int numbered = !known && counts_samples(t);
+    t->is_counted = counts_samples(t);
+    const int numbered = !known && t->is_counted;
     if (numbered && !(t->dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
@@ -512,10 +584,10 @@ static Status read_columns(Plain *t, Err *err)
                     t->l->path, r->row[0].line, r->row[0].a, r->row[t->width].a);
     timed = timed && !numbered;
     if (timed && is_named(t))
-        TRY(times_are_seconds(t, name_at(t, times), err));
+        TRY(check_times(t, name_at(t, times), known, err));
     if (timed)
-        record_set_times(t->r, t->width, times);
-    return name_channels(t, timed || numbered ? times : t->width, timed, stated_dt, err);
+        record_set_times(t->r, 0, t->width, times);
+    return name_channels(t, timed ? times : t->width, timed, stated_dt, err);
 }
 
 Status columns_read(Record *r, Lines *l, const ReadHints *hints, Err *err)

@@ -127,6 +127,9 @@ static Status read_frames(Record *r, const char *path, const unsigned char *b, s
         frames++;
         at += TAG + FRAME + samples;
     }
+    if (n - at >= TAG + HEADER && b[at] == 'K' && u32(b + at + 4) == TAG_HEADER)
+        return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: a second record begins at byte %zu; keep one of them",
+                    path, at);
     if (frames == 0 || frames != wanted)
         return fail(err, STATUS_BAD_DATA,
                     "%s: Kinemetrics EVT: holds %u frames of a tenth of a second, its header "

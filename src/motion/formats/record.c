@@ -64,9 +64,9 @@ Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err
     return STATUS_OK;
 }
 
-void record_set_times(Record *r, size_t width, size_t k)
+void record_set_times(Record *r, size_t first, size_t width, size_t k)
 {
-    for (size_t i = 0; i + width <= r->n; i += width)
+    for (size_t i = first; i + width <= r->n; i += width)
         for (size_t j = i; j < i + width; j++) {
             r->row[j].t = r->row[i + k].a;
             r->row[j].decimals = r->row[i + k].decimals;
@@ -160,7 +160,7 @@ void channel_unit(Channel *c, const char *from, const char *to)
         if (c->unit)
             return;
     }
-    c->counts = find_word(from, all, "count") != NULL;
+    c->counts = text_is(HOLDS, from, all, "count|cuenta");
     copy_plain(c->stated, sizeof c->stated, from, all);
 }
 

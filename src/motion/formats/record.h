@@ -31,6 +31,8 @@ typedef struct {
     double peak_slack;   /* [m/s2] half a unit of its last digit */
     int subtract_mean;   /* the agency's own peak is that of the record without its mean */
     int digitized;       /* from film, its steps are not equal */
+    int is_timed;        /* the column of its times is named so */
+    int is_corrected;    /* the agency has corrected its base line */
     const char *format;  /* static; of the file, or of the member of an archive, that holds it */
     const char *warning; /* static; NULL: none */
     size_t first, stride, n;
@@ -88,8 +90,8 @@ void record_free(Record *r);
 /* Numbers of a line, one Row each; *n is how many. with_comma: 1,5 is one and a half. */
 Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err);
 
-/* The times of column k of `width` go into every row. */
-void record_set_times(Record *r, size_t width, size_t k);
+/* The times of column k of `width` go into every row from the first one on. */
+void record_set_times(Record *r, size_t first, size_t width, size_t k);
 
 /* A channel without a name that begins with the next row. */
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);

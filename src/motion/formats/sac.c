@@ -130,7 +130,8 @@ int sac_text_is(Lines l)
     double x[5];
     size_t n;
     Err ignored = {0};
-    if (!lines_skip(&l, REAL_LINES + 2) || line_numbers(&l, 10, 5, x, &n, &ignored) != STATUS_OK)
+    if (!lines_next(&l) || line_has_letters(&l) || !lines_skip(&l, REAL_LINES + 1) ||
+        line_numbers(&l, 10, 5, x, &n, &ignored) != STATUS_OK)
         return 0;
     return n == 5 && is_version((int32_t)fmax(fmin(x[1], 100), -100)) && x[1] == floor(x[1]);
 }

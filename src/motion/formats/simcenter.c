@@ -1,6 +1,7 @@
 /* SimCenter events and ground-motion records (NHERI, EE-UQ, s3hark), JSON: wherever an object has a step "dT" and
  * samples "data", or "data_x", "data_y", "data_z", each list is a channel, named by "name". The unit is that of
- * "unit" or "units" beside them or above, else it is asked for. */
+ * "unit" or "units" beside them or above, else it is asked for. A "factor" beside the samples multiplies them, as in
+ * SimCenter's IntensityMeasureComputer and in the series that it hands to OpenSees. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +14,7 @@ enum { DEPTH_MAX = 32 };
 typedef struct {
     Record *r;
     const Lines *l;
-    MotionUnit unit;
+    Channel shape; /* unit, scale, warning */
     const char *name;
     double count; /* "numSteps"; 0: none is stated */
 } Place;
@@ -39,14 +40,20 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     const size_t n = json_array_size(list);
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
-    if (place->count > 0 && place->count != (double)n)
+    if (place->count > 0 && place->count != (double)n && place->count + 1 != (double)n)
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
                     place->l->path, place->name, n, place->count);
     TRY(record_channel(place->r, place->l, &c, err));
     snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
     channel_name(c, name, name + strlen(name));
-    c->unit = place->unit;
+    memcpy(name, c->name, sizeof name);
+    const size_t first = c->first;
+    *c = place->shape;
+    memcpy(c->name, name, sizeof name);
+    c->first = first;
     c->dt = dt;
+    if (place->count + 1 == (double)n && !c->warning)
+        c->warning = "its numSteps is one less than its samples";
     c->n = n;
     for (size_t i = 0; i < n; i++) {
         const json_t *x = json_array_get(list, i);
@@ -58,21 +65,39 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     return STATUS_OK;
 }
 
-static MotionUnit unit_beside(const json_t *o, MotionUnit otherwise)
+static void take_unit(const json_t *o, Channel *c)
 {
+    const json_t *units = json_object_get(o, "units");
     const char *text = json_string_value(json_object_get(o, "unit"));
-    text = text ? text : json_string_value(json_object_get(o, "units"));
-    const MotionUnit unit = text ? unit_of(text, text + strlen(text)) : UNIT_FROM_FILE;
-    return unit ? unit : otherwise;
+    text = text ? text : json_string_value(units);
+    text = text ? text : json_string_value(json_object_get(units, "acceleration"));
+    if (text && *text)
+        channel_unit(c, text, text + strlen(text));
 }
 
-/* Which of the factors of event, series and pattern multiply the samples differs from program to program. */
-static Status check_factor(const Lines *l, const json_t *o, Err *err)
+/* Wind and waves come as forces. */
+static Status check_type(const Lines *l, const json_t *o, Err *err)
 {
+    const char *type = json_string_value(json_object_get(o, "type"));
+    if (!type || !text_is(BEGINS, type, type + strlen(type), "wind|water|wave|hydro|tsunami|surge|force"))
+        return STATUS_OK;
+    return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: \"type\" is \"%.40s\"", l->path,
+                    type);
+}
+
+/* Which of the factors of event and pattern multiply the samples differs from program to program. */
+static Status check_factor(const Lines *l, const json_t *o, Channel *c, Err *err)
+{
+    const json_t *factor = json_object_get(o, "factor");
+    if (json_is_number(factor) && json_is_number(json_object_get(o, "dT")) && json_number_value(factor) != 1 &&
+        isfinite(json_number_value(factor))) {
+        c->scale *= json_number_value(factor);
+        c->warning = "its samples are multiplied by the factor that stands beside them";
+    }
     static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
     for (size_t k = 0; k < sizeof FACTORS / sizeof FACTORS[0]; k++) {
         const json_t *x = json_object_get(o, FACTORS[k]);
-        if (x && !(json_is_number(x) && json_number_value(x) == 1))
+        if (x && !(json_is_number(x) && json_number_value(x) == 1) && c->scale == 1)
             return fail(err, STATUS_BAD_DATA,
                         "%s: SimCenter: \"%s\" is not 1; multiply the samples by it, or leave it out and set "
                         "motion.factor",
@@ -98,9 +123,10 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
         return STATUS_OK;
     const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
     place.name = json_is_string(name) ? json_string_value(name) : place.name;
-    place.unit = unit_beside(node, place.unit);
+    take_unit(node, &place.shape);
     place.count = json_number_value(json_object_get(node, "numSteps"));
-    TRY(check_factor(place.l, node, err));
+    TRY(check_type(place.l, node, err));
+    TRY(check_factor(place.l, node, &place.shape, err));
     for (size_t k = 0; k < sizeof LISTS / sizeof LISTS[0] && json_is_number(dt); k++)
         if (json_is_array(json_object_get(node, LISTS[k])))
             TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
@@ -118,7 +144,7 @@ static Status read(Record *r, const char *path, const char *bytes, size_t n, Err
     json_t *root = json_loadb(bytes + begin, n - begin, 0, &why);
     if (!root)
         return fail(err, STATUS_BAD_DATA, "%s:%d: no JSON: %s", path, why.line, why.text);
-    Status status = search((Place){.r = r, .l = &l, .name = ""}, root, 0, err);
+    Status status = search((Place){.r = r, .l = &l, .name = "", .shape = {.scale = 1, .stride = 1}}, root, 0, err);
     json_decref(root);
     if (status == STATUS_OK && r->n_channels == 0)
         status = fail(err, STATUS_BAD_DATA, "%s: JSON without a step dT and samples data (SimCenter)", path);

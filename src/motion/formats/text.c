@@ -18,10 +18,12 @@ int lines_skip(Lines *l, int n)
 
 int lines_next_filled(Lines *l)
 {
-    while (lines_next(l))
-        if (l->from < l->to)
-            return 1;
-    return 0;
+    for (const char *p = l->next; p < l->end && isspace((unsigned char)*p); p++)
+        if (*p == l->mark) {
+            l->number++;
+            l->next = p + 1;
+        }
+    return lines_next(l) && l->from < l->to;
 }
 
 Lines lines_ahead(const Lines *l)
@@ -50,6 +52,21 @@ const char *find_word(const char *from, const char *to, const char *word)
         if (strncasecmp(from, word, length) == 0)
             return from;
     return NULL;
+}
+
+int text_is(Match how, const char *from, const char *to, const char *words)
+{
+    char word[64];
+    for (size_t n; *words; words += n + (words[n] == '|')) {
+        n = strcspn(words, "|");
+        memcpy(word, words, n);
+        word[n] = 0;
+        const char *at =
+            how == HOLDS ? find_word(from, to, word) : find_word(from, from + n < to ? from + n : to, word);
+        if (at && (how != EQUALS || from + n == to))
+            return 1;
+    }
+    return 0;
 }
 
 int line_has(const Lines *l, const char *word)
@@ -218,4 +235,26 @@ MotionUnit unit_of(const char *from, const char *to)
     if (strcmp(text, "gal") == 0 || strcmp(text, "gals") == 0)
         return UNIT_CM_S2;
     return strcmp(text, "g") == 0 ? UNIT_G : UNIT_FROM_FILE;
+}
+
+int is_quantity(const char *from, const char *to)
+{
+    static const char UNITS[] =
+        "m|cm|mm|km|in|inch|inches|ft|feet|n|kn|mn|kip|kips|lb|lbf|pa|kpa|mpa|psi|ksi|nm|knm|v|mv|volt|volts|"
+        "rad|mrad|deg|hz|s|sec|second|seconds|ms|kg|t|j|kj|g|mg|gal|gals|milli|micro|of|x";
+    int n_words = 0, n_letters = 0;
+    while (from < to && isspace((unsigned char)*from))
+        from++;
+    for (const char *p = from; p < to;) {
+        const char *word = p;
+        while (p < to && isalpha((unsigned char)*p))
+            p++;
+        if (p > word && !text_is(EQUALS, word, p, UNITS))
+            return 0;
+        n_words += p > word;
+        n_letters += p - word == 1 && strchr("NSEWUDVZ", *word);
+        p += p == word;
+    }
+    const int is_direction = n_words > 1 && n_letters == n_words; /* N-S */
+    return (n_words && !is_direction) || memchr(from, '%', (size_t)(to - from)) || text_is(EQUALS, from, to, "-");
 }

@@ -16,6 +16,10 @@ int line_has(const Lines *l, const char *word);
 
 const char *find_word(const char *from, const char *to, const char *word); /* without regard to case; NULL: none */
 
+/* Does from..to begin with, hold, or equal one of the words parted by |, without regard to case? */
+typedef enum { BEGINS, HOLDS, EQUALS } Match;
+int text_is(Match how, const char *from, const char *to, const char *words);
+
 /* The first number in `from`..`to` behind `word` and any of " =:(", decimal point or comma: 1, else 0. */
 int number_behind(const char *from, const char *to, const char *word, double *x);
 
@@ -36,5 +40,9 @@ int format_width(const Lines *l);
 
 /* The unit of acceleration that all of the text is, "cm/sec^2", "M_S2", "Gal", "g"; UNIT_FROM_FILE: none. */
 MotionUnit unit_of(const char *from, const char *to);
+
+/* Is the text a unit of anything, or a multiple of one, "kN", "m/s", "-", "% of g", and no component or remark, "N-S",
+ * "filtered"? */
+int is_quantity(const char *from, const char *to);
 
 #endif
