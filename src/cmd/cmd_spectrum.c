@@ -6,7 +6,6 @@
 
 #include "base/cell.h"
 #include "base/json.h"
-#include "base/stat.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
@@ -101,21 +100,13 @@ static void spectrum_close(Spectrum *s)
     motion_free(&s->motion);
 }
 
-typedef struct {
-    const Spectrum *s;
-    int period;
-} AtPeriod;
-
-static double psa_of(size_t k, const void *user)
-{
-    const AtPeriod *at = user;
-    return at->s[k].psa[at->period];
-}
-
 static void average(size_t n, const Spectrum s[], double mean[N_PERIODS])
 {
-    for (int i = 0; i < N_PERIODS; i++)
-        mean_and_sd(n, psa_of, &(AtPeriod){s, i}, &mean[i], NULL);
+    for (int i = 0; i < N_PERIODS; i++) {
+        mean[i] = 0;
+        for (size_t k = 0; k < n; k++)
+            mean[i] += s[k].psa[i] / (double)n;
+    }
 }
 
 static const char *name_of(const Spectrum *s) /* the last part of its path */
@@ -132,6 +123,8 @@ typedef struct {
     const double *x;           /* NULL: not asked for */
 } Curve;
 
+enum { N_HISTORIES = 5 };
+
 static void curves_of_one(const Spectrum *s, Curve c[CURVES_MAX])
 {
     c[0] = (Curve){"period_s", "period_s", 1, s->T};
@@ -140,6 +133,15 @@ static void curves_of_one(const Spectrum *s, Curve c[CURVES_MAX])
     c[3] = (Curve){"sd_m", "sd_m", 1, s->sd};
     c[4] = (Curve){"recorded_psa_m_s2", "recorded", GRAVITY, s->is_processed ? s->recorded_psa : NULL};
     c[5] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
+}
+
+static void histories_of(const Spectrum *s, Curve c[N_HISTORIES])
+{
+    c[0] = (Curve){"time_s", "", 1, s->time};
+    c[1] = (Curve){"accel_m_s2", "", 1, s->motion.accel};
+    c[2] = (Curve){"velocity_m_s", "", 1, s->velocity};
+    c[3] = (Curve){"displacement_m", "", 1, s->displacement};
+    c[4] = (Curve){"husid", "", 1, s->husid};
 }
 
 static void curves_of_all(size_t n, const Spectrum s[], const double mean[N_PERIODS], Curve c[])
@@ -155,6 +157,7 @@ static void curves_of_all(size_t n, const Spectrum s[], const double mean[N_PERI
     }
 }
 
+/* Histories may have millions of rows: each is written as it comes. */
 static Status write_curves(const char *path, size_t n_rows, size_t n, const Curve c[], Err *err)
 {
     Output o;
@@ -175,14 +178,14 @@ static Status write_curves(const char *path, size_t n_rows, size_t n, const Curv
 
 static void print_curves(size_t n, const Curve c[])
 {
-    for (size_t k = 0; k < n; k++)
-        if (c[k].x)
-            printf(k ? " %9s" : "%8s", c[k].title);
-    for (int i = 0; i < N_PERIODS; i += PRINTED_EACH)
+    json_t *table = json_array();
+    for (size_t i = 0; i < N_PERIODS; i += PRINTED_EACH) {
+        json_t *row = figures_row(table);
         for (size_t k = 0; k < n; k++)
             if (c[k].x)
-                printf(k ? " %9.4g" : "\n%8.4g", c[k].x[i] / c[k].unit);
-    putchar('\n');
+                json_object_set_new(row, c[k].title, json_number(c[k].x[i] / c[k].unit));
+    }
+    figures_print(table);
 }
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
@@ -282,41 +285,46 @@ static void draw_all(FILE *script, const void *user)
 
 /* ---- one motion -------------------------------------------------------------------------------------------------- */
 
+/* Figures of the motion; recorded: without base line and filters, where it has such. */
+static void add_figures(json_t *o, const MotionFigures *f)
+{
+    json_object_update_new(o, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "pga_m_s2", f->pga_m_s2, "pga_g",
+                                        f->pga_m_s2 / GRAVITY, "pgv_m_s", f->pgv_m_s, "pgd_m", f->pgd_m, "duration_s",
+                                        f->duration_s, "arias_m_s", f->arias_m_s, "cav_m_s", f->cav_m_s, "d5_95_s",
+                                        f->d5_95_s));
+}
+
+/* All but the histories, which may be long. */
 static json_t *describe(const Spectrum *s)
 {
-    const MotionFigures *f = &s->figures, *r = &s->recorded;
+    const MotionFigures *r = &s->recorded;
     const Motion *m = &s->motion;
-    const struct {
-        const char *key;
-        double x;
-    } NUMBERS[] = {{"scale", m->scale},       {"stretch", m->stretch},          {"step_s", m->dt_s},
-                   {"pga_m_s2", f->pga_m_s2}, {"pga_g", f->pga_m_s2 / GRAVITY}, {"pgv_m_s", f->pgv_m_s},
-                   {"pgd_m", f->pgd_m},       {"duration_s", f->duration_s},    {"arias_m_s", f->arias_m_s},
-                   {"cav_m_s", f->cav_m_s},   {"d5_95_s", f->d5_95_s},          {"damping", DAMPING}};
-    const struct {
-        const char *key;
-        size_t n;
-        const double *x;
-    } ARRAYS[] = {{"period_s", N_PERIODS, s->T},  {"psa_m_s2", N_PERIODS, s->psa},
-                  {"psv_m_s", N_PERIODS, s->psv}, {"sd_m", N_PERIODS, s->sd},
-                  {"accel_m_s2", m->n, m->accel}, {"velocity_m_s", m->n, s->velocity},
-                  {"husid", m->n, s->husid},      {"displacement_m", m->n, s->displacement}};
-    json_t *o = json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I}", "motion", json_words(m->name), "format", m->format,
-                          "channel", json_words(m->channel), "processed", json_words(m->processed), "corrected",
-                          is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n);
-    for (size_t i = 0; i < sizeof NUMBERS / sizeof NUMBERS[0]; i++)
-        json_object_set_new(o, NUMBERS[i].key, json_number(NUMBERS[i].x));
-    for (size_t i = 0; i < sizeof ARRAYS / sizeof ARRAYS[0]; i++)
-        json_object_set_new(o, ARRAYS[i].key, json_numbers(ARRAYS[i].n, ARRAYS[i].x));
+    Curve c[CURVES_MAX];
+    json_t *o =
+        json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I, s:f, s:f, s:f, s:f}", "motion", json_words(m->name), "format",
+                  m->format, "channel", json_words(m->channel), "processed", json_words(m->processed), "corrected",
+                  is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n,
+                  "scale", m->scale, "stretch", m->stretch, "step_s", m->dt_s, "damping", DAMPING);
+    add_figures(o, &s->figures);
+    curves_of_one(s, c);
+    for (size_t k = 0; k < CURVES_MAX; k++)
+        if (c[k].x && c[k].x != s->recorded_psa)
+            json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
     if (s->is_processed)
         json_object_set_new(o, "recorded",
                             json_pack("{s:f, s:f, s:f, s:o}", "pga_m_s2", r->pga_m_s2, "pgv_m_s", r->pgv_m_s, "pgd_m",
                                       r->pgd_m, "psa_m_s2", json_numbers(N_PERIODS, s->recorded_psa)));
-    if (s->code.kind) {
-        json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
+    if (s->code.kind)
         json_object_set_new(o, "target_misfit", json_number(target_misfit(m, &s->code)));
-    }
     return o;
+}
+
+static void add_histories(json_t *o, const Spectrum *s)
+{
+    Curve c[N_HISTORIES];
+    histories_of(s, c);
+    for (size_t k = 1; k < N_HISTORIES; k++)
+        json_object_set_new(o, c[k].name, json_numbers(s->motion.n, c[k].x));
 }
 
 static void print_head(const Spectrum *s)
@@ -339,77 +347,73 @@ static void print_head(const Spectrum *s)
 
 static void print_figures(const Spectrum *s)
 {
-    const MotionFigures *f = &s->figures, *r = &s->recorded;
-    const int corrected = is_corrected(s);
-    char before[3][48] = {"", "", ""};
+    json_t *table = json_array(), *row = figures_row(table);
+    json_object_set_new(row, "", json_string("motion"));
+    add_figures(row, &s->figures);
     if (s->is_processed) {
-        snprintf(before[0], sizeof before[0], ", recorded %.4f g", r->pga_m_s2 / GRAVITY);
-        snprintf(before[1], sizeof before[1], "   (recorded %.4f m/s)", r->pgv_m_s);
-        snprintf(before[2], sizeof before[2], "   (recorded %.4f m)", r->pgd_m);
+        row = figures_row(table);
+        json_object_set_new(row, "", json_string("recorded"));
+        add_figures(row, &s->recorded);
     }
-    printf("pga       %8.4f g   (%.4f m/s2%s)\n", f->pga_m_s2 / GRAVITY, f->pga_m_s2, before[0]);
-    printf("pgv       %8.4f m/s%s\n", f->pgv_m_s, before[1]);
-    printf("pgd       %8.4f m%s%s\n", f->pgd_m, before[2],
-           corrected ? "" : "   uncorrected: the drift of the record is in it (motion.baseline, motion.highpass_hz)");
-    printf("duration  %8.2f s   (5 to 95 %% of Arias: %.2f s)\narias     %8.4f m/s\ncav       %8.4f m/s\n\n",
-           f->duration_s, f->d5_95_s, f->arias_m_s, f->cav_m_s);
+    putchar('\n');
+    figures_print(table);
+    puts(is_corrected(s)
+             ? "\nresponse at 5 % damping"
+             : "pgd: uncorrected: the drift of the record is in it (motion.baseline, motion.highpass_hz)\n\n"
+               "response at 5 % damping");
 }
 
 /* All that is asked for; the table where nothing is. */
 static Status give_one(const Args *args, const Spectrum *s, Err *err)
 {
-    Curve c[CURVES_MAX];
-    const Curve history[] = {{"time_s", "", 1, s->time},
-                             {"accel_m_s2", "", 1, s->motion.accel},
-                             {"velocity_m_s", "", 1, s->velocity},
-                             {"displacement_m", "", 1, s->displacement},
-                             {"husid", "", 1, s->husid}};
+    Curve c[CURVES_MAX], history[N_HISTORIES];
+    const char *csv = args_value(args, "--csv"), *times = args_value(args, "--history");
+    const char *svg = args_value(args, "--svg");
     curves_of_one(s, c);
-    if (args_has(args, "--csv"))
-        TRY(write_curves(args_value(args, "--csv"), N_PERIODS, CURVES_MAX, c, err));
-    if (args_has(args, "--history"))
-        TRY(write_curves(args_value(args, "--history"), s->motion.n, 5, history, err));
-    if (args_has(args, "--svg"))
-        TRY(gnuplot_draw(args_value(args, "--svg"), draw_one, &(Picture){s, CURVES_MAX, c}, err));
-    if (args_has(args, "--json"))
-        return show_json(describe(s), err);
-    if (!args_has(args, "--csv") && !args_has(args, "--history") && !args_has(args, "--svg")) {
-        print_head(s);
-        putchar('\n');
-        print_figures(s);
-        puts("response at 5 % damping");
-        print_curves(CURVES_MAX, c);
+    histories_of(s, history);
+    TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
+    TRY(times ? write_curves(times, s->motion.n, N_HISTORIES, history, err) : STATUS_OK);
+    TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
+    if (args_has(args, "--json")) {
+        json_t *o = describe(s);
+        add_histories(o, s);
+        return show_json(o, err);
     }
+    if (csv || times || svg)
+        return STATUS_OK;
+    print_head(s);
+    print_figures(s);
+    print_curves(CURVES_MAX, c);
     return STATUS_OK;
 }
 
 /* ---- several ----------------------------------------------------------------------------------------------------- */
 
-static json_t *describe_all(size_t n, const Spectrum s[], const double mean[N_PERIODS])
+static json_t *describe_all(size_t n, const Spectrum s[], const Curve c[])
 {
     json_t *o = json_object(), *list = json_array();
-    for (size_t k = 0; k < n; k++)
+    for (size_t k = 0; k < n; k++) {
         json_array_append_new(list, describe(&s[k]));
+        add_histories(json_array_get(list, k), &s[k]);
+    }
     json_object_set_new(o, "motions", list);
-    json_object_set_new(o, "period_s", json_numbers(N_PERIODS, s->T));
-    json_object_set_new(o, "mean_psa_m_s2", json_numbers(N_PERIODS, mean));
-    if (s->code.kind)
-        json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
+    for (size_t k = 0; k < 3; k++)
+        if (c[k].x)
+            json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
     return o;
 }
 
 static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[], Err *err)
 {
     double mean[N_PERIODS];
+    const char *csv = args_value(args, "--csv"), *svg = args_value(args, "--svg");
     average(n, s, mean);
     curves_of_all(n, s, mean, c);
-    if (args_has(args, "--csv"))
-        TRY(write_curves(args_value(args, "--csv"), N_PERIODS, n + 3, c, err));
-    if (args_has(args, "--svg"))
-        TRY(gnuplot_draw(args_value(args, "--svg"), draw_all, &(Picture){s, n + 3, c}, err));
+    TRY(csv ? write_curves(csv, N_PERIODS, n + 3, c, err) : STATUS_OK);
+    TRY(svg ? gnuplot_draw(svg, draw_all, &(Picture){s, n + 3, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
-        return show_json(describe_all(n, s, mean), err);
-    if (args_has(args, "--csv") || args_has(args, "--svg"))
+        return show_json(describe_all(n, s, c), err);
+    if (csv || svg)
         return STATUS_OK;
     for (size_t k = 0; k < n; k++) {
         printf("%zu  ", k + 1);
