@@ -104,6 +104,12 @@ TEST(bad_settings_and_data_end_with_65)
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
     expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --set sim.engine=magic");
     expect(65, "tests/bad/config/nan.ini:3:11: building.damping", "building tests/bad/config/nan.ini");
+    char *folder = in_place("letters");
+    mkdir(folder, 0777);
+    free(folder);
+    write_in_place("letters/run.sqlite", "this is a letter");
+    expect(65, "is no database of a run", "status @/letters");
+    expect(65, "is no database of a run", "simulate configs/quick.ini --design @/letters:knee");
     expect(65, "/dev/zero: larger than 1 MiB", "check /dev/zero");
     expect(65, "/dev/zero: larger than 1 MiB", "optimize /dev/zero");
     expect(65, "tests/bad/motion/nan.csv",

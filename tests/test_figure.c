@@ -1,7 +1,10 @@
 /* A number for people has the digits that its error leaves, and never more. */
 #include "check.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/figure.h"
 
@@ -59,6 +62,40 @@ TEST(a_standard_deviation_above_the_error_is_what_is_printed)
     expect_figure(13.25, 0.1, 1.16, "13 ± 1 sd");
     expect_figure(13.25, 0.1, 0.01, "13.2 ± 0.1");
     expect_figure(13.25, NAN, 0.2, "13.2 ± 0.2 sd");
+}
+
+/* The page has the rule once more, in its own language: the same text for every value and error. */
+TEST(the_page_writes_the_same_figures)
+{
+    static const double VALUES[] = {0, 16.48, -16.48, 0.0766421, 436251.3, 1.5312e8, 1.5312e-9, 9.96, -0.0066, 1e-4};
+    static const double SHARES[] = {NAN, 0, 1e-9, 1e-3, 0.013, 0.11, 0.6, 1.3, 30};
+    char path[] = "/tmp/imtet-figure-XXXXXX", command[200], text[FIGURE_MAX], line[FIGURE_MAX + 2];
+    if (system("command -v node >/dev/null") != 0)
+        skip();
+    const int fd = mkstemp(path);
+    FILE *f = fdopen(fd, "w");
+    assert_non_null(f);
+    fputs("const ALL = [", f);
+    for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
+        for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++)
+            if (isnan(SHARES[k]))
+                fprintf(f, "[%.17g, NaN], ", VALUES[i]);
+            else
+                fprintf(f, "[%.17g, %.17g], ", VALUES[i], SHARES[k] * fmax(fabs(VALUES[i]), 0.01));
+    fputs("]; for (const [v, e] of ALL) console.log(figureText(v, e));\n", f);
+    fclose(f);
+    snprintf(command, sizeof command, "cat web/app/2-figure.js %s | node -", path);
+    FILE *said = popen(command, "r");
+    assert_non_null(said);
+    for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
+        for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++) {
+            figure_text(VALUES[i], SHARES[k] * fmax(fabs(VALUES[i]), 0.01), NAN, text);
+            assert_non_null(fgets(line, sizeof line, said));
+            line[strcspn(line, "\n")] = 0;
+            assert_string_equal(line, text);
+        }
+    pclose(said);
+    unlink(path);
 }
 
 int main(void)

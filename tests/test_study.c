@@ -92,7 +92,7 @@ TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 {
     Said s;
     char *before = read_in_place("threads-1/front.csv");
-    run(&s, SMALL_STUDY "--threads 2 --out @/threads-1");
+    run(&s, SMALL_STUDY "--threads 2 --max-hours 1 --out @/threads-1"); /* of this session: no lower limit of the run */
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.out, "finished before"));
     forget(&s);

@@ -10,6 +10,7 @@
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "cmd/warnings.h"
+#include "report/words.h"
 #include "settings/settings.h"
 #include "store/export.h"
 #include "store/run_read.h"
@@ -106,7 +107,10 @@ static void print_front(const Run *run, const StudySummary *summary)
     const Schema *schema = &run->schema;
     const size_t knee = run_knee(run);
     json_t *table = json_array();
-    char label[TABLE_NAME_MAX + 8];
+    char label[TABLE_NAME_MAX + 8], rule[RULE_WORDS_MAX];
+    words_of_rule(run->settings, rule);
+    if (rule[0])
+        printf("each number: %s\n", rule);
     for (size_t k = 0; k < schema->n_obj; k++) {
         snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
         add_design(table, run, summary, label, run_best(run, k));

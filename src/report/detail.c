@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/estimate.h"
 #include "base/units.h"
 #include "report/wavelet.h"
 #include "evaluate/tower.h"
@@ -16,7 +17,12 @@ static const double QUIET = 0.02; /* of the peak displacement */
 static Status simulate(const Problem *p, const double x[], BaselineKind last, Detail *d, Err *err)
 {
     static const SceneKind SCENES[N_BASELINES] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_TMD, SCENE_LINKS};
-    TRY(tower_simulate(p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = x}, &d->result[SCENE_IMPACT], err));
+    const SimTask task = {.kind = SCENE_IMPACT, .x = x};
+    TRY(tower_simulate(p, 1, &task, &d->result[SCENE_IMPACT], err));
+    for (int k = 0; k < N_MEASURES; k++)
+        d->error[k] = NAN;
+    if (tower_record(tower_of(p), 0)->options.sim.engine == ENGINE_FAST)
+        TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, err));
     TRY(baselines_find(p, x, last, d->baseline, err));
     for (int k = 0; k < N_BASELINES; k++)
         d->result[SCENES[k]] = d->baseline[k].first;

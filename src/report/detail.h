@@ -33,6 +33,7 @@ typedef struct {
     char record[128];
     double pga_g, scale, stretch, duration_s;
     SimResult result[N_SCENES];     /* by SceneKind, under the first record */
+    double error[N_MEASURES];       /* likely ones of the design (analysis/estimate.h); NAN: not known */
     Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */

@@ -148,6 +148,10 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
                   "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
                   json_of_history(&d->history[1], &d->spectrum[1]), "forces", json_of_forces(&d->result[SCENE_IMPACT]),
                   "elsewhere", others);
+    json_t *error = json_array();
+    for (int k = 0; k < order->n_obj; k++)
+        json_array_append_new(error, json_number(d->error[order->of[k]]));
+    json_object_set_new(o, "error", error);
     for (int k = 0; k < N_SCENES; k++)
         json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
     return o;
@@ -248,17 +252,22 @@ json_t *report_json(const Report *r)
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
-    return json_pack("{s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, "
-                     "s:o, s:o, s:s}",
-                     "version", program_version(), "revision", program_revision(), "name",
-                     json_words(slash && slash[1] ? slash + 1 : name), "folder", json_words(name), "tower",
-                     r->has_detail, "robust", r->is_robust, "building", json_words(run->settings->building.model),
-                     "spread", spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), "knee",
-                     (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
-                     "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
-                     (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "front",
-                     (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law", json_of_beyond_law(r),
-                     "importance", json_of_importance(&r->importance, &run->schema), "convergence", growth_json(run),
-                     "detail", r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-                     "settings", json_of_settings(run->settings), "provenance", run->provenance);
+    double likely[OBJECTIVES_MAX];
+    char rule[RULE_WORDS_MAX];
+    const int has_errors = run_likely(run, r->chosen, likely);
+    words_of_rule(run->settings, rule);
+    return json_pack(
+        "{s:s, s:o, s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, "
+        "s:o, s:o, s:s}",
+        "rule", rule, "chosen_error", has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), "version",
+        program_version(), "revision", program_revision(), "name", json_words(slash && slash[1] ? slash + 1 : name),
+        "folder", json_words(name), "tower", r->has_detail, "robust", r->is_robust, "building",
+        json_words(run->settings->building.model), "spread",
+        spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), "knee",
+        (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id, "chosen_f",
+        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
+        (json_int_t)run->n_failed, "front", (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law",
+        json_of_beyond_law(r), "importance", json_of_importance(&r->importance, &run->schema), "convergence",
+        growth_json(run), "detail", r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
+        "settings", json_of_settings(run->settings), "provenance", run->provenance);
 }

@@ -1,6 +1,10 @@
 #include "report/words.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#include "base/list.h"
+#include "settings/options.h"
 
 /* A measure without a line here is shown by its name in its own unit. */
 static const Words WORDS[N_MEASURES] = {
@@ -43,4 +47,23 @@ Words words_of_objective(const Schema *schema, size_t k)
     if (schema->order.n_obj > 0)
         return words_of_measure(schema->order.of[k]);
     return (Words){name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1])), "", 1};
+}
+
+void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX])
+{
+    static const char *const RULES[] = {ROBUST_LIST(CHOICE_WORD)};
+    const size_t n = 1 + (list_is_given(s->motion.records) ? list_count(s->motion.records) : 0);
+    const long each = s->sim.replicates;
+    char rule[40], spread[40] = "";
+    if (s->sim.quantile > 0)
+        snprintf(rule, sizeof rule, "quantile %g", s->sim.quantile);
+    else
+        snprintf(rule, sizeof rule, "%s", n == 1 && s->sim.robust == ROBUST_WORST ? "mean" : RULES[s->sim.robust]);
+    if (each > 1)
+        snprintf(spread, sizeof spread, "%s%ld replicates", n > 1 ? " x " : "", each);
+    text[0] = 0;
+    if (n > 1)
+        snprintf(text, RULE_WORDS_MAX, "%s of %zu records%s", rule, n, spread);
+    else if (each > 1)
+        snprintf(text, RULE_WORDS_MAX, "%s of %s", rule, spread);
 }

@@ -77,7 +77,7 @@ static Status explain(const char *path, int code, const char *said, Err *err)
         return fail_sub(err, STATUS_IO, SUB_DAMAGED,
                         "%s: is damaged (%s); `sqlite3 FILE .recover` saves what can be read", path, said);
     case SQLITE_NOTADB:
-        return fail_sub(err, STATUS_IO, SUB_NO_RUN, "%s: is no database of a run", path);
+        return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RUN, "%s: is no database of a run", path);
     case SQLITE_CANTOPEN:
         return fail(err, STATUS_IO, "%s: cannot be opened: %s", path, said);
     default:
@@ -303,7 +303,7 @@ static Status check(Database *d, DatabaseMode mode, Err *err)
     TRY(database_number(d, "PRAGMA application_id", 0, &application, err));
     TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
     if (application != DATABASE_APPLICATION)
-        return fail_sub(err, STATUS_IO, SUB_NO_RUN, "%s: is no database of a run", d->path);
+        return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RUN, "%s: is no database of a run", d->path);
     if (format != DATABASE_FORMAT)
         return fail(err, STATUS_IO,
                     "%s: has format %g, this program reads %d; %s imtet wrote it: only that one can resume it, its "

@@ -21,14 +21,15 @@ typedef enum {
     PART_MEANS,
     PART_LIMITED,
     PART_EXTRA,
-    PART_SD
+    PART_SD,
+    PART_ERRORS /* of the objectives, likely ones; none where the run stores none */
 } Part;
 
 static const Part PARTS[][6] = {
     [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD},
     [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA},
     [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
-    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED},
+    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERRORS},
 };
 
 static void put_names(FILE *f, size_t n, const Column columns[], const char *end)
@@ -67,6 +68,7 @@ static void put_heads(FILE *f, const Schema *s, Part part)
         put_names(f, s->has_spread ? s->n_obj : 0, schema_objective(s, 0), "_sd");
         fputs(s->has_spread ? ",replicates" : "", f);
         break;
+    case PART_ERRORS: /* of the page, which has no heads */
     case PART_END:
         break;
     }
@@ -76,7 +78,7 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 {
     const Schema *s = &run->schema;
     const Evaluation *e = &run->table.row[row];
-    double values[N_MEASURES];
+    double values[N_MEASURES], likely[OBJECTIVES_MAX];
     switch (part) {
     case PART_ID:
         fprintf(f, "%ld", e->id);
@@ -107,6 +109,10 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
         print_cells(f, s->has_spread ? s->n_obj : 0, e->sd);
         if (s->has_spread)
             print_cells(f, 1, &(double){e->replicates > 0 ? (double)e->replicates : (double)NAN});
+        break;
+    case PART_ERRORS:
+        if (run_likely(run, row, likely))
+            print_cells(f, s->n_obj, likely);
         break;
     case PART_END:
         break;

@@ -56,11 +56,11 @@ int folder_keeps(const char *path)
 Status folder_advise(const char *path, Status status, Err *err)
 {
     char front[PATH_MAX];
-    if (status != STATUS_IO || (err->sub != SUB_DAMAGED && err->sub != SUB_NO_RUN && err->sub != SUB_EMPTY))
+    if (status == STATUS_OK || (err->sub != SUB_DAMAGED && err->sub != SUB_NO_RUN && err->sub != SUB_EMPTY))
         return status;
     snprintf(front, sizeof front, "%s/front.csv", path);
-    if (access(front, R_OK) == 0)
-        return fail_sub(err, status, err->sub,
+    if (access(front, R_OK) == 0) /* it was one */
+        return fail_sub(err, STATUS_IO, err->sub,
                         "%.250s; --new --set search.start=%s begins another run with its last front", err->text, front);
     return err->sub == SUB_EMPTY
                ? fail_sub(err, status, err->sub, "%.250s; remove it and `lock`, and the run begins again", err->text)

@@ -28,11 +28,11 @@ static void show_part(char out[SHOWN + 8], const char *value, size_t at)
              from + (size_t)n < length ? "..." : "");
 }
 
-/* A limit of 0, or a word, is none. */
-static int is_lower(const char *is, const char *was)
+/* A limit of 0, or a word, is none. That of hours is of one session, and takes nothing from a run. */
+static int is_lower(const char *key, const char *is, const char *was)
 {
     const double now = strtod(is, NULL), before = strtod(was, NULL);
-    return now > 0.0 && (now < before || !(before > 0.0));
+    return strcmp(key, "search.max_hours") != 0 && now > 0.0 && (now < before || !(before > 0.0));
 }
 
 static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
@@ -46,7 +46,7 @@ static void add_difference(Differences *d, const char *key, int is_limit, const 
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
         snprintf(d->first, sizeof d->first, "%s is %s there, now %s", key, before, now);
     d->n_limits += is_limit;
-    d->n_lowered += is_limit && is_lower(is, was);
+    d->n_lowered += is_limit && is_lower(key, is, was);
     d->n_others += !is_limit;
     if (d->lines)
         fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");

@@ -34,6 +34,8 @@ const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => 
 const objectives = results.slice(0, run.schema.objectives.length); // behind them what search.limits limits beside them
 const columns = [...results, ...variables];
 const ids = new Float64Array(n);
+const hasErrors = n > 0 && lines[0].split(",").length > 1 + columns.length; // likely ones, as stored with the designs
+for (const c of objectives) c.error = new Float64Array(n).fill(NaN);
 
 for (let i = 0; i < n; i++) {
   const cells = lines[i].split(",");
@@ -42,6 +44,7 @@ for (let i = 0; i < n; i++) {
     c.raw[i] = +cells[c.place];
     c.value[i] = c.raw[i] * c.factor;
   }
+  if (hasErrors) objectives.forEach((c, k) => { if (cells[1 + columns.length + k]) c.error[i] = c.factor * cells[1 + columns.length + k]; });
 }
 const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);
@@ -67,6 +70,9 @@ function atBound(c, v) {
 
 // ---- words and numbers
 
+// A share that is no more than a negative nothing: -0.0066 %.
+const positive = (c, v) => (c.unit === "%" && v < 0 && v > -0.05 ? 0 : v);
+
 // Three or four digits, never an exponent where a person would not write one.
 function show(v) {
   if (v === null || v === undefined || !Number.isFinite(v)) return "\u2013";
@@ -81,6 +87,8 @@ function digits(v) {
   return v === null || !Number.isFinite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-4 ? show(v) : v.toPrecision(3);
 }
 
+// A value of design i with its likely error, where one is known.
+const known = (c, i) => (Number.isFinite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
 const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");

@@ -247,7 +247,7 @@ function showTip(row, event) {
   if (tip.hidden) return;
   if (+tip.dataset.row !== row) {
     tip.dataset.row = row;
-    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, withUnit(c, c.value[row]))])));
+    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
   }
   tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
   tip.style.top = `${Math.max(4, Math.min(event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;

@@ -10,7 +10,7 @@ function cell(text) {
 
 // The very rows of front.csv, in its order and units.
 function selectedCsv() {
-  const head = ["id", ...run.schema.variables, ...results.map((c) => c.name)].map(cell).join(",");
+  const head = ["id", ...run.schema.variables, ...results.map((c) => c.name), ...(hasErrors ? objectives.map((c) => `err_${c.name}`) : [])].map(cell).join(",");
   return [head, ...lines.filter((_, i) => state.selected[i])].join("\n") + "\n";
 }
 
@@ -62,7 +62,7 @@ function designTable(host) {
     row.name.textContent = String(ids[i]);
     row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "") + (beyondLaw.has(ids[i]) ? " \u26a0" : "");
     row.tr.title = beyondLaw.has(ids[i]) ? "maximum indentation beyond what the contact law is meant for" : "";
-    shown.forEach((c, k) => (row.cells[k].textContent = digits(c.value[i])));
+    shown.forEach((c, k) => (row.cells[k].textContent = known(c, i)));
   }
 
   function sortBy(c) {

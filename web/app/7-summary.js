@@ -39,16 +39,16 @@ function sentence(d) {
   const whose = run.chosen === run.knee ? `the knee, design ${run.chosen}` : `design ${run.chosen}`;
   const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(run.front)} on the front${run.front > n ? `, ${count(n)} of them on this page` : ""}`;
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)}, is nearest to the best of every objective.`;
-  const alone = overlays.find((o) => o.key === "no_core"), more = run.robust ? ", with further motions or replicates" : "";
+  const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}${more}, protected by impacts on a core inside: ${done}. Against the building without core, ${whose}: ${what || "neither gains nor pays"}.`;
+  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, protected by impacts on a core inside: ${done}${more}. Against the building without core, ${whose}: ${what || "neither gains nor pays"}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with
 
 const VERDICT = { "-1": ["worse", "\u2716"], 0: ["same", "="], 1: ["better", "\u2714"] };
 
-function cards(raw) {
+function cards(raw, error) {
   const against = (c, k, o) => {
     const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
     if (!kind) return "";
@@ -56,7 +56,7 @@ function cards(raw) {
   };
   return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
-    element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
+    element("div", { class: "value" }, raw[k] === null ? "failed" : figureText(positive(c, raw[k] * c.factor), error?.[k] === null ? NaN : error?.[k] * c.factor), " ", element("small", {}, c.unit)),
     ...overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o)))));
 }
 
@@ -93,7 +93,7 @@ const loadTable = (loads) => table("loads", ["has to bear", ...loads.columns],
   loads.rows.map((r) => line([SCENES[r.key].words, ...r.values.map((v) => (v === null ? "" : digits(v)))])));
 
 function standoutTable() {
-  const knee = rowOf.get(run.knee), valuesOf = (i) => objectives.map((c) => digits(c.value[i]));
+  const knee = rowOf.get(run.knee), valuesOf = (i) => objectives.map((c) => known(c, i));
   const best = (c, k) => {
     const row = bestRow(c), tr = line([`best ${c.title}`, String(ids[row]), ...valuesOf(row)]);
     tr.children[2 + k].className = "best";
@@ -108,7 +108,8 @@ function summaryPart() {
   const d = run.detail, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : "", cards(run.chosen_f));
+  host.append(element("p", { class: "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
+  if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)} alone.`));
   if (d) peakPart(host, d, 290);
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
