@@ -1,6 +1,7 @@
 /* The estimated error of a result: twice the steps, and above the error in most windows. */
 #include "check.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "bench/promise.h"
@@ -55,6 +56,65 @@ TEST(equal_results_have_no_error_and_failed_ones_an_unknown_one)
         assert_true(isnan(error[k]));
 }
 
+static void open_tower(Problem *p, long replicates, double gap_tolerance_m)
+{
+    Settings s;
+    paper_defaults(&s);
+    snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
+    s.sim.duration_s = 12;
+    s.sim.replicates = replicates;
+    s.sim.gap_tolerance_m = gap_tolerance_m;
+    CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &(Err){0}), &(Err){0});
+}
+
+static void fill_gaps(double x[22], double from, double step)
+{
+    for (int j = 0; j < 20; j++)
+        x[j] = from + step * j;
+    x[20] = 0.012;
+    x[21] = 0.0064;
+}
+
+/* The other way: replicates, whose gaps scatter normally. */
+TEST(the_spread_of_gaps_that_are_one_micrometre_off_is_that_of_replicates_as_built)
+{
+    Problem single, scattered;
+    double x[22], error[N_MEASURES], sd[N_MEASURES];
+    SimResult result, shown;
+    ReplicateSummary r;
+    Err err = {0};
+    fill_gaps(x, 0.004, 0.002);
+    open_tower(&single, 1, 0);
+    open_tower(&scattered, 24, ESTIMATE_GAP_M);
+    const SimTask task = {.x = x};
+    CHECK_OK(tower_simulate(&single, 1, &task, &result, &err), &err);
+    CHECK_OK(estimate_designs(&single, 1, &task, &result, error, sd, &err), &err);
+    CHECK_OK(tower_replicate(&scattered, 1, x, &shown, &r, &err), &err);
+    for (int k = MEASURE_J1; k <= MEASURE_J3; k++) {
+        assert_less(0, sd[k]);
+        assert_less(sd[k], 4 * r.sd[k]);
+        assert_less(r.sd[k], 4 * sd[k]);
+    }
+    problem_close(&single);
+    problem_close(&scattered);
+}
+
+TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown_one)
+{
+    Problem p;
+    double x[22], error[2 * N_MEASURES], sd[2 * N_MEASURES];
+    SimResult result[2];
+    Err err = {0};
+    fill_gaps(x, 5, 0);
+    open_tower(&p, 1, 0);
+    const SimTask tasks[] = {{.x = x}, {.kind = SCENE_NO_CORE}};
+    CHECK_OK(tower_simulate(&p, 2, tasks, result, &err), &err);
+    CHECK_OK(estimate_designs(&p, 2, tasks, result, error, sd, &err), &err);
+    assert_same_number(sd[MEASURE_J1], 0);
+    assert_true(isnan(sd[N_MEASURES + MEASURE_J1]));
+    problem_close(&p);
+}
+
 static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
 {
     SceneOptions s = *o;
@@ -93,7 +153,8 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
         const SimResult r = run_window(&o, &c), t = run_window(&twice, &c), f = run_window(&fine, &c);
         errors_of(&r, &t, error);
         for (size_t i = 0; i < sizeof RESULTS / sizeof RESULTS[0]; i++, all++)
-            below += fabs(measure_value(&r, RESULTS[i]) - measure_value(&f, RESULTS[i])) <= ESTIMATE_FACTOR * error[RESULTS[i]];
+            below += fabs(measure_value(&r, RESULTS[i]) - measure_value(&f, RESULTS[i])) <=
+                     ESTIMATE_FACTOR * error[RESULTS[i]];
     }
     print_message("%d of %d errors are below their estimate\n", below, all);
     assert_at_most(9 * all, 10 * below);

@@ -2,6 +2,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "base/stat.h"
 
 void estimate_errors(const Measured *result, const Measured *finer, double error[])
 {
@@ -10,22 +14,66 @@ void estimate_errors(const Measured *result, const Measured *finer, double error
         error[k] = known ? fabs(result->value[k] - finer->value[k]) : NAN;
 }
 
-Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
-                        Err *err)
+/* Runs of a design: with twice the steps, then with the gaps of each pattern. */
+enum { AGAIN = 1 + ESTIMATE_PATTERNS };
+
+static void move_gaps(const DesignSpace *space, uint32_t pattern, double x[])
 {
-    Measured *again = calloc(n, sizeof *again);
-    SimTask *finer = calloc(n, sizeof *finer);
-    for (size_t i = 0; finer && i < n; i++)
-        finer[i] = (SimTask){
-            .kind = tasks[i].kind, .x = tasks[i].x, .scene = tasks[i].scene, .is_finer = 1, .parts = &again[i]};
-    const Status status = again && finer
-                              ? tower_run(p, n, finer, NULL, NULL, err)
+    Random r = random_stream(1, RANDOM_GRAZING, pattern, 0);
+    for (int j = 0; j < space->n_gaps; j++)
+        x[j] = fmax(0, x[j] + (random_uniform(&r) < 0.5 ? -ESTIMATE_GAP_M : ESTIMATE_GAP_M));
+}
+
+/* moved (ESTIMATE_PATTERNS). */
+static void spread(const Measured *result, const Measured moved[], double sd[])
+{
+    for (int k = 0; k < N_MEASURES; k++) {
+        double v[AGAIN] = {result->outcome == RUN_OK ? result->value[k] : NAN}, mean;
+        for (int i = 0; i < ESTIMATE_PATTERNS; i++)
+            v[1 + i] = moved[i].outcome == RUN_OK ? moved[i].value[k] : NAN;
+        mean_and_sd_of(AGAIN, v, &mean, &sd[k]);
+    }
+}
+
+/* The tasks of one design; x (ESTIMATE_PATTERNS, n_var) has room for the designs. Returns how many. */
+static size_t list_tasks(const Problem *p, const SimTask *task, int moves, double x[], SimTask out[AGAIN],
+                         Measured again[AGAIN])
+{
+    out[0] = (SimTask){.kind = task->kind, .x = task->x, .scene = task->scene, .is_finer = 1, .parts = again};
+    if (!moves || task->kind != SCENE_IMPACT)
+        return 1;
+    for (uint32_t i = 0; i < ESTIMATE_PATTERNS; i++) {
+        double *moved = x + i * p->n_var;
+        memcpy(moved, task->x, p->n_var * sizeof *moved);
+        move_gaps(tower_design(tower_of(p)), i, moved);
+        out[1 + i] = (SimTask){.kind = task->kind, .x = moved, .scene = task->scene, .parts = &again[1 + i]};
+    }
+    return AGAIN;
+}
+
+Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
+                        double sd[], Err *err)
+{
+    Measured *again = calloc(n * AGAIN, sizeof *again);
+    SimTask *list = calloc(n * AGAIN, sizeof *list);
+    double *x = calloc(n * ESTIMATE_PATTERNS * p->n_var, sizeof *x);
+    size_t n_tasks = 0;
+    for (size_t i = 0; again && list && x && i < n; i++)
+        n_tasks += list_tasks(p, &tasks[i], sd != NULL, x + i * ESTIMATE_PATTERNS * p->n_var, list + n_tasks,
+                              again + i * AGAIN);
+    const Status status = n_tasks >= n
+                              ? tower_run(p, n_tasks, list, NULL, NULL, err)
                               : fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors of %zu simulations", n);
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
-        const Measured as_set = measured(&results[i]);
-        estimate_errors(&as_set, &again[i], error + i * N_MEASURES);
+        const Measured as_set = measured(&results[i]), *runs = again + i * AGAIN;
+        estimate_errors(&as_set, runs, error + i * N_MEASURES);
+        for (int k = 0; sd && k < N_MEASURES; k++)
+            sd[i * N_MEASURES + (size_t)k] = NAN;
+        if (sd && tasks[i].kind == SCENE_IMPACT)
+            spread(&as_set, runs + 1, sd + i * N_MEASURES);
     }
     free(again);
-    free(finer);
+    free(list);
+    free(x);
     return status;
 }

@@ -134,14 +134,11 @@ size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
     return e->level || run->record->from_folder ? N_EVALUATED : N_WITH_DEVICES;
 }
 
-/* Tasks of a run in one round: its cases, and the design with twice the steps. */
-enum { TASKS_MAX = N_WITH_DEVICES + 1 };
-
 /* What does not wait for anything: devices are found, and simulated in the second round. */
-static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
-    size_t n = evaluated_cases(e, run);
+    const size_t n = evaluated_cases(e, run);
     for (size_t c = 0; c < n; c++)
         if (c < N_EVALUATED)
             task[c] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
@@ -149,12 +146,10 @@ static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask ta
             task[c] = (SimTask){
                 .kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .finds_device = 1, .parts = &run->device[c]};
     run->error_known = e->is_estimated && n == N_WITH_DEVICES;
-    if (run->error_known)
-        task[n++] = (SimTask){.x = x, .scene = i, .is_finer = 1, .parts = &run->finer};
     return n;
 }
 
-static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
@@ -167,21 +162,21 @@ static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask t
     return n;
 }
 
-static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     task[0] = (SimTask){.x = x, .scene = i, .n_parts = e->tower.n_parts, .summary = &e->run[i].replicates};
     return e->replicates > 0;
 }
 
-typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX]);
+typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES]);
 
 static Status run_round(Evaluations *e, MakeTasks *make, const double x[], EvaluationsTold *told, Err *err)
 {
     const size_t n = e->n_records * e->n_levels;
-    SimTask *tasks = calloc(n * TASKS_MAX, sizeof *tasks);
+    SimTask *tasks = calloc(n * N_WITH_DEVICES, sizeof *tasks);
     size_t n_tasks = 0;
     if (!tasks)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * TASKS_MAX);
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * N_WITH_DEVICES);
     for (size_t i = 0; i < n; i++)
         if (e->record[i / e->n_levels].readable == STATUS_OK)
             n_tasks += make(e, i, x, tasks + n_tasks);
@@ -202,10 +197,9 @@ Status evaluations_run(Evaluations *e, size_t n_var, const double x[], Evaluatio
     TRY(run_round(e, device_tasks, x, NULL, err));
     TRY(run_round(e, replicate_tasks, x, told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        if (e->run[i].error_known) {
-            const Measured as_set = measured(e->run[i].result);
-            estimate_errors(&as_set, &e->run[i].finer, e->run[i].error);
-        }
+        if (e->run[i].error_known)
+            TRY(estimate_designs(&e->tower, 1, &(SimTask){.x = x, .scene = i}, e->run[i].result, e->run[i].error,
+                                 e->run[i].sd, err));
     return STATUS_OK;
 }
 

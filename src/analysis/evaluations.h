@@ -43,11 +43,10 @@ typedef struct {
     const EvaluatedRecord *record;
     double pga_g, scale, stretch;
     SimResult result[N_WITH_DEVICES];
-    Measured device[N_WITH_DEVICES]; /* found under this record (evaluate/device.h) */
-    ReplicateSummary replicates;     /* of the design, where there are some */
-    Measured finer;                  /* the design with twice the steps, where error_known */
-    double error[N_MEASURES];        /* of the design, likely ones (analysis/estimate.h), where error_known */
-    int error_known;                 /* of records that were named, at one intensity, by the engine fast */
+    Measured device[N_WITH_DEVICES];          /* found under this record (evaluate/device.h) */
+    ReplicateSummary replicates;              /* of the design, where there are some */
+    double error[N_MEASURES], sd[N_MEASURES]; /* of the design (analysis/estimate.h), where error_known */
+    int error_known;                          /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;
 
 typedef struct {

@@ -29,7 +29,7 @@ static Status simulate(const Problem *p, size_t n, const SimTask tasks[], FullMo
 {
     TRY(tower_motion(p, REDUCED, &m->motion, err));
     TRY(tower_run(p, MODELS * n, tasks, NULL, NULL, err));
-    return m->error ? estimate_designs(p, n, tasks, m->result[REDUCED], m->error, err) : STATUS_OK;
+    return m->error ? estimate_designs(p, n, tasks, m->result[REDUCED], m->error, NULL, err) : STATUS_OK;
 }
 
 static Status find(const Settings *s, SceneKind kind, size_t n, const double X[], SimTask *tasks, FullModel *m,

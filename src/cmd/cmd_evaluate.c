@@ -42,7 +42,7 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
         json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].device.link_ns_m));
     }
     if (run->error_known)
-        put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error);
+        put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
         json_object_set_new(o, "replicates", json_replicates(&run->replicates));
     return o;

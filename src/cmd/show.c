@@ -315,16 +315,23 @@ void put_measures(json_t *o, const char *end, const double values[], const char 
     }
 }
 
-void put_errors(json_t *o, const double likely[])
+/* The values that are known, by the names of their measures. */
+static json_t *json_known(const double value[], double times)
 {
-    json_t *of_likely = json_object(), *bound = json_object();
+    json_t *o = json_object();
     for (int k = 0; k < N_MEASURES; k++)
-        if (isfinite(likely[k])) {
-            json_object_set_new(of_likely, measure(k)->name, json_real(likely[k]));
-            json_object_set_new(bound, measure(k)->name, json_real(ESTIMATE_FACTOR * likely[k]));
-        }
+        if (isfinite(value[k]))
+            json_object_set_new(o, measure(k)->name, json_real(times * value[k]));
+    return o;
+}
+
+void put_errors(json_t *o, const double likely[], const double sd[])
+{
+    json_t *bound = json_known(likely, ESTIMATE_FACTOR);
     json_object_set(o, "estimated_error", bound);
-    json_object_set_new(o, "error", json_pack("{s:o, s:o}", "likely", of_likely, "bound", bound));
+    json_object_set_new(o, "error",
+                        json_pack("{s:o, s:o, s:o}", "likely", json_known(likely, 1), "bound", bound, "sd_gaps_1_um",
+                                  json_known(sd, 1)));
 }
 
 json_t *json_replicates(const ReplicateSummary *r)

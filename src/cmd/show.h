@@ -36,7 +36,7 @@ void put_measures(json_t *o, const char *end, const double values[], const char 
 
 /* error: likely and bound of every measure that has one (analysis/estimate.h), likely (N_MEASURES) given;
  * estimated_error: the bound. */
-void put_errors(json_t *o, const double likely[]);
+void put_errors(json_t *o, const double likely[], const double sd[]);
 
 /* replicates, failed, mean {}, sd {} */
 json_t *json_replicates(const ReplicateSummary *r);

@@ -456,7 +456,7 @@ static Status estimate_integration(Study *study, const double x[], Err *err)
     if (!sum->error_known)
         return STATUS_OK;
     TRY(tower_simulate(adapter_problem(study->adapter), 1, &task, &result, err));
-    return estimate_designs(adapter_problem(study->adapter), 1, &task, &result, sum->error, err);
+    return estimate_designs(adapter_problem(study->adapter), 1, &task, &result, sum->error, NULL, err);
 }
 
 /* What the knee is compared with, its error, and what the front says about its gaps. */
