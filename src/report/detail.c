@@ -22,7 +22,7 @@ static Status simulate(const Problem *p, const double x[], BaselineKind last, De
     for (int k = 0; k < N_MEASURES; k++)
         d->error[k] = NAN;
     if (tower_record(tower_of(p), 0)->options.sim.engine == ENGINE_FAST)
-        TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, err));
+        TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, NULL, err));
     TRY(baselines_find(p, x, last, d->baseline, err));
     for (int k = 0; k < N_BASELINES; k++)
         d->result[SCENES[k]] = d->baseline[k].first;
