@@ -239,7 +239,7 @@ TEST(faults_of_a_frame_name_file_line_and_what_to_do)
         {"nodes.csv", "node,x_m,z_m\nA,0,0\nA,1,0\n", "nodes.csv:3: node A is there twice"},
         {"nodes.csv", "node,x_m,z_m,fix_x\nA,0,0,2\n", "nodes.csv:2: fix_x is 2; it is 0 or 1"},
         {"nodes.csv", "node,x_m,z_m\nA,0,high\n", "nodes.csv:2: column 3"},
-        {"sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,0,1,1\n", "sections.csv:2: A_m2 is 0"},
+        {"sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,0,1,1\n", "sections.csv:2: section column: area 0"},
         {"elements.csv", "element,node_i,node_j,section\n1,A,Z,column\n", "elements.csv:2: node_j 'Z' is not in"},
         {"elements.csv", "element,node_i,node_j,section\n1,A,C,beem\n", "elements.csv:2: section 'beem' is not in"},
         {"elements.csv", "element,node_i,node_j,section\n1,A,A,beam\n", "element 1 has no length"},
@@ -315,9 +315,9 @@ TEST(faults_of_storeys_are_named)
 {
     BuildingOptions o = folder_of("bad_storeys");
     write_file(&o, "storeys.csv", "height_m,mass_kg\n3,1e5\n");
-    expect_refusal_of(&o, "has no column stiffness_n_m");
+    expect_refusal_of(&o, "storeys.csv:2: has no stiffness_n_m");
     write_file(&o, "storeys.csv", "height_m,stiffness_n_m\n3,1e8\n");
-    expect_refusal_of(&o, "has no column mass_kg or mass_t");
+    expect_refusal_of(&o, "storeys.csv:2: has no mass_kg or mass_t");
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
     expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
     write_file(&o, "storeys.csv", "height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n");

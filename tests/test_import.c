@@ -60,13 +60,13 @@ static char *write_model(const Frame *f)
     size_t length;
     FILE *out = open_memstream(&text, &length);
     fprintf(out, "model BasicBuilder -ndm 2 -ndf 3\ngeomTransf Linear 1\n");
-    for (int i = 0; i < f->n_nodes; i++) {
+    for (int i = 0; i < f->n[FRAME_NODES]; i++) {
         const FrameNode *n = &f->node[i];
         fprintf(out, "node %s %.17g %.17g\n", n->name, n->x, n->z);
         if (n->fixed[0] || n->fixed[1] || n->fixed[2])
             fprintf(out, "fix %s %d %d %d\n", n->name, n->fixed[0], n->fixed[1], n->fixed[2]);
     }
-    for (int i = 0; i < f->n_elements; i++) {
+    for (int i = 0; i < f->n[FRAME_ELEMENTS]; i++) {
         const FrameElement *e = &f->element[i];
         const FrameSection *s = &f->section[e->section];
         const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
@@ -197,7 +197,7 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
         {NODES "equalDOF 1 2 4\n", "model.tcl:5: equalDOF: '4' is no degree of freedom"},
         {"model b -ndm 2\nnode 1 0 0 -mass 1 1\n", "model.tcl:2: node: behind TAG x y only -mass"},
         {NODES "element elasticBeamColumn 1 1 2 1 1 1 1 -foo\n", "'-foo' is not read"},
-        {NODES "element elasticBeamColumn 1 1 2 0 1 1 1\n", "A, E and I must be above 0"},
+        {NODES "element elasticBeamColumn 1 1 2 0 1 1 1\n", "area 0, inertia 1 and E 1 must be above 0"},
         {NODES "element elasticBeamColumn 1 1 2 1 1 1 7\n", "no geomTransf 7 above"},
         {NODES "element elasticBeamColumn 4 1 2 1 1 1 1\nelement elasticBeamColumn 4 1 2 1 1 1 1\n",
          "model.tcl:6: element: element 4 is there twice"},

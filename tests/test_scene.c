@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/linalg.h"
-#include "scene/beam.h"
+#include "scene/core_beam.h"
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"

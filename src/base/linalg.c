@@ -145,9 +145,32 @@ int linalg_factor_band(int n, int band, double A[])
     return info < 0 ? -1 : info;
 }
 
-void linalg_solve_band(int n, int band, const double A[], int m, double B[])
+void linalg_solve_band(int n, int band, const double A[], int m, int stride, double B[])
 {
-    LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, band, m, A, band + 1, B, n);
+    LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, band, m, A, band + 1, B, stride);
+}
+
+/* Plain sums, so that the core has the same bits with any BLAS. */
+void linalg_congruent(int n, int m, const double A[], const double T[], double work[], double out[])
+{
+    memset(work, 0, (size_t)(n * m) * sizeof *work);
+    memset(out, 0, (size_t)(m * m) * sizeof *out);
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
+            for (int j = 0; j < m && A[i * n + k] != 0; j++)
+                work[i * m + j] += A[i * n + k] * T[k * m + j];
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < m && T[k * m + i] != 0; j++)
+                out[i * m + j] += T[k * m + i] * work[k * m + j];
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < i; j++) /* symmetric but for rounding */
+            out[i * m + j] = out[j * m + i] = 0.5 * (out[i * m + j] + out[j * m + i]);
+}
+
+void linalg_product_of_rows(int n, int m, const double A[], const double B[], double C[])
+{
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, n, n, m, 1, A, m, B, m, 0, C, n);
 }
 
 void linalg_product(int r, int k, int c, const double A[], const double B[], double C[])

@@ -34,8 +34,14 @@ int linalg_indefinite_at(int n, const double A[]);
  * from 1; 0: factored; -1: no memory. */
 int linalg_factor_band(int n, int band, double A[]);
 
-/* A X = B with that factor; B (m, n): a right-hand side per row, overwritten. */
-void linalg_solve_band(int n, int band, const double A[], int m, double B[]);
+/* A X = B with that factor; B: m right-hand sides, each the first n of `stride` numbers, overwritten. */
+void linalg_solve_band(int n, int band, const double A[], int m, int stride, double B[]);
+
+/* out (m, m) = T' A T of a symmetric A (n, n), T (n, m); work (n, m). */
+void linalg_congruent(int n, int m, const double A[], const double T[], double work[], double out[]);
+
+/* C (n, n) = A B' with A, B (n, m). */
+void linalg_product_of_rows(int n, int m, const double A[], const double B[], double C[]);
 
 /* C (r, c) = A (r, k) B (k, c), all by columns: entry (i, j) of a matrix with r rows is at [j r + i]. */
 void linalg_product(int r, int k, int c, const double A[], const double B[], double C[]);

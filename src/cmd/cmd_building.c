@@ -108,9 +108,9 @@ static void print_building(const Model *m)
            1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
         printf("of it %.0f kg are between the floors\n", between);
-    if (m->frame.n_nodes)
-        printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n_nodes, m->frame.n_elements,
-               m->frame.n_sections, m->frame.n_ties);
+    if (m->frame.n[FRAME_NODES])
+        printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n[FRAME_NODES], m->frame.n[FRAME_ELEMENTS],
+               m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
 }
 
 static void print_core(const Model *m)
@@ -208,7 +208,7 @@ static Status print_json(const Model *m, Err *err)
     json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
     add_rows(m, floors, modes, cores);
     json_t *o = json_pack("{s:o, s:f, s:i, s:i, s:o, s:o}", "model", json_words(m->s.building.model), "mass_kg",
-                          building_mass(&m->b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
+                          building_mass(&m->b), "nodes", m->frame.n[FRAME_NODES], "elements", m->frame.n[FRAME_ELEMENTS], "floors",
                           floors, "modes", modes);
     if (m->has_core)
         put_core(o, m, cores);
@@ -220,7 +220,7 @@ static Status write_svg(const Model *m, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    building_svg(o.stream, &m->b, m->frame.n_nodes ? &m->frame : NULL);
+    building_svg(o.stream, &m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL);
     return output_close(&o, err);
 }
 

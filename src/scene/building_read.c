@@ -6,19 +6,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/linalg.h"
 #include "base/csv.h"
-#include "scene/beam.h"
-#include "scene/compiled_in.h"
+#include "base/linalg.h"
+#include "scene/core_beam.h"
+#include "scene/sheets.h"
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
-
-static Status read_matrix(Table *t, const char *model, const char *file, char path[], size_t size, Err *err)
-{
-    const CompiledIn own = compiled_in(model, file);
-    snprintf(path, size, "%s/%s", model, file);
-    return own.text ? table_parse(t, path, own.text, own.length, 0, err) : table_read(t, path, 0, err);
-}
 
 static Status check_symmetric(int n, double A[], const char *path, Err *err)
 {
@@ -46,16 +39,15 @@ static Status check_symmetric(int n, double A[], const char *path, Err *err)
 static Status load_matrix(const char *model, const char *file, double **A, int *n, Err *err)
 {
     Table t;
-    char path[600];
-    TRY(read_matrix(&t, model, file, path, sizeof path, err));
     Status s = STATUS_OK;
+    TRY(model_table(&t, model, file, err));
     if (t.n_rows != t.n_cols)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows,
+        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", t.path, t.n_rows,
                  t.n_cols);
     else if (t.n_rows > FLOORS_MAX)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", path, t.n_rows, FLOORS_MAX);
+        s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", t.path, t.n_rows, FLOORS_MAX);
     else
-        s = check_symmetric((int)t.n_rows, t.values, path, err);
+        s = check_symmetric((int)t.n_rows, t.values, t.path, err);
     if (s == STATUS_OK) {
         *A = t.values;
         *n = (int)t.n_rows;
@@ -121,20 +113,15 @@ static Status header_unit(const char *path, const UnitWord words[], const UnitWo
 {
     char *text;
     size_t length;
+    Lines l;
     *unit = NULL;
     TRY(file_read(path, FILE_LARGEST, &text, &length, err));
-    for (const char *line = text, *stop = text + length; line < stop && !*unit;) {
-        const char *end = memchr(line, '\n', (size_t)(stop - line));
-        end = end ? end : stop;
-        const char *from = line + (stop - line > 3 && memcmp(line, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
-        while (from < end && (*from == ' ' || *from == '\t'))
-            from++;
-        if (from < end && *from == '#')
-            *unit = unit_in(from + 1, (size_t)(end - from - 1), words);
-        line = end + 1;
-    }
+    const Status status = lines_open(&l, path, text, length, err);
+    while (status == STATUS_OK && !*unit && lines_next(&l))
+        if (l.from < l.to && *l.from == '#')
+            *unit = unit_in(l.from + 1, (size_t)(l.to - l.from) - 1, words);
     free(text);
-    return STATUS_OK;
+    return status;
 }
 
 /* What the entries of a matrix are multiplied by: as the file says, which building.units must not contradict. */
@@ -160,7 +147,7 @@ static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err
     TRY(load_matrix(o->model, "M.csv", &b->M, &n_mass, err));
     if (n_mass != b->n)
         return fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", o->model, n_mass, b->n);
-    if (is_compiled_in(o->model))
+    if (model_is_built_in(o->model))
         return STATUS_OK;
     TRY(matrix_factor(o, "K.csv", STIFFNESS_WORDS, building_unit(o->units).stiffness, &stiffness, err));
     TRY(matrix_factor(o, "M.csv", MASS_WORDS, building_unit(o->units).mass, &mass, err));
@@ -180,53 +167,55 @@ static Status allocate(BuildingFiles *b, int n, Err *err)
                                        : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
 }
 
-/* The sheets that say which kind of model a folder holds. */
-enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
-static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
-
-enum { PATH_SIZE = 600 };
-static void sheet_path(const char *folder, int kind, char path[PATH_SIZE])
-{
-    snprintf(path, PATH_SIZE, "%s/%s", folder, SHEETS[kind]);
-}
-
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     double height, mass, shear, bending; /* [m], [kg], [N/m], [N m2]; 0: not given */
 } Storey;
 
-/* The column that is there, of two that differ by a factor of a thousand; 0: none is. */
-static Status read_quantity(const Sheet *s, size_t row, const char *plain, const char *thousands, double *value,
-                            Err *err)
+typedef struct {
+    int n;
+    Storey storey[FLOORS_MAX];
+} Storeys;
+
+/* Of two columns that differ by a factor of a thousand the one that is there. */
+static Status choose(const SheetRow *r, int plain, const char *names, double *value, Err *err)
 {
-    const int in_thousands = table_column(s, plain) < 0;
-    const char *column = in_thousands ? thousands : plain;
-    *value = 0;
-    if (strcmp(plain, thousands) != 0 && !in_thousands && table_column(s, thousands) >= 0)
-        return fail(err, STATUS_BAD_DATA, "%s: has both %s and %s; leave one of them out", s->path, plain, thousands);
-    if (table_column(s, column) < 0)
-        return STATUS_OK;
-    TRY(sheet_number(s, row, column, NAN, value, err));
-    if (!(*value > 0))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it must be above 0", s->path, s->line[row], column, *value);
-    *value *= in_thousands ? 1e3 : 1;
-    return STATUS_OK;
+    *value = *r->word[plain] ? r->x[plain] : 1e3 * r->x[plain + 1];
+    return *r->word[plain] && *r->word[plain + 1]
+               ? fail(err, STATUS_BAD_DATA, "has both %s; leave one of them out", names)
+               : STATUS_OK;
 }
 
-static Status read_storey(Storey *storey, const Sheet *s, size_t row, Err *err)
+static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 {
-    TRY(read_quantity(s, row, "height_m", "height_m", &storey->height, err));
-    TRY(read_quantity(s, row, "mass_kg", "mass_t", &storey->mass, err));
-    TRY(read_quantity(s, row, "stiffness_n_m", "stiffness_kn_m", &storey->shear, err));
-    TRY(read_quantity(s, row, "bending_n_m2", "bending_kn_m2", &storey->bending, err));
+    Storeys *all = storeys;
+    if (r->n_rows > FLOORS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%zu storeys; at most %d are supported", r->n_rows, FLOORS_MAX);
+    Storey *storey = &all->storey[all->n++];
+    storey->height = r->x[0];
+    TRY(choose(r, 1, "mass_kg and mass_t", &storey->mass, err));
+    TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &storey->shear, err));
+    TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));
     if (!(storey->mass > 0))
-        return fail(err, STATUS_BAD_DATA, "%s: has no column mass_kg or mass_t", s->path);
-    if (!(storey->shear > 0 || storey->bending > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: has no column stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2", s->path);
-    return STATUS_OK;
+        return fail(err, STATUS_BAD_DATA, "has no mass_kg or mass_t");
+    const Storey *first = all->storey;
+    if ((storey->shear > 0) != (first->shear > 0) || (storey->bending > 0) != (first->bending > 0))
+        return fail(err, STATUS_BAD_DATA, "stiffness or bending is empty here and not in the row of the first storey");
+    return storey->shear > 0 || storey->bending > 0
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "has no stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2");
 }
+
+static const SheetForm STOREYS = {"storeys.csv",
+                                  take_storey,
+                                  {{"height_m", COLUMN_ABOVE_0, NAN},
+                                   {"mass_kg", COLUMN_ABOVE_0, 0},
+                                   {"mass_t", COLUMN_ABOVE_0, 0},
+                                   {"stiffness_n_m", COLUMN_ABOVE_0, 0},
+                                   {"stiffness_kn_m", COLUMN_ABOVE_0, 0},
+                                   {"bending_n_m2", COLUMN_ABOVE_0, 0},
+                                   {"bending_kn_m2", COLUMN_ABOVE_0, 0}}};
 
 static void shear_building(int n, const Storey storey[], double K[])
 {
@@ -248,15 +237,12 @@ static Status bending_building(int n, const Storey storey[], double K[], double 
     return beam_cantilever(n, beam, K, M, err);
 }
 
-static Status take_storeys(BuildingFiles *b, const Sheet *s, Err *err)
+static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
-    Storey storey[FLOORS_MAX];
-    TRY(sheet_expect(s, "height_m", "mass_kg mass_t stiffness_n_m stiffness_kn_m bending_n_m2 bending_kn_m2", err));
-    if (s->n_rows > FLOORS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu storeys; at most %d are supported", s->path, s->n_rows, FLOORS_MAX);
-    TRY(allocate(b, (int)s->n_rows, err));
-    for (int j = 0; j < b->n; j++)
-        TRY(read_storey(&storey[j], s, (size_t)j, err));
+    Storeys all = {0};
+    TRY(sheet_take(&STOREYS, folder, &all, err));
+    const Storey *storey = all.storey;
+    TRY(allocate(b, all.n, err));
     if (storey[0].bending > 0)
         TRY(bending_building(b->n, storey, b->K, b->M, err));
     else
@@ -269,23 +255,12 @@ static Status take_storeys(BuildingFiles *b, const Sheet *s, Err *err)
     return STATUS_OK;
 }
 
-static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
-{
-    Sheet s;
-    char path[PATH_SIZE];
-    sheet_path(folder, KIND_STOREYS, path);
-    TRY(sheet_read(&s, path, err));
-    const Status status = take_storeys(b, &s, err);
-    table_free(&s);
-    return status;
-}
-
 /* ---- frame ---------------------------------------------------------------------------------------------------- */
 
 static Status reduce_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, FrameKept kept, Err *err)
 {
     frame_full_free(&b->full);
-    TRY(frame_reduce(f, o->rigid_floors, kept, &b->full, err));
+    TRY(frame_reduce(f, kept, &b->full, err));
     TRY(check_symmetric(b->full.n, b->full.K, o->model, err));
     return check_symmetric(b->full.n, b->full.M, o->model, err);
 }
@@ -320,29 +295,32 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 
 /* ---- the folder ----------------------------------------------------------------------------------------------- */
 
+/* The files that say which kind of model a folder holds. */
+enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
+static const char *const FILES[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
+
 int building_reads(const char *name)
 {
-    for (int k = 0; k < KINDS; k++)
-        if (strcmp(name, SHEETS[k]) == 0)
-            return 1;
-    return frame_reads(name);
+    int k = 0;
+    while (k < KINDS && strcmp(name, FILES[k]) != 0)
+        k++;
+    return k < KINDS || frame_reads(name);
 }
 
 /* Is there one kind of model? */
 static Status check_kind(const char *folder, int has[KINDS], Err *err)
 {
+    const char *found[KINDS + 1] = {0};
+    int n = 0;
     for (int k = 0; k < KINDS; k++) {
-        char path[PATH_SIZE];
-        sheet_path(folder, k, path);
-        has[k] = k == KIND_FRAME ? frame_is(folder) : access(path, F_OK) == 0;
+        has[k] = k == KIND_FRAME ? frame_is(folder) : model_has(folder, FILES[k]);
+        if (has[k] && !(k == KIND_M && has[KIND_K]))
+            found[n++] = FILES[k];
     }
-    const int matrices = has[KIND_K] || has[KIND_M];
-    const char *matrix = has[KIND_K] ? SHEETS[KIND_K] : SHEETS[KIND_M];
-    if (has[KIND_FRAME] + has[KIND_STOREYS] + matrices > 1)
+    if (n > 1)
         return fail(err, STATUS_BAD_DATA, "%s: holds %s and %s, two kinds of model; leave one of them there", folder,
-                    SHEETS[has[KIND_FRAME] ? KIND_FRAME : KIND_STOREYS],
-                    has[KIND_FRAME] && has[KIND_STOREYS] ? SHEETS[KIND_STOREYS] : matrix);
-    if (!has[KIND_FRAME] && !has[KIND_STOREYS] && !matrices && access(folder, F_OK) == 0)
+                    found[0], found[1]);
+    if (n == 0 && access(folder, F_OK) == 0)
         return fail(
             err, STATUS_MISSING,
             "%s: holds no building: K.csv and M.csv, or storeys.csv, or nodes.csv, sections.csv and elements.csv",
@@ -352,10 +330,9 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
 
 static Status read_folder(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
-    int has[KINDS];
-    if (is_compiled_in(o->model))
-        return read_matrices(b, o, err);
-    TRY(check_kind(o->model, has, err));
+    int has[KINDS] = {0};
+    if (!model_is_built_in(o->model))
+        TRY(check_kind(o->model, has, err));
     if (has[KIND_FRAME])
         return read_frame(b, o, err);
     return has[KIND_STOREYS] ? read_storeys(b, o->model, err) : read_matrices(b, o, err);

@@ -67,9 +67,9 @@ static void draw_support(const Drawing *d, const FrameNode *n)
 
 static void draw_frame(const Drawing *d, const Frame *f)
 {
-    for (int e = 0; e < f->n_elements; e++)
+    for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++)
         draw_element(d, f, &f->element[e]);
-    for (int i = 0; i < f->n_nodes; i++) {
+    for (int i = 0; i < f->n[FRAME_NODES]; i++) {
         const FrameNode *n = &f->node[i];
         draw_support(d, n);
         if (n->floor)
@@ -147,7 +147,7 @@ static Extent find_extent(const Building *b, const Frame *f)
     const double height = floor_z(b, 0, b->n);
     if (!f)
         return (Extent){-0.1 * height, 0.1 * height, 0, height, 0};
-    for (int i = 0; i < f->n_nodes; i++) {
+    for (int i = 0; i < f->n[FRAME_NODES]; i++) {
         const FrameNode *n = &f->node[i];
         e.x0 = fmin(e.x0, n->x);
         e.x1 = fmax(e.x1, n->x);

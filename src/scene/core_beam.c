@@ -5,12 +5,97 @@
 #include <string.h>
 
 #include "base/linalg.h"
-#include "scene/beam.h"
 
-typedef struct {
-    double area, inertia, shear_area; /* [m2], [m4], [m2] 0: no shear deformation */
-    double mass_kg;                   /* of the storey; 0: density times area */
-} Section;
+/* ---- beams ---------------------------------------------------------------------------------------------------- */
+
+static void mirror(double a[4][4])
+{
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < i; j++)
+            a[i][j] = a[j][i];
+}
+
+static void stiffness(const Beam *b, double phi, double k[4][4])
+{
+    const double l = b->length, scale = b->EI / (l * l * l * (1 + phi));
+    const double shape[4][4] = {{12, 6 * l, -12, 6 * l},
+                                {0, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l},
+                                {0, 0, 12, -6 * l},
+                                {0, 0, 0, (4 + phi) * l * l}};
+    for (int i = 0; i < 4; i++)
+        for (int j = i; j < 4; j++)
+            k[i][j] = scale * shape[i][j];
+    mirror(k);
+}
+
+static void mass(const Beam *b, double phi, double m[4][4])
+{
+    const double l = b->length, over = 1 / ((1 + phi) * (1 + phi));
+    const double w0 = 70 * phi * phi + 147 * phi + 78, w1 = 35 * phi * phi + 63 * phi + 27;
+    const double c0 = (35 * phi * phi + 77 * phi + 44) * l / 4, c1 = (35 * phi * phi + 63 * phi + 26) * l / 4;
+    const double r0 = (7 * phi * phi + 14 * phi + 8) * l * l / 4, r1 = (7 * phi * phi + 14 * phi + 6) * l * l / 4;
+    const double moved[4][4] = {{w0, c0, w1, -c1}, {0, r0, c1, -r1}, {0, 0, w0, -c0}, {0, 0, 0, r0}};
+    const double d = (15 * phi - 3) * l, e0 = (10 * phi * phi + 5 * phi + 4) * l * l,
+                 e1 = (5 * phi * phi - 5 * phi - 1) * l * l;
+    const double turned[4][4] = {{36, -d, -36, -d}, {0, e0, d, e1}, {0, 0, 36, d}, {0, 0, 0, e0}};
+    const double along = b->mass_per_m * l / 210 * over, about = b->rotary_kg_m / (30 * l) * over;
+    for (int i = 0; i < 4; i++)
+        for (int j = i; j < 4; j++)
+            m[i][j] = along * moved[i][j] + about * turned[i][j];
+    mirror(m);
+}
+
+void beam_element(const Beam *b, double k[4][4], double m[4][4])
+{
+    const double phi = b->kGA > 0 ? 12 * b->EI / (b->kGA * b->length * b->length) : 0;
+    stiffness(b, phi, k);
+    mass(b, phi, m);
+}
+
+/* ---- cantilever ----------------------------------------------------------------------------------------------- */
+
+/* Unknowns: deflections 0..n-1, then rotations n..2n-1. */
+static void assemble(int n, const Beam beam[], double K[], double M[])
+{
+    const int size = 2 * n;
+    for (int e = 0; e < n; e++) {
+        double k[4][4], m[4][4];
+        beam_element(&beam[e], k, m);
+        const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++)
+                if (at[i] >= 0 && at[j] >= 0) {
+                    K[at[i] * size + at[j]] += k[i][j];
+                    M[at[i] * size + at[j]] += m[i][j];
+                }
+    }
+}
+
+Status beam_cantilever(int n, const Beam beam[], double K[], double M[], Err *err)
+{
+    const size_t size = 2 * (size_t)n, nn = (size_t)n * (size_t)n;
+    double *whole_K = calloc(2 * size * size + 5 * nn, sizeof *whole_K);
+    if (!whole_K)
+        return fail(err, STATUS_NO_MEMORY, "beam: no memory for %d elements", n);
+    double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + nn, *R = T + nn, *work = R + nn;
+    assemble(n, beam, whole_K, whole_M);
+    for (int i = 0; i < n; i++) {
+        T[i * n + i] = 1;
+        for (int j = 0; j < n; j++) {
+            Krr[i * n + j] = whole_K[(size_t)(n + i) * size + (size_t)(n + j)];
+            R[i * n + j] = -whole_K[(size_t)(n + i) * size + (size_t)j];
+        }
+    }
+    const Status status = linalg_solve_spd(n, n, Krr, R, err);
+    if (status == STATUS_OK) {
+        linalg_congruent((int)size, n, whole_K, T, work, K);
+        linalg_congruent((int)size, n, whole_M, T, work, M);
+    }
+    free(whole_K);
+    return status;
+}
+
+/* ---- the core -------------------------------------------------------------------------------------------------- */
 
 /* Shear area over area of a thin-walled square tube: Cowper, J. Appl. Mech. 33 (1966) 335-340. */
 static double tube_shear_factor(double poisson)
@@ -20,25 +105,43 @@ static double tube_shear_factor(double poisson)
 
 static const double PLATE_SHEAR_FACTOR = 5.0 / 6; /* solid rectangle, parabola of shear stress */
 
-static Section section_at(const CoreOptions *o, int n, int storey, double t)
+static CoreStorey box(const CoreOptions *o, double t)
 {
-    switch (o->section) {
-    case CORE_BOX: {
-        const double outer = o->width_m, inner = outer - 2 * t;
-        const double area = outer * outer - inner * inner;
-        return (Section){area, (pow(outer, 4) - pow(inner, 4)) / 12, tube_shear_factor(o->poisson) * area, 0};
-    }
-    case CORE_PLATE:
-        return (Section){o->width_m * t, o->width_m * t * t * t / 12, PLATE_SHEAR_FACTOR * o->width_m * t, 0};
-    case CORE_EFFECTIVE:
-        break;
-    }
-    return (Section){list_along(&o->areas_m2, storey, n), list_along(&o->inertias_m4, storey, n),
-                     list_along(&o->shear_areas_m2, storey, n),
-                     o->masses_kg.n ? list_along(&o->masses_kg, storey, n) : 0};
+    const double side = o->width_m, inner = side - 2 * t;
+    const double area = side * side - inner * inner, inertia = (pow(side, 4) - pow(inner, 4)) / 12;
+    return (CoreStorey){.thickness = t,
+                        .depth = side,
+                        .area = area,
+                        .inertia = inertia,
+                        .shear_area = tube_shear_factor(o->poisson) * area,
+                        .shear_stress_per_n =
+                            (side * side * side - inner * inner * inner) / 8 / (inertia * 2 * t)}; /* Q / (I 2t) */
 }
 
-static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
+static CoreStorey plate(const CoreOptions *o, double t)
+{
+    const double area = o->width_m * t;
+    return (CoreStorey){.thickness = t,
+                        .depth = t,
+                        .area = area,
+                        .inertia = o->width_m * t * t * t / 12,
+                        .shear_area = PLATE_SHEAR_FACTOR * o->width_m * t,
+                        .shear_stress_per_n = 1.5 / area};
+}
+
+CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
+{
+    const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
+    if (o->section != CORE_EFFECTIVE)
+        return o->section == CORE_BOX ? box(o, t) : plate(o, t);
+    return (CoreStorey){.thickness = t,
+                        .area = list_along(&o->areas_m2, storey, n),
+                        .inertia = list_along(&o->inertias_m4, storey, n),
+                        .shear_area = list_along(&o->shear_areas_m2, storey, n),
+                        .mass_kg = o->masses_kg.n ? list_along(&o->masses_kg, storey, n) : 0};
+}
+
+static Beam storey_beam(const CoreOptions *o, const CoreStorey *a, double length)
 {
     const double E = o->youngs_modulus_pa, G = E / (2 * (1 + o->poisson));
     const int shears = o->theory == CORE_TIMOSHENKO;
@@ -82,8 +185,7 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     memset(c, 0, sizeof *c);
     c->n = n;
     for (int e = 0; e < n; e++) {
-        const double share = n > 1 ? (double)e / (n - 1) : 0;
-        const Section section = section_at(o, n, e, t_base_m + (t_top_m - t_base_m) * share);
+        const CoreStorey section = core_beam_storey(o, n, e, t_base_m, t_top_m);
         beam[e] = storey_beam(o, &section, storey_m[e]);
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }
@@ -91,22 +193,6 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     TRY(linalg_modes(n, c->K, c->M, c->omega, c->phi, err));
     linalg_participation(n, c->M, c->phi, c->gamma);
     return STATUS_OK;
-}
-
-CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
-{
-    const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
-    const double side = o->width_m, inner = side - 2 * t;
-    const Section a = section_at(o, n, storey, t);
-    CoreStorey c = {.thickness = t, .area = a.area, .inertia = a.inertia};
-    if (o->section == CORE_BOX) {
-        c.depth = side;
-        c.shear_stress_per_n = (side * side * side - inner * inner * inner) / 8 / (a.inertia * 2 * t); /* Q / (I 2t) */
-    } else if (o->section == CORE_PLATE) {
-        c.depth = t;
-        c.shear_stress_per_n = 1.5 / a.area;
-    }
-    return c;
 }
 
 Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,

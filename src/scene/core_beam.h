@@ -1,6 +1,6 @@
 /* scene/core_beam.h -- the light, stiff core as a cantilever with one node per floor.
  *
- * One beam element per storey (scene/beam.h), constant section inside it, consistent mass, clamped at the ground, the
+ * One beam element per storey, constant section inside it, consistent mass, clamped at the ground, the
  * rotations condensed. Thickness, and with `effective` areas and inertia, vary linearly with the storey number j =
  * 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
  *
@@ -13,12 +13,35 @@
  *                    of a fine beam: the first four of 80 m x 11.3 m by 1e-5, 6e-4, 3e-3, 7e-3 (tests/test_scene.c)
  *   euler_bernoulli  neither
  *
+ * A beam element is straight, of constant section and bends in a plane:
+ *
+ *   unknowns  deflection w, rotation (dw/dx where nothing shears) at each end: w0, r0, w1, r1
+ *   phi       12 EI / (kGA l^2), what shear adds to bending; 0: Euler-Bernoulli
+ *
+ * The stiffness is exact for loads at the ends (Przemieniecki, Theory of Matrix Structural Analysis, 1968, section
+ * 5.6). The mass is consistent with the same shapes, rotary inertia included: Friedman and Kosmatka, Computers and
+ * Structures 47 (1993) 473-481.
+ *
  * Mode shapes are mass-normalised as in scene/building.h. Threads  no state. */
 #ifndef IMTET_SCENE_CORE_BEAM_H
 #define IMTET_SCENE_CORE_BEAM_H
 
 #include "scene/building.h"
 #include "scene/options.h"
+
+typedef struct {
+    double EI;          /* [N m2] */
+    double kGA;         /* [N] of the shear area; 0: shear does not deform it */
+    double mass_per_m;  /* [kg/m] */
+    double rotary_kg_m; /* [kg m] density times inertia; 0: sections turn without inertia */
+    double length;      /* [m] */
+} Beam;
+
+void beam_element(const Beam *b, double k[4][4], double m[4][4]);
+
+/* A cantilever of n beams, clamped where the first begins, condensed to the deflections of their ends by Guyan
+ * reduction: T = [1; -Krr^-1 Kru],  K = T' K T,  M = T' M T   (n, n). */
+Status beam_cantilever(int n, const Beam beam[], double K[], double M[], Err *err);
 
 typedef struct {
     int n;
@@ -42,6 +65,8 @@ Status core_beam_joined_hz(const CoreBeam *c, const Building *b, double hz[], Er
 typedef struct {
     double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */
     double area, inertia;      /* [m2], [m4] */
+    double shear_area;         /* [m2] 0: no shear deformation */
+    double mass_kg;            /* of the storey; 0: density times area */
     double shear_stress_per_n; /* [1/m2] largest shear stress per unit of shear force */
 } CoreStorey;
 CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m);

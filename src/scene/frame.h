@@ -7,7 +7,7 @@
  *   masses.csv    node, mass_kg [, mass_z_kg, rotary_kg_m2]                       (may be missing)
  *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
  *
- * Elements are beam-columns: axial stiffness EA/l, bending by scene/beam.h (shear where shear_area_m2 is given), pinned
+ * Elements are beam-columns: axial stiffness EA/l, bending by scene/core_beam.h (shear where shear_area_m2 is given), pinned
  * ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
  * sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary inertia
  * at nodes.
@@ -29,7 +29,11 @@
  *
  * Model "guyan" is the frame of configs/sac20/frame, which is compiled in.
  *
- * Ownership  frame_read allocates, frame_free releases (an empty Frame is fine). Threads  no state */
+ * A frame is built up by calls, from sheets (scene/frame_read.c) or the commands of an OpenSees model
+ * (scene/opensees.h), which say what is wrong with a part; the readers add file and line.
+ *
+ * Ownership  frame_read and the frame_add functions allocate, frame_free releases (an empty Frame is fine).
+ * Threads  no state */
 #ifndef IMTET_SCENE_FRAME_H
 #define IMTET_SCENE_FRAME_H
 
@@ -46,13 +50,15 @@ typedef struct {
     double mass[FRAME_DOFS]; /* [kg] along x, along z, [kg m2] */
     int floor;               /* from 1; 0: none */
     int keep[FRAME_DOFS];    /* named as one of the full model */
+    int follows[FRAME_DOFS]; /* the node whose displacement this one equals; itself where it is tied to none */
 } FrameNode;
 
 typedef struct {
     char name[TABLE_NAME_MAX];
     double area, inertia, E; /* [m2], [m4], [Pa] */
-    double kGA;              /* [N] 0: no shear deformation */
-    double mass_per_m;       /* [kg/m] */
+    double shear_area;       /* [m2] 0: no shear deformation */
+    double poisson;
+    double mass_per_m; /* [kg/m] */
 } FrameSection;
 
 typedef struct {
@@ -62,20 +68,38 @@ typedef struct {
     double added_mass; /* [kg] */
 } FrameElement;
 
-typedef struct {
-    int node, same_as;
-    int dof[FRAME_DOFS]; /* which displacements are equal */
-} FrameTie;
+typedef enum { FRAME_NODES, FRAME_SECTIONS, FRAME_ELEMENTS, FRAME_KINDS } FrameKind;
 
 typedef struct {
-    int n_nodes, n_sections, n_elements, n_ties, n_floors;
+    int n[FRAME_KINDS], n_ties, n_floors;
     FrameNode *node;
     FrameSection *section;
     FrameElement *element;
-    FrameTie *tie;
+    void *names;      /* of all of these: a tree of <search.h> */
     char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
     double *storey_m; /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
 } Frame;
+
+/* A part is copied; a node is tied to none. */
+Status frame_add_node(Frame *f, const FrameNode *node, Err *err);
+Status frame_add_section(Frame *f, const FrameSection *section, Err *err);
+Status frame_add_element(Frame *f, const FrameElement *element, Err *err);
+Status frame_tie(Frame *f, int node, int same_as, const int dof[FRAME_DOFS], Err *err);
+Status frame_set_mass(Frame *f, int node, const double mass[FRAME_DOFS], Err *err);
+
+/* Index of what has that name; -1: nothing has. */
+int frame_find(const Frame *f, FrameKind kind, const char *name);
+
+/* After the last part: floors, their heights, and where they are rigid one displacement along x for each. model: its
+ * name for messages. */
+Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err);
+
+/* The node that stands for a floor: the nearest to the middle of its nodes. */
+int frame_floor_node(const Frame *f, int floor);
+
+/* The node whose displacement is that of a node. */
+int frame_followed(const Frame *f, int node, int dof);
+void frame_free(Frame *f);
 
 /* Is the model a frame: a folder that holds nodes.csv, guyan, or an OpenSees model, a file that ends in .tcl? */
 int frame_is(const char *model);
@@ -91,9 +115,11 @@ typedef struct {
 /* The floors and, where it matters, what they miss of the ground's motion; or the full model. */
 typedef enum { FRAME_FLOORS, FRAME_FULL } FrameKept;
 
+/* Room for n degrees of freedom, zeroed. */
+Status frame_full_make(FrameFull *full, int n, Err *err);
+
 /* Allocates; frame_full_free releases (an empty one is fine). */
-Status frame_reduce(const Frame *f, int rigid_floors, FrameKept kept, FrameFull *out, Err *err);
+Status frame_reduce(const Frame *f, FrameKept kept, FrameFull *out, Err *err);
 void frame_full_free(FrameFull *full);
-void frame_free(Frame *f);
 
 #endif

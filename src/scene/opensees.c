@@ -6,7 +6,6 @@
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,20 +17,15 @@
 /* No model needs as many; one that does runs in a circle. */
 enum { COMMANDS_MAX = 1000000, SECONDS_MAX = 10 };
 
-/* What has a tag, which stands for an index into the list of its kind. */
-typedef enum { NODES, ELEMENTS, SECTIONS, MATERIALS, TRANSFORMATIONS, TAGGED } Tagged;
-static const char *const KIND[TAGGED] = {"node", "element", "section", "uniaxialMaterial", "geomTransf"};
-
 typedef struct {
     const char *path;
     char folder[PATH_MAX]; /* of the model, without links */
     Tcl_Interp *tcl;
-    Tcl_HashTable tag[TAGGED];
     double length, force; /* units in m, in N */
     Frame *frame;
-    FrameSection
-        *elastic; /* (n_elastic) of section Elastic and, modulus alone, uniaxialMaterial Elastic; units as there */
-    int n_elastic, has_model, is_wiped, has_analysed, has_ended;
+    Frame library; /* sections "section 7", "uniaxialMaterial 1", "geomTransf 1" of what has such a tag, in the units of
+                    * the model; of the last two the modulus alone counts, or nothing */
+    int has_model, is_wiped, has_analysed, has_ended;
     Err refused; /* of the first command that is not read; code STATUS_OK: none yet */
 } Reader;
 
@@ -55,25 +49,17 @@ __attribute__((format(printf, 2, 3))) static int refuse(Reader *r, const char *f
     return 0;
 }
 
-/* A new entry of a list of the frame, zeroed; NULL: no memory, which is noted. */
-static void *append(Reader *r, void *list, int *n, size_t size)
-{
-    void *old;
-    memcpy(&old, list, sizeof old);
-    char *wider = realloc(old, (size_t)(*n + 1) * size);
-    if (!wider) {
-        fail(&r->refused, STATUS_NO_MEMORY, "%s: no memory for its model", r->path);
-        return NULL;
-    }
-    memcpy(list, &wider, sizeof wider);
-    return memset(wider + (size_t)(*n)++ * size, 0, size);
-}
-
 /* ---- words of a command --------------------------------------------------------------------------------------- */
 
 static int is_word(Tcl_Obj *word, const char *text)
 {
     return strcmp(Tcl_GetString(word), text) == 0;
+}
+
+/* Did the frame take the part that the command adds? */
+static int is_taken(Reader *r, Words w, Status status, const Err *err)
+{
+    return status == STATUS_OK || refuse(r, "%s: %s", Tcl_GetString(w[0]), err->text);
 }
 
 static int take_numbers(Reader *r, Words w, int first, int n, double values[])
@@ -84,34 +70,42 @@ static int take_numbers(Reader *r, Words w, int first, int n, double values[])
     return 1;
 }
 
-static int take_tag(Reader *r, Words w, int at, int *tag)
-{
-    return Tcl_GetIntFromObj(NULL, w[at], tag) == TCL_OK ||
-           refuse(r, "%s: '%.60s' is no tag, a whole number", Tcl_GetString(w[0]), Tcl_GetString(w[at]));
-}
-
-/* What word `at`, a tag of that kind, stands for. */
-static int find(Reader *r, Words w, int at, Tagged kind, int *index)
+/* A name from a tag, behind what it is of where that is not NULL. */
+static int take_tag(Reader *r, Words w, int at, const char *what, char name[TABLE_NAME_MAX])
 {
     int tag;
-    if (!take_tag(r, w, at, &tag))
-        return 0;
-    const Tcl_HashEntry *entry = Tcl_FindHashEntry(&r->tag[kind], (void *)(intptr_t)tag);
-    if (!entry)
-        return refuse(r, "%s: there is no %s %d above", Tcl_GetString(w[0]), KIND[kind], tag);
-    *index = (int)(intptr_t)Tcl_GetHashValue(entry);
+    if (Tcl_GetIntFromObj(NULL, w[at], &tag) != TCL_OK)
+        return refuse(r, "%s: '%.60s' is no tag, a whole number", Tcl_GetString(w[0]), Tcl_GetString(w[at]));
+    snprintf(name, TABLE_NAME_MAX, "%s%s%d", what ? what : "", what ? " " : "", tag);
     return 1;
 }
 
-/* From now on the tag stands for this index. */
-static int define(Reader *r, Words w, int at, Tagged kind, int index)
+static int find_node(Reader *r, Words w, int at, int *index)
 {
-    int tag, is_new;
-    if (!take_tag(r, w, at, &tag))
+    char name[TABLE_NAME_MAX];
+    if (!take_tag(r, w, at, NULL, name))
         return 0;
-    Tcl_HashEntry *entry = Tcl_CreateHashEntry(&r->tag[kind], (void *)(intptr_t)tag, &is_new);
-    Tcl_SetHashValue(entry, (void *)(intptr_t)index);
-    return is_new || refuse(r, "%s: %s %d is there twice", Tcl_GetString(w[0]), KIND[kind], tag);
+    *index = frame_find(r->frame, FRAME_NODES, name);
+    return *index >= 0 || refuse(r, "%s: there is no node %s above", Tcl_GetString(w[0]), name);
+}
+
+/* What of the library has the tag in word `at`. */
+static int look_up(Reader *r, Words w, int at, const char *what, const FrameSection **found)
+{
+    char name[TABLE_NAME_MAX];
+    if (!take_tag(r, w, at, what, name))
+        return 0;
+    const int i = frame_find(&r->library, FRAME_SECTIONS, name);
+    *found = &r->library.section[i];
+    return i >= 0 || refuse(r, "%s: there is no %s above", Tcl_GetString(w[0]), name);
+}
+
+/* Into the library, under the tag in word `at`. */
+static int define(Reader *r, Words w, int at, FrameSection s)
+{
+    Err err = {0};
+    return take_tag(r, w, at, Tcl_GetString(w[0]), s.name) &&
+           is_taken(r, w, frame_add_section(&r->library, &s, &err), &err);
 }
 
 /* ---- nodes and what they are given ---------------------------------------------------------------------------- */
@@ -127,39 +121,35 @@ static int take_model(Reader *r, int n, Words w)
 }
 
 /* A later mass of a node replaces the earlier one (OpenSees: Node::setMass); that of elements adds to it at the end. */
-static int set_mass(Reader *r, FrameNode *node, Words w, int first)
+static int set_mass(Reader *r, int node, Words w, int first)
 {
     double m[FRAME_DOFS];
     const double unit = r->force / r->length;
+    Err err = {0};
     if (!take_numbers(r, w, first, FRAME_DOFS, m))
         return 0;
-    for (int d = 0; d < FRAME_DOFS; d++) {
-        if (m[d] < 0)
-            return refuse(r, "%s: a mass of %g; it must not be negative", Tcl_GetString(w[0]), m[d]);
-        node->mass[d] = m[d] * unit * (d == FRAME_ROT ? r->length * r->length : 1);
-    }
-    return 1;
+    for (int d = 0; d < FRAME_DOFS; d++)
+        m[d] *= unit * (d == FRAME_ROT ? r->length * r->length : 1);
+    return is_taken(r, w, frame_set_mass(r->frame, node, m, &err), &err);
 }
 
 static int take_node(Reader *r, int n, Words w)
 {
     double xy[2];
+    FrameNode node = {0};
+    Err err = {0};
     if (!r->has_model || r->is_wiped)
         return refuse(r, r->is_wiped ? "node: the model above was wiped; keep one of the two"
                                      : "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
-    if (!take_numbers(r, w, 2, 2, xy) || !define(r, w, 1, NODES, r->frame->n_nodes))
+    if (!take_numbers(r, w, 2, 2, xy) || !take_tag(r, w, 1, NULL, node.name))
         return 0;
-    FrameNode *node = append(r, &r->frame->node, &r->frame->n_nodes, sizeof *node);
-    if (!node)
+    node.x = xy[0] * r->length;
+    node.z = xy[1] * r->length;
+    if (!is_taken(r, w, frame_add_node(r->frame, &node, &err), &err))
         return 0;
-    snprintf(node->name, sizeof node->name, "%.40s", Tcl_GetString(w[1]));
-    node->x = xy[0] * r->length;
-    node->z = xy[1] * r->length;
-    if (n == 4)
-        return 1;
-    return n == 5 + FRAME_DOFS && is_word(w[4], "-mass")
-               ? set_mass(r, node, w, 5)
-               : refuse(r, "node: behind TAG x y only -mass mx my mr is read");
+    return n == 4 || (n == 5 + FRAME_DOFS && is_word(w[4], "-mass")
+                          ? set_mass(r, r->frame->n[FRAME_NODES] - 1, w, 5)
+                          : refuse(r, "node: behind TAG x y only -mass mx my mr is read"));
 }
 
 static int take_fix(Reader *r, int n, Words w)
@@ -167,7 +157,7 @@ static int take_fix(Reader *r, int n, Words w)
     double fixed[FRAME_DOFS];
     int node;
     (void)n;
-    if (!find(r, w, 1, NODES, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
+    if (!find_node(r, w, 1, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
         return 0;
     for (int d = 0; d < FRAME_DOFS; d++)
         r->frame->node[node].fixed[d] |= fixed[d] != 0;
@@ -178,25 +168,21 @@ static int take_mass(Reader *r, int n, Words w)
 {
     int node;
     (void)n;
-    return find(r, w, 1, NODES, &node) && set_mass(r, &r->frame->node[node], w, 2);
+    return find_node(r, w, 1, &node) && set_mass(r, node, w, 2);
 }
 
 static int take_equal(Reader *r, int n, Words w)
 {
-    int node, same_as, dof;
-    if (!find(r, w, 1, NODES, &same_as) || !find(r, w, 2, NODES, &node))
+    int node, same_as, dof, dofs[FRAME_DOFS] = {0};
+    Err err = {0};
+    if (!find_node(r, w, 1, &same_as) || !find_node(r, w, 2, &node))
         return 0;
-    FrameTie *tie = append(r, &r->frame->tie, &r->frame->n_ties, sizeof *tie);
-    if (!tie)
-        return 0;
-    tie->node = node;
-    tie->same_as = same_as;
     for (int i = 3; i < n; i++) {
         if (Tcl_GetIntFromObj(NULL, w[i], &dof) != TCL_OK || dof < 1 || dof > FRAME_DOFS)
             return refuse(r, "equalDOF: '%.60s' is no degree of freedom 1 to 3", Tcl_GetString(w[i]));
-        tie->dof[dof - 1] = 1;
+        dofs[dof - 1] = 1;
     }
-    return 1;
+    return is_taken(r, w, frame_tie(r->frame, node, same_as, dofs, &err), &err);
 }
 
 /* ---- elements ------------------------------------------------------------------------------------------------- */
@@ -204,26 +190,20 @@ static int take_equal(Reader *r, int n, Words w)
 static int take_transformation(Reader *r, int n, Words w)
 {
     return n == 3 && (is_word(w[1], "Linear") || is_word(w[1], "PDelta"))
-               ? define(r, w, 2, TRANSFORMATIONS, 0)
+               ? define(r, w, 2, (FrameSection){.area = 1, .inertia = 1, .E = 1})
                : refuse(r, "geomTransf: only Linear and PDelta TAG are read; building.p_delta decides between them");
 }
 
 /* section Elastic TAG E A I, uniaxialMaterial Elastic TAG E */
 static int take_elastic(Reader *r, int n, Words w)
 {
-    const Tagged kind = is_word(w[0], KIND[SECTIONS]) ? SECTIONS : MATERIALS;
-    const int numbers = kind == SECTIONS ? 3 : 1;
-    double value[3] = {0};
+    const int is_section = is_word(w[0], "section"), numbers = is_section ? 3 : 1;
+    double value[3] = {1, 1, 1};
     if (!is_word(w[1], "Elastic") || n < 3 + numbers)
-        return refuse(r, "%s %.60s: only Elastic TAG E%s is read", KIND[kind], Tcl_GetString(w[1]),
-                      kind == SECTIONS ? " A I" : "");
-    if (!take_numbers(r, w, 3, numbers, value) || !define(r, w, 2, kind, r->n_elastic))
-        return 0;
-    FrameSection *s = append(r, &r->elastic, &r->n_elastic, sizeof *s);
-    if (!s)
-        return 0;
-    *s = (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]};
-    return 1;
+        return refuse(r, "%s %.60s: only Elastic TAG E%s is read", Tcl_GetString(w[0]), Tcl_GetString(w[1]),
+                      is_section ? " A I" : "");
+    return take_numbers(r, w, 3, numbers, value) &&
+           define(r, w, 2, (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]});
 }
 
 /* The elements that are read, and what stands behind their nodes: numbers A, E, I; tags of a Section, a Material, a
@@ -237,7 +217,7 @@ enum { N_MEMBERS = sizeof MEMBERS / sizeof MEMBERS[0] };
 /* *options: where they begin. Section s in the units of the model. */
 static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
 {
-    int form = 0, index;
+    int form = 0;
     for (*options = 5; *options < n && Tcl_GetString(w[*options])[0] != '-';)
         ++*options;
     while (form < N_MEMBERS &&
@@ -251,15 +231,15 @@ static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
     *s = (FrameSection){.inertia = 1}; /* of a bar, whose ends are pinned, it does nothing */
     for (int i = 5; i < *options; i++) {
         const char word = MEMBERS[form].words[i - 5];
-        const Tagged kind = word == 'S' ? SECTIONS : word == 'M' ? MATERIALS : TRANSFORMATIONS;
-        const int is_number = word == 'A' || word == 'E' || word == 'I';
-        double *const number = word == 'A' ? &s->area : word == 'E' ? &s->E : &s->inertia;
-        if (is_number ? !take_numbers(r, w, i, 1, number) : word != '-' && !find(r, w, i, kind, &index))
+        const char *what = word == 'S' ? "section" : word == 'M' ? "uniaxialMaterial" : "geomTransf";
+        double *const number = word == 'A' ? &s->area : word == 'E' ? &s->E : word == 'I' ? &s->inertia : NULL;
+        const FrameSection *found;
+        if (number ? !take_numbers(r, w, i, 1, number) : word != '-' && !look_up(r, w, i, what, &found))
             return 0;
         if (word == 'S')
-            *s = r->elastic[index];
+            *s = *found;
         if (word == 'M')
-            s->E = r->elastic[index].E;
+            s->E = found->E;
     }
     return 1;
 }
@@ -283,46 +263,48 @@ static int take_options(Reader *r, int n, Words w, int at, double *mass, int *is
            refuse(r, "element: -release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", *release);
 }
 
+/* From the units of the model to those of a frame. */
+static int add_section(Reader *r, Words w, FrameSection *s, const char *element)
+{
+    const double L = r->length, F = r->force;
+    Err err = {0};
+    s->area *= L * L;
+    s->inertia *= L * L * L * L;
+    s->E *= F / (L * L);
+    snprintf(s->name, sizeof s->name, "of %.40s", element);
+    return is_taken(r, w, frame_add_section(r->frame, s, &err), &err);
+}
+
 /* A mass that is not consistent goes to both ends in halves, as OpenSees lumps it: added_mass until all is read. */
 static int take_element(Reader *r, int n, Words w)
 {
     Frame *f = r->frame;
-    const double L = r->length, F = r->force;
     FrameSection s;
-    int end[2], options, is_consistent;
+    FrameElement e = {.section = f->n[FRAME_SECTIONS]};
+    Err err = {0};
+    int options, is_consistent;
     double mass, release;
-    if (!find(r, w, 3, NODES, &end[0]) || !find(r, w, 4, NODES, &end[1]) || !take_member(r, n, w, &s, &options) ||
-        !take_options(r, n, w, options, &mass, &is_consistent, &release) || !define(r, w, 2, ELEMENTS, f->n_elements))
+    if (!find_node(r, w, 3, &e.node[0]) || !find_node(r, w, 4, &e.node[1]) || !take_member(r, n, w, &s, &options) ||
+        !take_options(r, n, w, options, &mass, &is_consistent, &release) || !take_tag(r, w, 2, NULL, e.name))
         return 0;
-    const double length = hypot(f->node[end[1]].x - f->node[end[0]].x, f->node[end[1]].z - f->node[end[0]].z);
-    if (!(s.area > 0 && s.E > 0 && s.inertia > 0 && length > 0))
-        return refuse(r, "element %s: A, E and I must be above 0, its nodes at two places", Tcl_GetString(w[2]));
-    FrameSection *section = append(r, &f->section, &f->n_sections, sizeof *section);
-    FrameElement *e = append(r, &f->element, &f->n_elements, sizeof *e);
-    if (!section || !e)
-        return 0;
-    mass *= F / (L * L);
-    *section = (FrameSection){.area = s.area * L * L,
-                              .E = s.E * F / (L * L),
-                              .inertia = s.inertia * L * L * L * L,
-                              .mass_per_m = is_consistent ? mass : 0};
-    *e = (FrameElement){.node = {end[0], end[1]},
-                        .section = f->n_sections - 1,
-                        .pinned = {is_word(w[1], "truss") || (int)release & 1, is_word(w[1], "truss") || release >= 2},
-                        .added_mass = is_consistent ? 0 : mass * length};
-    snprintf(e->name, sizeof e->name, "%.40s", Tcl_GetString(w[2]));
-    snprintf(section->name, sizeof section->name, "of %.40s", e->name);
-    return 1;
+    const FrameNode *a = &f->node[e.node[0]], *b = &f->node[e.node[1]];
+    const int is_bar = is_word(w[1], "truss");
+    mass *= r->force / (r->length * r->length);
+    s.mass_per_m = is_consistent ? mass : 0;
+    e.added_mass = is_consistent ? 0 : mass * hypot(b->x - a->x, b->z - a->z);
+    e.pinned[0] = is_bar || (int)release & 1;
+    e.pinned[1] = is_bar || release >= 2;
+    return is_taken(r, w, frame_add_element(f, &e, &err), &err) && add_section(r, w, &s, e.name);
 }
 
 static void lump_masses(Frame *f)
 {
-    for (int e = 0; e < f->n_elements; e++) {
-        FrameElement *element = &f->element[e];
+    for (int i = 0; i < f->n[FRAME_ELEMENTS]; i++) {
+        FrameElement *e = &f->element[i];
         for (int k = 0; k < 2; k++)
             for (int d = FRAME_X; d <= FRAME_Z; d++)
-                f->node[element->node[k]].mass[d] += 0.5 * element->added_mass;
-        element->added_mass = 0;
+                f->node[e->node[k]].mass[d] += 0.5 * e->added_mass;
+        e->added_mass = 0;
     }
 }
 
@@ -366,7 +348,7 @@ static int skip(Reader *r, int n, Words w)
 static int take_wipe(Reader *r, int n, Words w)
 {
     (void)n, (void)w;
-    r->is_wiped = r->frame->n_nodes > 0;
+    r->is_wiped = r->frame->n[FRAME_NODES] > 0;
     return 1;
 }
 
@@ -483,7 +465,7 @@ static Status run_model(Reader *r, Err *err)
                     COMMANDS_MAX);
     if (r->refused.code != STATUS_OK)
         return fail(err, r->refused.code, "%s", r->refused.text);
-    if (r->frame->n_elements == 0)
+    if (r->frame->n[FRAME_ELEMENTS] == 0)
         return fail(err, STATUS_BAD_DATA, "%s: holds no element", r->path);
     lump_masses(r->frame);
     return STATUS_OK;
@@ -518,14 +500,10 @@ Status opensees_read(Frame *f, const char *path, double length_m, double force_n
     if (last) {
         *last = 0;
         r->tcl = create_tcl();
-        for (int k = 0; k < TAGGED; k++)
-            Tcl_InitHashTable(&r->tag[k], TCL_ONE_WORD_KEYS);
         status = run_model(r, err);
-        for (int k = 0; k < TAGGED; k++)
-            Tcl_DeleteHashTable(&r->tag[k]);
         Tcl_DeleteInterp(r->tcl);
     }
-    free(r->elastic);
+    frame_free(&r->library);
     free(r);
     return status;
 }

@@ -4,71 +4,62 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/linalg.h"
 #include "scene/options.h"
 
 /* ---- Craig-Bampton -------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    int f, i, modes;      /* floors, others, fixed-interface modes */
-    double *Kii, *Mii;    /* (i, i) */
-    double *Psi;          /* (i, f) */
-    double *mu, *phi;     /* (i), (i, i) column k is mode k */
-    double *missed, *M_r; /* (i) the shape that is added, Mii times a shape */
-    double *T, *half;     /* (n, n + 1) row-major with `columns` columns, of which so many are used */
-    int columns;
-    double *store;
+    int n, f, i, modes, columns; /* floors, others, fixed-interface modes, shapes that are kept */
+    double *Kii, *Mii, *factor;  /* (i, i) */
+    double *Psi;                 /* (i, f) */
+    double *mu, *phi;            /* (i), (i, i) column k is mode k */
+    double *missed, *M_r;        /* (i) the shape that is added, Mii times it */
+    double *T, *work;            /* (n, n + 1) of which `columns` columns are used */
+    void *store;
 } Reduction;
 
-static Status allocate(Reduction *r, Err *err)
+static void layout(void *reduction, Carve *c)
 {
-    const size_t i = (size_t)r->i, f = (size_t)r->f, n = i + f;
-    r->store = calloc(4 * i * i + i * f + 3 * i + 2 * n * (n + 1), sizeof *r->store);
-    if (!r->store)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory to reduce %zu degrees of freedom", n);
-    r->Kii = r->store;
-    r->Mii = r->Kii + i * i;
-    r->phi = r->Mii + i * i;
-    r->Psi = r->phi + 2 * i * i; /* behind phi is room for a copy of Kii */
-    r->mu = r->Psi + i * f;
-    r->missed = r->mu + i;
-    r->M_r = r->missed + i;
-    r->T = r->M_r + i;
-    r->half = r->T + n * (n + 1);
-    return STATUS_OK;
+    Reduction *r = reduction;
+    const size_t n = (size_t)r->n, i = (size_t)r->i, real = sizeof(double);
+    double **const square[] = {&r->Kii, &r->Mii, &r->factor, &r->phi};
+    for (int k = 0; k < 4; k++)
+        *square[k] = carve(c, i * i, real);
+    r->Psi = carve(c, i * (size_t)r->f, real);
+    r->mu = carve(c, i, real);
+    r->missed = carve(c, i, real);
+    r->M_r = carve(c, i, real);
+    r->T = carve(c, n * (n + 1), real);
+    r->work = carve(c, n * (n + 1), real);
 }
 
 static Status constraint_modes(Reduction *r, const FrameFull *full, Err *err)
 {
-    double *factor = r->phi + r->i * r->i;
     for (int a = 0; a < r->i; a++) {
+        const double *K = full->K + (r->f + a) * r->n, *M = full->M + (r->f + a) * r->n;
         for (int b = 0; b < r->f; b++)
-            r->Psi[a * r->f + b] = -full->K[(r->f + a) * full->n + b];
-        for (int b = 0; b < r->i; b++) {
-            r->Kii[a * r->i + b] = full->K[(r->f + a) * full->n + r->f + b];
-            r->Mii[a * r->i + b] = full->M[(r->f + a) * full->n + r->f + b];
-        }
+            r->Psi[a * r->f + b] = -K[b];
+        memcpy(r->Kii + a * r->i, K + r->f, (size_t)r->i * sizeof *K);
+        memcpy(r->factor + a * r->i, K + r->f, (size_t)r->i * sizeof *K);
+        memcpy(r->Mii + a * r->i, M + r->f, (size_t)r->i * sizeof *M);
     }
-    memcpy(factor, r->Kii, (size_t)(r->i * r->i) * sizeof *factor);
-    TRY(linalg_solve_spd(r->i, r->f, factor, r->Psi, err));
+    TRY(linalg_solve_spd(r->i, r->f, r->factor, r->Psi, err));
     return linalg_modes(r->i, r->Kii, r->Mii, r->mu, r->phi, err);
 }
 
-static void mass_times(const Reduction *r, const double x[], double out[])
+/* Mii missed, and missed' Mii missed. */
+static double weigh_missed(const Reduction *r)
 {
+    double square = 0;
     for (int a = 0; a < r->i; a++) {
-        out[a] = 0;
+        r->M_r[a] = 0;
         for (int b = 0; b < r->i; b++)
-            out[a] += r->Mii[a * r->i + b] * x[b];
+            r->M_r[a] += r->Mii[a * r->i + b] * r->missed[b];
+        square += r->missed[a] * r->M_r[a];
     }
-}
-
-static double dot(int n, const double x[], const double y[])
-{
-    double sum = 0;
-    for (int a = 0; a < n; a++)
-        sum += x[a] * y[a];
-    return sum;
+    return square;
 }
 
 /* Below this share of its mass the missed shape is rounding. */
@@ -78,23 +69,21 @@ static const double MISSED_MIN = 1e-12;
  * nothing is). */
 static double missed_shape(Reduction *r, const FrameFull *full, double influence[])
 {
+    memcpy(influence, full->influence, (size_t)r->f * sizeof *influence);
     for (int a = 0; a < r->i; a++) {
         r->missed[a] = full->influence[r->f + a];
         for (int b = 0; b < r->f; b++)
-            r->missed[a] -= r->Psi[a * r->f + b] * full->influence[b];
+            r->missed[a] -= r->Psi[a * r->f + b] * influence[b];
     }
-    mass_times(r, r->missed, r->M_r);
-    const double whole = dot(r->i, r->missed, r->M_r);
+    const double whole = weigh_missed(r);
     for (int k = 0; k < r->modes; k++) {
-        double c = 0;
+        double *c = &influence[r->f + k];
         for (int a = 0; a < r->i; a++)
-            c += r->phi[a * r->i + k] * r->M_r[a];
-        influence[r->f + k] = c;
+            *c += r->phi[a * r->i + k] * r->M_r[a];
         for (int a = 0; a < r->i; a++)
-            r->missed[a] -= c * r->phi[a * r->i + k];
+            r->missed[a] -= *c * r->phi[a * r->i + k];
     }
-    mass_times(r, r->missed, r->M_r);
-    const double square = dot(r->i, r->missed, r->M_r);
+    const double square = weigh_missed(r);
     if (r->modes == r->i || !(square > MISSED_MIN * whole))
         return 0;
     for (int a = 0; a < r->i; a++)
@@ -116,49 +105,29 @@ static void set_columns(Reduction *r, int with_missed)
     }
 }
 
-/* out (columns, columns) = T' A T */
-static void project(const Reduction *r, const double A[], double out[])
-{
-    const int n = r->f + r->i, columns = r->columns;
-    memset(r->half, 0, (size_t)(n * columns) * sizeof *r->half);
-    for (int a = 0; a < n; a++)
-        for (int b = 0; b < n; b++)
-            for (int c = 0; c < columns && A[a * n + b] != 0; c++)
-                r->half[a * columns + c] += A[a * n + b] * r->T[b * columns + c];
-    for (int a = 0; a < n; a++)
-        for (int p = 0; p < columns; p++)
-            for (int q = 0; q < columns && r->T[a * columns + p] != 0; q++)
-                out[p * columns + q] += r->T[a * columns + p] * r->half[a * columns + q];
-}
-
 static Status reduce(Reduction *r, const FrameFull *full, FrameFull *out, Err *err)
 {
     TRY(constraint_modes(r, full, err));
-    const size_t most = (size_t)(r->f + r->modes + 1);
-    out->K = calloc(2 * most * most + most, sizeof *out->K);
-    if (!out->K)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %zu degrees of freedom", most);
-    out->M = out->K + most * most;
-    out->influence = out->M + most * most;
-    memcpy(out->influence, full->influence, (size_t)r->f * sizeof *out->influence);
+    TRY(frame_full_make(out, r->f + r->modes + 1, err));
     const double missed = missed_shape(r, full, out->influence);
     set_columns(r, missed > 0);
     out->n = r->columns;
     if (missed > 0)
         out->influence[out->n - 1] = missed;
-    project(r, full->K, out->K);
-    project(r, full->M, out->M);
+    linalg_congruent(r->n, r->columns, full->K, r->T, r->work, out->K);
+    linalg_congruent(r->n, r->columns, full->M, r->T, r->work, out->M);
     return STATUS_OK;
 }
 
 Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, FrameFull *out, Err *err)
 {
-    Reduction r = {.f = n_floors, .i = full->n - n_floors};
+    Reduction r = {.n = full->n, .f = n_floors, .i = full->n - n_floors};
     r.modes = modes < r.i ? (int)modes : r.i;
     *out = (FrameFull){0};
-    Status status = allocate(&r, err);
-    if (status == STATUS_OK)
-        status = reduce(&r, full, out, err);
+    r.store = carve_all(layout, &r);
+    const Status status = r.store
+                              ? reduce(&r, full, out, err)
+                              : fail(err, STATUS_NO_MEMORY, "building: no memory to reduce %d degrees of freedom", r.n);
     free(r.store);
     if (status != STATUS_OK)
         frame_full_free(out);
