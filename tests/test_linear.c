@@ -41,7 +41,7 @@ static void make_frame(Frame *f, int n, double k, double m, double zeta)
         f->like[j] = j;
     }
     CHECK_OK(linalg_modes(n, f->K, f->M, f->omega, f->phi, &err), &err);
-    linalg_participation(n, f->M, f->phi, f->gamma);
+    linalg_participation(n, f->M, NULL, f->phi, f->gamma);
     f->b.model = (BuildingModel){n, f->K, f->M, f->phi, f->omega, f->gamma, f->zeta, f->like};
 }
 

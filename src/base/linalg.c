@@ -105,13 +105,13 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     return STATUS_OK;
 }
 
-void linalg_participation(int n, const double M[], const double phi[], double gamma[])
+void linalg_participation(int n, const double M[], const double *r, const double phi[], double gamma[])
 {
     for (int i = 0; i < n; i++) {
         gamma[i] = 0;
         for (int j = 0; j < n; j++)
             for (int k = 0; k < n; k++)
-                gamma[i] += phi[j * n + i] * M[j * n + k];
+                gamma[i] += phi[j * n + i] * M[j * n + k] * (r ? r[k] : 1);
     }
 }
 

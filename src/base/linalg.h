@@ -19,8 +19,8 @@ Status linalg_room(size_t n_threads, Err *err);
  */
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err);
 
-/* gamma_i = phi_i' M 1 of the modes above. */
-void linalg_participation(int n, const double M[], const double phi[], double gamma[]);
+/* gamma_i = phi_i' M r of the modes above; r NULL: 1. */
+void linalg_participation(int n, const double M[], const double *r, const double phi[], double gamma[]);
 
 /* X: A X = B with A symmetric positive definite (n, n), B (n, m) row-major and overwritten. A is overwritten. */
 Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err);

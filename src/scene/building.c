@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/hash.h"
 #include "base/linalg.h"
 #include "base/list.h"
@@ -49,14 +50,7 @@ static Status add_p_delta(const Building *b, const BuildingOptions *o, int m, do
                       : fail(err, STATUS_BAD_DATA, "%s: buckles under its own weight (building.p_delta)", o->model);
 }
 
-/* ---- modes ---------------------------------------------------------------------------------------------------- */
-
-static Status find_modes(Building *b, Err *err)
-{
-    TRY(linalg_modes(b->n, b->K, b->M, b->omega, b->phi, err));
-    linalg_participation(b->n, b->M, b->phi, b->gamma);
-    return STATUS_OK;
-}
+/* ---- plausible ------------------------------------------------------------------------------------------------ */
 
 static int is_period(double per_storey)
 {
@@ -156,116 +150,97 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the model that is integrated ----------------------------------------------------------------------------- */
+/* ---- modes ---------------------------------------------------------------------------------------------------- */
 
-static void use_the_floors(Building *b)
+static void layout(void *model, Carve *c)
 {
-    for (int i = 0; i < b->n; i++)
-        b->model.like[i] = i;
-    b->model = (BuildingModel){.n = b->n,
-                               .K = b->K,
-                               .M = b->M,
-                               .phi = b->phi,
-                               .omega = b->omega,
-                               .gamma = b->gamma,
-                               .zeta = b->zeta,
-                               .like = b->model.like};
+    BuildingModel *m = model;
+    const size_t n = (size_t)m->n, real = sizeof(double);
+    m->K = carve(c, n * n, real);
+    m->M = carve(c, n * n, real);
+    m->phi = carve(c, n * n, real);
+    m->omega = carve(c, n, real);
+    m->gamma = carve(c, n, real);
+    m->zeta = carve(c, n, real);
+    m->like = carve(c, n, sizeof *m->like);
 }
 
-/* Room for n degrees of freedom. */
-static Status allocate_model(Building *b, int n, Err *err)
+static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *from, Err *err)
 {
-    const size_t nn = (size_t)n * (size_t)n;
-    double *p = b->model_store = calloc(3 * nn + 3 * (size_t)n, sizeof *p);
-    int *like = realloc(b->model.like, (size_t)n * sizeof *like);
-    if (like)
-        b->model.like = like;
-    if (!p || !like)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d degrees of freedom", n);
-    b->model = (BuildingModel){.n = n, .K = p, .M = p + nn, .phi = p + 2 * nn, .omega = p + 3 * nn, .like = like};
-    b->model.gamma = b->model.omega + n;
-    b->model.zeta = b->model.gamma + n;
+    const size_t bytes = (size_t)(from->n * from->n) * sizeof(double);
+    m->n = from->n;
+    *store = carve_all(layout, m);
+    if (!*store)
+        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d degrees of freedom", m->n);
+    memcpy(m->K, from->K, bytes);
+    memcpy(m->M, from->M, bytes);
     return STATUS_OK;
 }
 
-/* gamma = phi' M r */
-static void participate(const BuildingModel *m, const double r[])
+/* r NULL: all of it moves with the ground. */
+static Status find_modes(const Building *b, BuildingModel *m, const double *r, const BuildingOptions *o, Err *err)
 {
-    for (int j = 0; j < m->n; j++) {
-        double force = 0;
-        for (int k = 0; k < m->n; k++)
-            force += m->M[j * m->n + k] * r[k];
-        for (int i = 0; i < m->n; i++)
-            m->gamma[i] += m->phi[j * m->n + i] * force;
-    }
-}
-
-static Status use_more(Building *b, const FrameFull *more, const BuildingOptions *o, Err *err)
-{
-    const size_t bytes = (size_t)(more->n * more->n) * sizeof(double);
-    TRY(allocate_model(b, more->n, err));
-    BuildingModel *m = &b->model;
-    memcpy(m->K, more->K, bytes);
-    memcpy(m->M, more->M, bytes);
     if (o->p_delta)
         TRY(add_p_delta(b, o, m->n, m->K, err));
     TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
-    participate(m, more->influence);
+    linalg_participation(m->n, m->M, r, m->phi, m->gamma);
     reduction_alike(b->n, b->phi, b->M, m->n, m->phi, m->like);
+    return STATUS_OK;
+}
+
+static Status make_floors(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+{
+    BuildingModel *m = &b->floors;
+    TRY(copy_matrices(m, &b->store, &files->floors, err));
+    b->n = m->n;
+    b->K = m->K;
+    b->M = m->M;
+    b->phi = m->phi;
+    b->omega = m->omega;
+    b->gamma = m->gamma;
+    b->zeta = m->zeta;
+    b->storey_m = malloc((size_t)b->n * sizeof *b->storey_m);
+    if (!b->storey_m)
+        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d heights", b->n);
+    TRY(find_heights(b, files, o, err));
+    TRY(find_modes(b, m, NULL, o, err));
+    for (int i = 0; i < b->n; i++)
+        m->like[i] = i;
     return STATUS_OK;
 }
 
 static Status make_model(Building *b, const FrameFull *full, const BuildingOptions *o, Err *err)
 {
-    FrameFull reduced;
-    if (full->n == 0) {
-        use_the_floors(b);
+    FrameFull reduced = {0};
+    b->model = b->floors;
+    if (full->n == 0)
         return STATUS_OK;
-    }
-    if (o->modes == 0 || o->modes >= full->n - b->n)
-        return use_more(b, full, o, err);
-    TRY(reduction_craig_bampton(full, b->n, o->modes, &reduced, err));
-    const Status status = use_more(b, &reduced, o, err);
+    const int reduces = o->modes > 0 && o->modes < full->n - b->n;
+    if (reduces)
+        TRY(reduction_craig_bampton(full, b->n, o->modes, &reduced, err));
+    const FrameFull *more = reduces ? &reduced : full;
+    Status status = copy_matrices(&b->model, &b->model_store, more, err);
+    if (status == STATUS_OK)
+        status = find_modes(b, &b->model, more->influence, o, err);
     frame_full_free(&reduced);
     return status;
 }
 
 /* ---- all of it ------------------------------------------------------------------------------------------------ */
 
-static Status allocate(Building *b, Err *err)
+static uint64_t hash_matrices(const FrameFull *f, uint64_t hash)
 {
-    const int n = b->n;
-    b->phi = calloc((size_t)(n * n + 4 * n), sizeof *b->phi);
-    if (!b->phi)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d modes", n);
-    b->omega = b->phi + n * n;
-    b->gamma = b->omega + n;
-    b->zeta = b->gamma + n;
-    b->storey_m = b->zeta + n;
-    b->model.like = malloc((size_t)n * sizeof *b->model.like);
-    return b->model.like ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "building: no memory for %d modes", n);
+    const size_t bytes = (size_t)(f->n * f->n) * sizeof *f->K;
+    return hash_fnv1a(f->M, bytes, hash_fnv1a(f->K, bytes, hash));
 }
 
-/* K and M become the building's. */
-static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, Err *err)
+static Status take(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
-    b->n = files->n;
-    b->K = files->K;
-    b->M = files->M;
-    files->K = files->M = NULL;
     memcpy(b->note, files->note, sizeof b->note);
-    const size_t bytes = (size_t)(b->n * b->n) * sizeof *b->K;
-    b->hash = hash_fnv1a(b->M, bytes, hash_fnv1a(b->K, bytes, HASH_SEED));
-    const size_t full_bytes = (size_t)(files->full.n * files->full.n) * sizeof *b->K;
-    if (full_bytes)
-        b->hash = hash_fnv1a(files->full.M, full_bytes, hash_fnv1a(files->full.K, full_bytes, b->hash));
+    b->hash = hash_matrices(&files->full, hash_matrices(&files->floors, HASH_SEED));
     if (files->storey_m)
-        b->hash = hash_fnv1a(files->storey_m, (size_t)b->n * sizeof *files->storey_m, b->hash);
-    TRY(allocate(b, err));
-    TRY(find_heights(b, files, o, err));
-    if (o->p_delta)
-        TRY(add_p_delta(b, o, b->n, b->K, err));
-    TRY(find_modes(b, err));
+        b->hash = hash_fnv1a(files->storey_m, (size_t)files->floors.n * sizeof *files->storey_m, b->hash);
+    TRY(make_floors(b, files, o, err));
     TRY(make_model(b, &files->full, o, err));
     TRY(check_period(b, o, err));
     if (!files->storey_m) /* matrices: their headers say no unit */
@@ -296,10 +271,8 @@ double building_mass(const Building *b)
 
 void building_free(Building *b)
 {
-    free(b->K);
-    free(b->M);
-    free(b->phi);
-    free(b->model.like);
+    free(b->store);
     free(b->model_store);
+    free(b->storey_m);
     memset(b, 0, sizeof *b);
 }

@@ -58,8 +58,9 @@ typedef struct {
     uint64_t hash;    /* FNV-1a of the numbers in the files */
     char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
 
-    BuildingModel model; /* what is integrated; the above, or more */
-    double *model_store; /* NULL: the model is the above */
+    BuildingModel floors; /* the above */
+    BuildingModel model;  /* what is integrated: the above, or more */
+    void *store, *model_store;
 } Building;
 
 Status building_load(Building *b, const BuildingOptions *o, Err *err);

@@ -36,25 +36,14 @@ static Status check_symmetric(int n, double A[], const char *path, Err *err)
     return STATUS_OK;
 }
 
-static Status load_matrix(const char *model, const char *file, double **A, int *n, Err *err)
+static Status check_square(const Table *t, Err *err)
 {
-    Table t;
-    Status s = STATUS_OK;
-    TRY(model_table(&t, model, file, err));
-    if (t.n_rows != t.n_cols)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", t.path, t.n_rows,
-                 t.n_cols);
-    else if (t.n_rows > FLOORS_MAX)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", t.path, t.n_rows, FLOORS_MAX);
-    else
-        s = check_symmetric((int)t.n_rows, t.values, t.path, err);
-    if (s == STATUS_OK) {
-        *A = t.values;
-        *n = (int)t.n_rows;
-        t.values = NULL;
-    }
-    table_free(&t);
-    return s;
+    if (t->n_rows != t->n_cols)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", t->path, t->n_rows,
+                    t->n_cols);
+    if (t->n_rows > FLOORS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", t->path, t->n_rows, FLOORS_MAX);
+    return check_symmetric((int)t->n_rows, t->values, t->path, err);
 }
 
 #define INCH       0.0254                   /* m */
@@ -74,12 +63,6 @@ BuildingUnit building_unit(BuildingUnits units)
         [BUILDING_KIP_FT] = {KIP_PER_IN / 12, KIP_PER_IN / 12, 12 * INCH},
     };
     return list[units];
-}
-
-static void multiply(int n, double A[], double factor)
-{
-    for (int i = 0; i < n * n && factor != 1; i++)
-        A[i] *= factor;
 }
 
 /* ---- units of a header ---------------------------------------------------------------------------------------- */
@@ -139,32 +122,47 @@ static Status matrix_factor(const BuildingOptions *o, const char *file, const Un
                       unit->word);
 }
 
+/* Of K.csv or M.csv. */
+static Status take_matrix(const BuildingOptions *o, const Table *t, const char *file, const UnitWord words[],
+                          double set, double A[], Err *err)
+{
+    double factor = 1;
+    if (!model_is_built_in(o->model))
+        TRY(matrix_factor(o, file, words, set, &factor, err));
+    for (size_t i = 0; i < t->n_rows * t->n_rows; i++)
+        A[i] = factor * t->values[i];
+    return STATUS_OK;
+}
+
+static Status take_matrices(BuildingFiles *b, const BuildingOptions *o, const Table *K, const Table *M, Err *err)
+{
+    const BuildingUnit unit = building_unit(o->units);
+    TRY(check_square(K, err));
+    TRY(check_square(M, err));
+    if (M->n_rows != K->n_rows)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu floors, but K.csv has %zu", M->path, M->n_rows, K->n_rows);
+    TRY(frame_full_make(&b->floors, (int)K->n_rows, err));
+    TRY(take_matrix(o, K, "K.csv", STIFFNESS_WORDS, unit.stiffness, b->floors.K, err));
+    return take_matrix(o, M, "M.csv", MASS_WORDS, unit.mass, b->floors.M, err);
+}
+
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
-    double stiffness = 1, mass = 1;
-    int n_mass = 0;
-    TRY(load_matrix(o->model, "K.csv", &b->K, &b->n, err));
-    TRY(load_matrix(o->model, "M.csv", &b->M, &n_mass, err));
-    if (n_mass != b->n)
-        return fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", o->model, n_mass, b->n);
-    if (model_is_built_in(o->model))
-        return STATUS_OK;
-    TRY(matrix_factor(o, "K.csv", STIFFNESS_WORDS, building_unit(o->units).stiffness, &stiffness, err));
-    TRY(matrix_factor(o, "M.csv", MASS_WORDS, building_unit(o->units).mass, &mass, err));
-    multiply(b->n, b->K, stiffness);
-    multiply(b->n, b->M, mass);
-    return STATUS_OK;
+    Table K, M = {0};
+    TRY(model_table(&K, o->model, "K.csv", err));
+    Status status = model_table(&M, o->model, "M.csv", err);
+    if (status == STATUS_OK)
+        status = take_matrices(b, o, &K, &M, err);
+    table_free(&K);
+    table_free(&M);
+    return status;
 }
 
 static Status allocate(BuildingFiles *b, int n, Err *err)
 {
-    const size_t nn = (size_t)n * (size_t)n;
-    b->n = n;
-    b->K = calloc(nn, sizeof *b->K);
-    b->M = calloc(nn, sizeof *b->M);
+    TRY(frame_full_make(&b->floors, n, err));
     b->storey_m = calloc((size_t)n, sizeof *b->storey_m);
-    return b->K && b->M && b->storey_m ? STATUS_OK
-                                       : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
+    return b->storey_m ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
 }
 
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
@@ -228,29 +226,25 @@ static void shear_building(int n, const Storey storey[], double K[])
     }
 }
 
-static Status bending_building(int n, const Storey storey[], double K[], double M[], Err *err)
-{
-    Beam beam[FLOORS_MAX];
-    for (int j = 0; j < n; j++)
-        beam[j] =
-            (Beam){.EI = storey[j].bending, .kGA = storey[j].shear * storey[j].height, .length = storey[j].height};
-    return beam_cantilever(n, beam, K, M, err);
-}
-
 static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
     Storeys all = {0};
+    Beam beam[FLOORS_MAX];
     TRY(sheet_take(&STOREYS, folder, &all, err));
-    const Storey *storey = all.storey;
-    TRY(allocate(b, all.n, err));
-    if (storey[0].bending > 0)
-        TRY(bending_building(b->n, storey, b->K, b->M, err));
+    const int n = all.n;
+    TRY(allocate(b, n, err));
+    for (int j = 0; j < n; j++) {
+        const Storey *s = &all.storey[j];
+        beam[j] = (Beam){.EI = s->bending, .kGA = s->shear * s->height, .length = s->height};
+    }
+    if (all.storey[0].bending > 0)
+        TRY(beam_cantilever(n, beam, b->floors.K, b->floors.M, err));
     else
-        shear_building(b->n, storey, b->K);
-    memset(b->M, 0, (size_t)(b->n * b->n) * sizeof *b->M);
-    for (int j = 0; j < b->n; j++) {
-        b->M[j * b->n + j] = storey[j].mass;
-        b->storey_m[j] = storey[j].height;
+        shear_building(n, all.storey, b->floors.K);
+    memset(b->floors.M, 0, (size_t)(n * n) * sizeof *b->floors.M);
+    for (int j = 0; j < n; j++) {
+        b->floors.M[j * n + j] = all.storey[j].mass;
+        b->storey_m[j] = all.storey[j].height;
     }
     return STATUS_OK;
 }
@@ -268,14 +262,15 @@ static Status reduce_frame(BuildingFiles *b, const Frame *f, const BuildingOptio
 /* The floors alone are the first rows; what they do not miss is no model of its own. */
 static Status condense_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
 {
-    TRY(allocate(b, f->n_floors, err));
-    memcpy(b->storey_m, f->storey_m, (size_t)b->n * sizeof *b->storey_m);
+    const int n = f->n_floors;
+    TRY(allocate(b, n, err));
+    memcpy(b->storey_m, f->storey_m, (size_t)n * sizeof *b->storey_m);
     TRY(reduce_frame(b, f, o, FRAME_FLOORS, err));
-    for (int j = 0; j < b->n; j++) {
-        memcpy(b->K + j * b->n, b->full.K + j * b->full.n, (size_t)b->n * sizeof *b->K);
-        memcpy(b->M + j * b->n, b->full.M + j * b->full.n, (size_t)b->n * sizeof *b->M);
+    for (int j = 0; j < n; j++) {
+        memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, (size_t)n * sizeof *b->floors.K);
+        memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, (size_t)n * sizeof *b->floors.M);
     }
-    if (b->full.n == b->n)
+    if (b->full.n == n)
         frame_full_free(&b->full);
     return STATUS_OK;
 }
@@ -286,7 +281,7 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
     Frame f;
     TRY(frame_read(&f, o, err));
     snprintf(b->note, sizeof b->note, "%s", f.note);
-    Status status = b->K ? STATUS_OK : condense_frame(b, &f, o, err);
+    Status status = b->floors.n ? STATUS_OK : condense_frame(b, &f, o, err);
     if (status == STATUS_OK && o->modes > 0)
         status = reduce_frame(b, &f, o, FRAME_FULL, err);
     frame_free(&f);
@@ -353,9 +348,8 @@ Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
 
 void building_files_free(BuildingFiles *b)
 {
-    free(b->K);
-    free(b->M);
     free(b->storey_m);
+    frame_full_free(&b->floors);
     frame_full_free(&b->full);
     memset(b, 0, sizeof *b);
 }

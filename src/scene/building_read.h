@@ -10,13 +10,11 @@
 #include "scene/options.h"
 
 typedef struct {
-    int n;
     char note[400];   /* Frame.note */
-    double *K, *M;    /* (n, n) [N/m], [kg], symmetric and positive definite */
-    double *storey_m; /* (n); NULL: the files have no heights */
-    FrameFull
-        full; /* of a frame: with building.modes the full model, else the floors with what they miss of the ground's
-                       * motion (scene/frame.h); n = 0: the floors are all */
+    FrameFull floors; /* symmetric and positive definite */
+    FrameFull full;   /* of a frame: with building.modes the full model, else the floors with what they miss of the
+                       * ground's motion (scene/frame.h); n = 0: the floors are all */
+    double *storey_m; /* (floors.n); NULL: the files have no heights */
 } BuildingFiles;
 
 typedef struct {

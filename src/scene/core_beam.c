@@ -191,7 +191,7 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     }
     TRY(beam_cantilever(n, beam, c->K, c->M, err));
     TRY(linalg_modes(n, c->K, c->M, c->omega, c->phi, err));
-    linalg_participation(n, c->M, c->phi, c->gamma);
+    linalg_participation(n, c->M, NULL, c->phi, c->gamma);
     return STATUS_OK;
 }
 
