@@ -25,14 +25,6 @@ typedef struct {
     double by_theory[2], zero_gap[FLOORS_MAX]; /* [Hz] first mode of the core by CoreTheory; modes of both as one */
 } Model;
 
-static double row_mass(const Building *b, int j)
-{
-    double sum = 0;
-    for (int k = 0; k < b->n; k++)
-        sum += b->M[j * b->n + k];
-    return sum;
-}
-
 static double share(double gamma, double mass)
 {
     return gamma * gamma / mass;
@@ -103,14 +95,14 @@ static void print_building(const Model *m)
     const double mass = building_mass(&m->b);
     double between = mass;
     for (int j = 0; j < m->b.n; j++)
-        between -= row_mass(&m->b, j);
+        between -= building_floor_mass(&m->b, j);
     printf("%s: %d floor%s, %.0f kg, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", mass,
            1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
         printf("of it %.0f kg are between the floors\n", between);
     if (m->frame.n[FRAME_NODES])
-        printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n[FRAME_NODES], m->frame.n[FRAME_ELEMENTS],
-               m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
+        printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n[FRAME_NODES],
+               m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
 }
 
 static void print_core(const Model *m)
@@ -133,7 +125,7 @@ static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *core
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
         json_array_append_new(floors, json_pack("{s:i, s:f, s:f, s:f}", "floor", j + 1, "z_m", z, "storey_m",
-                                                b->storey_m[j], "mass_kg", row_mass(b, j)));
+                                                b->storey_m[j], "mass_kg", building_floor_mass(b, j)));
         json_array_append_new(
             modes, json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", b->model.omega[j] / (2 * M_PI), "mass_share",
                              share(b->model.gamma[j], building_mass(b)), "damping", b->model.zeta[j]));
@@ -208,8 +200,8 @@ static Status print_json(const Model *m, Err *err)
     json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
     add_rows(m, floors, modes, cores);
     json_t *o = json_pack("{s:o, s:f, s:i, s:i, s:o, s:o}", "model", json_words(m->s.building.model), "mass_kg",
-                          building_mass(&m->b), "nodes", m->frame.n[FRAME_NODES], "elements", m->frame.n[FRAME_ELEMENTS], "floors",
-                          floors, "modes", modes);
+                          building_mass(&m->b), "nodes", m->frame.n[FRAME_NODES], "elements",
+                          m->frame.n[FRAME_ELEMENTS], "floors", floors, "modes", modes);
     if (m->has_core)
         put_core(o, m, cores);
     json_decref(cores);
@@ -220,8 +212,7 @@ static Status write_svg(const Model *m, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    building_svg(o.stream, &m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL);
-    return output_close(&o, err);
+    return output_end(&o, building_svg(o.stream, &m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, err), err);
 }
 
 static Status show(const Args *args, const Model *m, Err *err)

@@ -63,8 +63,8 @@ static const double PERIOD_MIN = 1e-6;
 static double mean_floor_mass(const Building *b)
 {
     double sum = 0;
-    for (int i = 0; i < b->n * b->n; i++)
-        sum += b->M[i];
+    for (int j = 0; j < b->n; j++)
+        sum += building_floor_mass(b, j);
     return sum / b->n;
 }
 
@@ -266,6 +266,14 @@ double building_mass(const Building *b)
     double sum = 0;
     for (int i = 0; i < b->model.n; i++)
         sum += b->model.gamma[i] * b->model.gamma[i];
+    return sum;
+}
+
+double building_floor_mass(const Building *b, int floor)
+{
+    double sum = 0;
+    for (int k = 0; k < b->n; k++)
+        sum += b->M[floor * b->n + k];
     return sum;
 }
 

@@ -68,6 +68,9 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err);
 /* [kg] that the ground moves, r' M r: the floors, of a frame also what is between them. */
 double building_mass(const Building *b);
 
+/* [kg] Row sum of M: what a floor's inertia force is under a uniform acceleration. floor: from 0. */
+double building_floor_mass(const Building *b, int floor);
+
 /* The damping ratios once more, by these options. */
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);

@@ -9,7 +9,9 @@ enum { MODES_SHOWN = 10 };
 
 typedef struct {
     FILE *out;
+    const Building *b;
     double x0, z1, scale; /* [m] left edge and top of the building, [px/m] */
+    double ground;        /* [m] where the first storey begins */
     double right;         /* [px] where the building ends */
 } Drawing;
 
@@ -21,6 +23,14 @@ static double px(const Drawing *d, double x)
 static double py(const Drawing *d, double z)
 {
     return TOP + (d->z1 - z) * d->scale;
+}
+
+static double height_of(const Building *b, int floor)
+{
+    double z = 0;
+    for (int j = 0; j < floor; j++)
+        z += b->storey_m[j];
+    return z;
 }
 
 /* Names come from users. */
@@ -73,111 +83,94 @@ static void draw_frame(const Drawing *d, const Frame *f)
         const FrameNode *n = &f->node[i];
         draw_support(d, n);
         if (n->floor)
-            fprintf(d->out, "<circle class=\"n\" cx=\"%.2f\" cy=\"%.2f\" r=\"2\"><title>floor %d</title></circle>\n",
-                    px(d, n->x), py(d, n->z), n->floor);
+            fprintf(d->out,
+                    "<circle class=\"n\" cx=\"%.2f\" cy=\"%.2f\" r=\"3\"><title>floor %d: %.4g kg</title></circle>\n",
+                    px(d, n->x), py(d, n->z), n->floor, building_floor_mass(d->b, n->floor - 1));
     }
 }
 
-static void draw_stick(const Drawing *d, const Building *b)
+/* Storeys as a frame of one column. */
+static Status make_stick(Frame *f, const Building *b, Err *err)
 {
-    double z = 0, mass, largest = 0;
-    for (int j = 0; j < b->n; j++)
-        largest = fmax(largest, b->M[j * b->n + j]);
-    fprintf(d->out, "<path class=\"s f\" d=\"M%.2f %.2f h40\"/>\n", px(d, 0) - 20, py(d, 0));
-    for (int j = 0; j < b->n; j++) {
-        const double x = px(d, 0), foot = py(d, z);
-        z += b->storey_m[j];
-        mass = b->M[j * b->n + j];
-        fprintf(d->out, "<line class=\"e\" x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\"/>\n", x, foot, x, py(d, z));
-        fprintf(d->out,
-                "<circle class=\"n\" cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\"><title>floor %d: %.4g kg</title></circle>\n", x,
-                py(d, z), 3 + 5 * sqrt(mass / largest), j + 1, mass);
+    TRY(frame_add_section(f, &(FrameSection){.name = "storey", .area = 1, .inertia = 1, .E = 1}, err));
+    for (int j = 0; j <= b->n; j++) {
+        FrameNode node = {.z = height_of(b, j), .floor = j, .fixed = {!j, !j, !j}};
+        FrameElement e = {.node = {j - 1, j}};
+        snprintf(node.name, sizeof node.name, "%d", j);
+        snprintf(e.name, sizeof e.name, "%d", j);
+        TRY(frame_add_node(f, &node, err));
+        if (j > 0)
+            TRY(frame_add_element(f, &e, err));
     }
+    return STATUS_OK;
 }
 
 /* ---- floors and modes ----------------------------------------------------------------------------------------- */
 
-/* Height of a floor in the drawing: ground is where the first storey begins. */
-static double floor_z(const Building *b, double ground, int floor)
+static void draw_floor_labels(const Drawing *d)
 {
-    for (int j = 0; j < floor; j++)
-        ground += b->storey_m[j];
-    return ground;
-}
-
-static void draw_floor_labels(const Drawing *d, const Building *b, double ground)
-{
-    const int step = 1 + b->n / 25;
-    for (int k = 0; k <= b->n; k += step)
+    const int step = 1 + d->b->n / 25;
+    for (int k = 0; k <= d->b->n; k += step)
         fprintf(d->out, "<text x=\"%.2f\" y=\"%.2f\">%d: %.4g m</text>\n", d->right + 12,
-                py(d, floor_z(b, ground, k)) + 4, k, floor_z(b, 0, k));
+                py(d, d->ground + height_of(d->b, k)) + 4, k, height_of(d->b, k));
 }
 
-static void draw_mode(const Drawing *d, const Building *b, double ground, int mode)
+static void draw_mode(const Drawing *d, int mode)
 {
-    const double left = d->right + LABELS + MODE_WIDTH * mode, middle = left + 0.5 * MODE_WIDTH;
-    double largest = 0, mass = 0;
+    const Building *b = d->b;
+    const double middle = d->right + LABELS + MODE_WIDTH * (mode + 0.5), foot = py(d, d->ground);
+    double largest = 0;
     for (int j = 0; j < b->n; j++)
         largest = fmax(largest, fabs(b->phi[j * b->n + mode]));
-    for (int i = 0; i < b->n * b->n; i++)
-        mass += b->M[i];
-    fprintf(
-        d->out,
-        "<line class=\"a\" x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\"/>\n<polyline class=\"m\" points=\"%.2f,%.2f",
-        middle, py(d, ground), middle, py(d, floor_z(b, ground, b->n)), middle, py(d, ground));
+    fprintf(d->out, "<path class=\"a\" d=\"M%.2f %.2f V%.2f\"/>\n<polyline class=\"m\" points=\"%.2f,%.2f", middle,
+            foot, py(d, d->ground + height_of(b, b->n)), middle, foot);
     for (int j = 0; j < b->n; j++)
         fprintf(d->out, " %.2f,%.2f", middle + 0.42 * MODE_WIDTH * b->phi[j * b->n + mode] / largest,
-                py(d, floor_z(b, ground, j + 1)));
+                py(d, d->ground + height_of(b, j + 1)));
     fprintf(d->out,
             "\"/>\n<text class=\"c\" x=\"%.2f\" y=\"%.2f\">%.4g s</text><text class=\"c\" x=\"%.2f\" "
             "y=\"%.2f\">%.3g %%</text>\n",
             middle, TOP - 26, 2 * M_PI / b->omega[mode], middle, TOP - 12,
-            100 * b->gamma[mode] * b->gamma[mode] / mass);
+            100 * b->gamma[mode] * b->gamma[mode] / building_mass(b));
 }
 
 /* ---- the page ------------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    double x0, x1, z0, z1, ground; /* [m] */
-} Extent;
-
-static Extent find_extent(const Building *b, const Frame *f)
+static void draw(FILE *out, const Building *b, const Frame *f)
 {
-    Extent e = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0};
-    const double height = floor_z(b, 0, b->n);
-    if (!f)
-        return (Extent){-0.1 * height, 0.1 * height, 0, height, 0};
-    for (int i = 0; i < f->n[FRAME_NODES]; i++) {
-        const FrameNode *n = &f->node[i];
-        e.x0 = fmin(e.x0, n->x);
-        e.x1 = fmax(e.x1, n->x);
-        e.z0 = fmin(e.z0, n->z);
-        e.z1 = fmax(e.z1, n->z);
+    double x0 = HUGE_VAL, x1 = -HUGE_VAL, z0 = HUGE_VAL, z1 = -HUGE_VAL, ground = 0;
+    for (const FrameNode *n = f->node; n < f->node + f->n[FRAME_NODES]; n++) {
+        x0 = fmin(x0, n->x);
+        x1 = fmax(x1, n->x);
+        z0 = fmin(z0, n->z);
+        z1 = fmax(z1, n->z);
         if (n->floor == b->n)
-            e.ground = n->z - height;
+            ground = n->z - height_of(b, b->n);
     }
-    return e;
-}
-
-void building_svg(FILE *out, const Building *b, const Frame *f)
-{
-    const Extent e = find_extent(b, f);
-    const double scale = fmin(HEIGHT / (e.z1 - e.z0), WIDTH_MAX / fmax(e.x1 - e.x0, 1e-9));
-    Drawing d = {.out = out, .x0 = e.x0, .z1 = e.z1, .scale = scale, .right = LEFT + (e.x1 - e.x0) * scale};
+    const double scale = fmin(HEIGHT / (z1 - z0), WIDTH_MAX / fmax(x1 - x0, 1e-9)), across = (x1 - x0) * scale;
+    const Drawing d = {
+        .out = out, .b = b, .x0 = x0, .z1 = z1, .scale = scale, .ground = ground, .right = LEFT + across};
     const int modes = b->n < MODES_SHOWN ? b->n : MODES_SHOWN;
-    const double width = d.right + LABELS + MODE_WIDTH * modes + 20, height = TOP + (e.z1 - e.z0) * scale + 40;
+    const double width = d.right + LABELS + MODE_WIDTH * modes + 20, height = TOP + (z1 - z0) * scale + 40;
     fprintf(out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\">\n"
             "<style>.e{stroke:#345;stroke-width:1.5}.n{fill:#c40}.p{fill:#fff;stroke:#345}.s{fill:#fff;stroke:#345}"
             ".f{fill:#345}.a{stroke:#bbb}.m{fill:none;stroke:#06c;stroke-width:1.5}text{font:12px sans-serif;fill:#222}"
             ".c{text-anchor:middle}</style>\n<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height);
-    if (f)
-        draw_frame(&d, f);
-    else
-        draw_stick(&d, b);
-    draw_floor_labels(&d, b, e.ground);
+    draw_frame(&d, f);
+    draw_floor_labels(&d);
     for (int mode = 0; mode < modes; mode++)
-        draw_mode(&d, b, e.ground, mode);
+        draw_mode(&d, mode);
     fprintf(out, "</svg>\n");
+}
+
+Status building_svg(FILE *out, const Building *b, const Frame *f, Err *err)
+{
+    Frame stick = {0};
+    const Status status = f ? STATUS_OK : make_stick(&stick, b, err);
+    if (status == STATUS_OK)
+        draw(out, b, f ? f : &stick);
+    frame_free(&stick);
+    return status;
 }

@@ -9,7 +9,7 @@
 #include "scene/building.h"
 #include "scene/frame.h"
 
-/* frame NULL: storeys as a stick with a mass at each floor. */
-void building_svg(FILE *out, const Building *b, const Frame *frame);
+/* frame NULL: storeys as a stick. */
+Status building_svg(FILE *out, const Building *b, const Frame *frame, Err *err);
 
 #endif

@@ -16,9 +16,7 @@ static void summarise_mass(SceneSummary *s, const Building *b)
     s->floor_mass_max_kg = -HUGE_VAL;
     s->mass_kg = building_mass(b);
     for (int j = 0; j < b->n; j++) {
-        double row = 0;
-        for (int k = 0; k < b->n; k++)
-            row += b->M[j * b->n + k];
+        const double row = building_floor_mass(b, j);
         if (row < s->floor_mass_min_kg) {
             s->floor_mass_min_kg = row;
             s->lightest = j + 1;
