@@ -170,7 +170,7 @@ static double plan_width(const CheckedScene *p, const char **what)
     double least = INFINITY, most = -INFINITY;
     *what = "width";
     if (frame_is(p->s->building.model) && frame_read(&f, &p->s->building, &(Err){0}) == STATUS_OK)
-        for (int i = 0; i < f.n_nodes; i++) {
+        for (int i = 0; i < f.n[FRAME_NODES]; i++) {
             least = fmin(least, f.node[i].x);
             most = fmax(most, f.node[i].x);
         }
