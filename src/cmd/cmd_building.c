@@ -60,7 +60,7 @@ static Status make_core(const Args *args, Model *m, Err *err)
         TRY(core_beam_first_hz(core, k, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, &m->by_theory[k],
                                err));
     TRY(core_beam_make(&m->core, core, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, err));
-    return core_beam_joined_hz(&m->core, &m->b, m->zero_gap, err);
+    return building_joined_hz(&m->core, &m->b, m->zero_gap, err);
 }
 
 static Status open_model(const Args *args, Model *m, Err *err)

@@ -36,6 +36,7 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "scene/core_beam.h"
 #include "scene/options.h"
 
 /* In mass-normalised modes: r the motion of the ground, gamma_i = phi_i' M r. */
@@ -74,5 +75,11 @@ double building_floor_mass(const Building *b, int floor);
 /* The damping ratios once more, by these options. */
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);
+
+/* K and M (m, m) of the building's model with the core rigidly connected to its floors. */
+void building_join_core(const CoreBeam *c, const BuildingModel *building, double K[], double M[]);
+
+/* [Hz] of the lowest n modes of that. */
+Status building_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err);
 
 #endif

@@ -214,30 +214,3 @@ const char *core_theory_word(CoreTheory theory)
     static const char *const WORDS[] = {CORE_THEORY_LIST(CHOICE_WORD)};
     return WORDS[theory];
 }
-
-void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[], double M[])
-{
-    const int m = building->n;
-    memcpy(K, building->K, (size_t)(m * m) * sizeof *K);
-    memcpy(M, building->M, (size_t)(m * m) * sizeof *M);
-    for (int i = 0; i < c->n; i++)
-        for (int j = 0; j < c->n; j++) {
-            K[i * m + j] += c->K[i * c->n + j];
-            M[i * m + j] += c->M[i * c->n + j];
-        }
-}
-
-Status core_beam_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err)
-{
-    const int m = b->model.n, mm = m * m;
-    double *K = malloc((3 * (size_t)mm + (size_t)m) * sizeof *K);
-    if (!K)
-        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d degrees of freedom", m);
-    double *M = K + mm, *phi = M + mm, *omega = phi + mm;
-    core_beam_join(c, &b->model, K, M);
-    const Status status = linalg_modes(m, K, M, omega, phi, err);
-    for (int i = 0; i < b->n && status == STATUS_OK; i++)
-        hz[i] = omega[i] / (2 * M_PI);
-    free(K);
-    return status;
-}

@@ -26,7 +26,7 @@
 #ifndef IMTET_SCENE_CORE_BEAM_H
 #define IMTET_SCENE_CORE_BEAM_H
 
-#include "scene/building.h"
+#include "base/status.h"
 #include "scene/options.h"
 
 typedef struct {
@@ -54,12 +54,6 @@ typedef struct {
 /* storey_m (n): heights. */
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
-
-/* K and M (m, m) of the building's model with the core rigidly connected to its floors. */
-void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[], double M[]);
-
-/* [Hz] of the lowest n modes of that. */
-Status core_beam_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err);
 
 /* The section in storey 0..n-1. */
 typedef struct {

@@ -90,7 +90,7 @@ static Status make_rigid(LinearSystem *s, const Building *b, const CoreBeam *cor
         return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", s->n);
     double *M = K + mm, *psi = M + mm;
     int *like = (int *)(psi + mm);
-    core_beam_join(core, &b->model, K, M);
+    building_join_core(core, &b->model, K, M);
     const Status status = linalg_modes(s->m, K, M, s->omega, psi, err);
     if (status == STATUS_OK) {
         set_rigid_modes(s, b, core, psi);

@@ -149,7 +149,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
         options.width_m = d.side;
     Status status = core_beam_make(core, &options, n, scene->building.storey_m, d.t_base, d.t_top, err);
     if (status == STATUS_OK)
-        status = core_beam_joined_hz(core, &scene->building, zero_gap_hz, err);
+        status = building_joined_hz(core, &scene->building, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
         building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
         core_hz[i] = core->omega[i] / (2 * M_PI);
