@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "scene/core_beam.h"
+#include "scene/building.h"
 #include "bench/paper.h"
 
 static inline SceneOptions scene_defaults(void)

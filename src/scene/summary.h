@@ -8,7 +8,7 @@
 #ifndef IMTET_SCENE_SUMMARY_H
 #define IMTET_SCENE_SUMMARY_H
 
-#include "scene/core_beam.h"
+#include "scene/building.h"
 #include "motion/motion.h"
 
 typedef struct {
