@@ -78,7 +78,7 @@ static int set_up(void **state)
                  "'search.limits=core_stress_pa<=1e10' --out",
                  "tower", "") != 0 ||
         imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
-                 "problem.objectives=3 --max-evals 60 --set search.population=16 --set search.initial=40 --out",
+                 "problem.objectives=3 --max-evals 90 --set search.population=16 --set search.initial=40 --out",
                  "dtlz", "") != 0 ||
         imtet_on("report", "tower", "") != 0 || imtet_on("report", "dtlz", "") != 0)
         return 1;
