@@ -361,7 +361,7 @@ TEST(an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures)
     assert_null(strstr(text, "uncorrected"));
     assert_non_null(strstr(text, "high-pass 0.1 Hz"));
     assert_non_null(strstr(text, "low-pass 20 Hz"));
-    assert_non_null(strstr(text, "\nrecorded "));
+    assert_non_null(strstr(text, "\n  recorded\n"));
     free(text);
 }
 

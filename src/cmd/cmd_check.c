@@ -362,36 +362,14 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
 
 /* ---- the command ---------------------------------------------------------------------------------------------- */
 
-static void print_value(const json_t *value)
+/* Faults and warnings were said as they were found. */
+static void list_findings(json_t *o)
 {
-    char text[FIGURES_CELL_MAX];
-    size_t i;
-    json_t *item;
-    json_array_foreach(value, i, item) print_value(item);
-    figures_cell(value, text);
-    if (!json_is_array(value))
-        printf(" %s", text);
-}
-
-/* What was found, a line for each figure: its unit is the end of its name. */
-static void print_figures(json_t *o)
-{
-    const char *section, *key;
-    json_t *figures, *value;
-    json_object_foreach(o, section, figures)
-    {
-        if (strcmp(section, "faults") == 0 || strcmp(section, "warnings") == 0)
-            continue;
-        printf("%s", section);
-        if (!json_is_object(figures))
-            print_value(figures);
-        json_object_foreach(figures, key, value)
-        {
-            printf("\n  %-24s", key);
-            print_value(value);
-        }
-        putchar('\n');
-    }
+    json_t *found = json_copy(o);
+    json_object_del(found, "faults");
+    json_object_del(found, "warnings");
+    figures_list(0, found);
+    json_decref(found);
 }
 
 static Status verdict(const Args *args, const Check *c, Err *err)
@@ -402,7 +380,7 @@ static Status verdict(const Args *args, const Check *c, Err *err)
     if (c->as_json)
         TRY(show_json(json_incref(c->out), err));
     else
-        print_figures(c->out);
+        list_findings(c->out);
     if (faults)
         return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
     if (!c->as_json && warnings)

@@ -300,11 +300,10 @@ static json_t *describe(const Spectrum *s)
     const MotionFigures *r = &s->recorded;
     const Motion *m = &s->motion;
     Curve c[CURVES_MAX];
-    json_t *o =
-        json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I, s:f, s:f, s:f, s:f}", "motion", json_words(m->name), "format",
-                  m->format, "channel", json_words(m->channel), "processed", json_words(m->processed), "corrected",
-                  is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n,
-                  "scale", m->scale, "stretch", m->stretch, "step_s", m->dt_s, "damping", DAMPING);
+    json_t *o = json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I, s:f, s:f, s:f, s:f}", "motion", json_words(m->name),
+                          "format", m->format, "channel", json_words(m->channel), "processed", json_words(m->processed),
+                          "corrected", is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n,
+                          "scale", m->scale, "stretch", m->stretch, "step_s", m->dt_s, "damping", DAMPING);
     add_figures(o, &s->figures);
     curves_of_one(s, c);
     for (size_t k = 0; k < CURVES_MAX; k++)
@@ -327,42 +326,6 @@ static void add_histories(json_t *o, const Spectrum *s)
         json_object_set_new(o, c[k].name, json_numbers(s->motion.n, c[k].x));
 }
 
-static void print_head(const Spectrum *s)
-{
-    const Motion *m = &s->motion;
-    char peak[MOTION_PEAK_TEXT_MAX], scaling[SCALINGS_TEXT_MAX];
-    motion_peak_text(m, peak);
-    printf("%s: %zu samples every %g s, %s, format %s%s%s\n", m->name, m->n, m->dt_s, peak, m->format,
-           m->channel[0] ? ", channel " : "", m->channel);
-    if (m->processed[0])
-        printf("processed %s\n", m->processed);
-    if (motion_scalings(&s->options, scaling))
-        printf("scaled    x %.5g: %s\n", m->scale, scaling);
-    if (s->code.kind)
-        printf("target    %g to %g s; ln(spectrum / target) is %.3g in the root mean square\n", s->code.from_s,
-               s->code.to_s, target_misfit(m, &s->code));
-    if (m->warning[0])
-        printf("warning   %s\n", m->warning);
-}
-
-static void print_figures(const Spectrum *s)
-{
-    json_t *table = json_array(), *row = figures_row(table);
-    json_object_set_new(row, "", json_string("motion"));
-    add_figures(row, &s->figures);
-    if (s->is_processed) {
-        row = figures_row(table);
-        json_object_set_new(row, "", json_string("recorded"));
-        add_figures(row, &s->recorded);
-    }
-    putchar('\n');
-    figures_print(table);
-    puts(is_corrected(s)
-             ? "\nresponse at 5 % damping"
-             : "pgd: uncorrected: the drift of the record is in it (motion.baseline, motion.highpass_hz)\n\n"
-               "response at 5 % damping");
-}
-
 /* All that is asked for; the table where nothing is. */
 static Status give_one(const Args *args, const Spectrum *s, Err *err)
 {
@@ -381,8 +344,13 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
     }
     if (csv || times || svg)
         return STATUS_OK;
-    print_head(s);
-    print_figures(s);
+    json_t *o = describe(s);
+    show_motion(stdout, &s->motion, 0);
+    figures_list(2, o);
+    json_decref(o);
+    puts(is_corrected(s) ? "\nresponse at 5 % damping"
+                         : "pgd_m: uncorrected: the drift of the record is in it (motion.baseline, "
+                           "motion.highpass_hz)\n\nresponse at 5 % damping");
     print_curves(CURVES_MAX, c);
     return STATUS_OK;
 }
@@ -417,7 +385,7 @@ static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[]
         return STATUS_OK;
     for (size_t k = 0; k < n; k++) {
         printf("%zu  ", k + 1);
-        print_head(&s[k]);
+        show_motion(stdout, &s[k].motion, 0);
     }
     puts("\npseudo-acceleration [g] at 5 % damping");
     print_curves(n + 3, c);

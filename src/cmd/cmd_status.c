@@ -43,46 +43,6 @@ static Failures failures_of(const Run *run)
 
 /* -- one run ------------------------------------------------------------------------------------------------------- */
 
-static void print_head(const char *folder, const Run *run, const Standing *s)
-{
-    char worked[32], left[32], pace[32] = "-";
-    const double per_second = progress_rate(&s->progress);
-    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
-    duration_words(s->seconds, worked);
-    duration_words(s->left_s, left);
-    if (isfinite(per_second))
-        snprintf(pace, sizeof pace, "%.3g", per_second);
-    printf("%s: %s", folder, state_words(s->state));
-    if (s->state == RUN_RUNNING)
-        printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
-    else if (last && last->stopped[0])
-        printf(" (%s)", last->stopped);
-    puts("");
-    if (run_is_screened(run))
-        printf("%zu designs screened or finished, as much as ", run_first_polished(run));
-    printf("%zu of %ld %s, ", s->progress.simulated, s->max_evals, run_is_screened(run) ? "evaluations" : "simulated");
-    if (run->n_repeats > 0)
-        printf("%zu of them repeats, ", run->n_repeats);
-    printf("%zu failed, %zu on the front", s->n_failed, run->n_front);
-    if (s->n_polished > 0)
-        printf(", %zu polished designs", s->n_polished);
-    printf("\n%zu generations in %s, %zu %s; %s %s/s", run->n_generations, worked, run->n_sessions,
-           run->n_sessions == 1 ? "session" : "sessions", pace, run_is_screened(run) ? "evaluations" : "simulations");
-    if (s->state != RUN_FINISHED)
-        printf(", %s left", left);
-    if (last)
-        printf("\nstarted %s%s%s", last->started, last->ended[0] ? ", ended " : "", last->ended);
-    puts("");
-    const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
-    if (isfinite(e.waiting)) {
-        char effort[160];
-        effort_words(&e, effort);
-        puts(effort);
-    }
-    if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
-        printf("resume it with: imtet optimize %s\n", folder);
-}
-
 static json_t *json_generations(const Run *run)
 {
     json_t *list = json_array();
@@ -121,13 +81,6 @@ static void print_generations(const Run *run, double expected)
         puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
     if (n > 0)
         show_expected_gain(expected);
-}
-
-static void print_failures(const Failures *f)
-{
-    for (size_t k = 0; k < f->n_outcomes; k++)
-        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], outcome_word(f->first[k]->outcome),
-               f->first[k]->reason, f->count[k] > 1 ? ", for example" : "");
 }
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
@@ -197,23 +150,27 @@ static json_t *json_review(const FrontReview *r)
 static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f)
 {
     json_t *o = json_pack(
-        "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
+        "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
         state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals", (json_int_t)s->max_evals,
         "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
-        "hypervolume", json_number(s->hypervolume), "simulations_per_second", json_number(progress_rate(&s->progress)),
-        "seconds", json_number(s->seconds), "seconds_left", json_number(s->left_s));
+        "repeats", (json_int_t)run->n_repeats, "hypervolume", json_number(s->hypervolume), "simulations_per_second",
+        json_number(progress_rate(&s->progress)), "seconds", json_number(s->seconds), "seconds_left",
+        json_number(s->left_s), "failures", json_failures(f));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
-    json_object_set_new(o, "repeats", json_integer((json_int_t)run->n_repeats));
-    json_object_set_new(o, "generations", json_generations(run));
-    json_object_set_new(o, "failures", json_failures(f));
-    json_object_set_new(o, "sessions", json_sessions(run));
+    return o;
+}
+
+/* What people read in tables, or wait for: designs of the front are simulated. */
+static void describe_more(json_t *o, const Run *run, const Standing *s)
+{
     const FrontReview review = front_review(run);
+    json_object_set_new(o, "generations", json_generations(run));
+    json_object_set_new(o, "sessions", json_sessions(run));
     json_object_set_new(o, "front_review", review.n_gaps > 0 ? json_review(&review) : json_null());
     if (review.n_gaps > 0 && s->state == RUN_FINISHED)
         review_closings(json_object_get(o, "front_review"), run);
-    return o;
 }
 
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
@@ -282,6 +239,30 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
 
 /* -- one run ------------------------------------------------------------------------------------------------------- */
 
+/* What the JSON says of the run, in lines. */
+static void print_head(const char *folder, const Run *run, const Standing *s, json_t *described)
+{
+    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
+    const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
+    char effort[160];
+    printf("%s: %s", folder, state_words(s->state));
+    if (s->state == RUN_RUNNING)
+        printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
+    else if (last && last->stopped[0])
+        printf(" (%s)", last->stopped);
+    puts("");
+    json_object_del(described, "run");
+    json_object_del(described, "state");
+    json_object_del(described, "process");
+    figures_list(2, described);
+    if (isfinite(e.waiting)) {
+        effort_words(&e, effort);
+        puts(effort);
+    }
+    if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
+        printf("resume it with: imtet optimize %s\n", folder);
+}
+
 static Status run(const Args *args, Err *err)
 {
     Run run;
@@ -294,15 +275,16 @@ static Status run(const Args *args, Err *err)
     const Failures failures = failures_of(&run);
     double expected = NAN;
     Status status = improvement_expected(&run, &expected, err);
+    json_t *o = describe(folder, &run, &standing, &failures);
     if (status == STATUS_OK && args_has(args, "--json")) {
-        json_t *o = describe(folder, &run, &standing, &failures);
+        describe_more(o, &run, &standing);
         json_object_set_new(o, "expected_gain", json_number(expected));
-        status = show_json(o, err);
+        status = show_json(json_incref(o), err);
     } else if (status == STATUS_OK) {
-        print_head(folder, &run, &standing);
+        print_head(folder, &run, &standing, o);
         print_generations(&run, expected);
-        print_failures(&failures);
     }
+    json_decref(o);
     run_free(&run);
     return status;
 }

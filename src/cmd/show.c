@@ -44,6 +44,8 @@ void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX])
         snprintf(text, FIGURES_CELL_MAX, "%s", cell ? json_string_value(cell) : "");
     else if (json_is_integer(cell))
         snprintf(text, FIGURES_CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
+    else if (json_is_boolean(cell))
+        snprintf(text, FIGURES_CELL_MAX, "%s", json_is_true(cell) ? "yes" : "no");
     else
         figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, text);
     if (json_is_real(cell))
@@ -108,6 +110,45 @@ void figures_print(json_t *table)
     json_array_foreach(table, i, row) print_row(columns, row);
     json_decref(columns);
     json_decref(table);
+}
+
+enum { LISTED_MAX = 32 }; /* numbers in a line: more are not for the eye */
+
+static void list_value(const json_t *value)
+{
+    char text[FIGURES_CELL_MAX];
+    size_t i;
+    json_t *item;
+    json_array_foreach(value, i, item) list_value(item);
+    figures_cell(value, text);
+    if (!json_is_array(value))
+        printf(" %s", text);
+}
+
+/* Nothing to be seen: no value, no text, or rows, which a table shows. */
+static int is_listed(const json_t *value)
+{
+    const size_t n = json_array_size(value);
+    return !json_is_null(value) && !(json_is_string(value) && !json_string_length(value)) &&
+           (!json_is_array(value) || (n > 0 && n <= LISTED_MAX && !json_is_object(json_array_get(value, 0))));
+}
+
+void figures_list(int indent, json_t *o)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach(o, key, value)
+    {
+        if (!is_listed(value) || (json_is_object(value) && json_object_size(value) == 0))
+            continue;
+        printf("%*s%s", indent, "", key);
+        if (!json_is_object(value)) {
+            printf("%*s", 24 - (int)strlen(key), "");
+            list_value(value);
+        }
+        putchar('\n');
+        figures_list(indent + 2, value);
+    }
 }
 
 static void write_cell(FILE *out, const json_t *cell)

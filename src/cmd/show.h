@@ -23,6 +23,9 @@ enum { FIGURES_CELL_MAX = 600 };
 void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX]);
 
 void figures_print(json_t *table);
+
+/* An object on standard output, a line for every member that is neither empty nor rows; borrowed. */
+void figures_list(int indent, json_t *o);
 Status figures_csv(json_t *table, const char *path, Err *err);
 Status show_json(json_t *all, Err *err);
 

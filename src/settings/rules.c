@@ -14,21 +14,14 @@ typedef struct {
     void *user;
 } Rules;
 
-#define AT(field) offsetof(Settings, field)
-
-/* The fields of a rule, the one to change first. */
-#define TIED(a, b, c) ((const size_t[RULE_FIELDS]){AT(a), AT(b), AT(c)})
-#define PAIR(a, b)    TIED(a, b, b)
-
-__attribute__((format(printf, 3, 4))) static void break_rule(const Rules *r, const size_t fields[RULE_FIELDS],
-                                                             const char *format, ...)
+__attribute__((format(printf, 2, 3))) static void break_rule(const Rules *r, const char *format, ...)
 {
     char text[sizeof((Err *)0)->text];
     va_list values;
     va_start(values, format);
     vsnprintf(text, sizeof text, format, values);
     va_end(values);
-    r->broken(fields, text, r->user);
+    r->broken(text, r->user);
 }
 
 static void check_motion(const MotionOptions *m, const Rules *r)
@@ -36,15 +29,13 @@ static void check_motion(const MotionOptions *m, const Rules *r)
     char scalings[SCALINGS_TEXT_MAX];
     Err err;
     if (motion_scalings(m, scalings) > 1)
-        break_rule(r, TIED(motion.target, motion.sa_g, motion.factor),
-                   "motion: a record is scaled in one way, not in several: %s", scalings);
+        break_rule(r, "motion: a record is scaled in one way, not in several: %s", scalings);
     if (target_parse(m->target, &(CodeSpectrum){0}, &err) != STATUS_OK)
-        break_rule(r, PAIR(motion.target, motion.target), "%s", err.text);
+        break_rule(r, "%s", err.text);
     if (motion_unit_parse(m->unit, &(MotionUnit){0}, &(double){0}, &err) != STATUS_OK)
-        break_rule(r, PAIR(motion.unit, motion.unit), "%s", err.text);
+        break_rule(r, "%s", err.text);
     if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
-        break_rule(r, PAIR(motion.highpass_hz, motion.lowpass_hz),
-                   "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
+        break_rule(r, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 }
 
 static void check_variables(const Settings *s, const Rules *r)
@@ -53,18 +44,16 @@ static void check_variables(const Settings *s, const Rules *r)
     DesignSpace space;
     Err err;
     if (design_space_make(&space, d, s->core.section, 0, &err) != STATUS_OK) {
-        break_rule(r, PAIR(design.variables, design.variables), "%s", err.text);
+        break_rule(r, "%s", err.text);
         return;
     }
     if (space.has_side && s->core.section != CORE_BOX)
-        break_rule(r, PAIR(design.variables, core.section), "design.variables: side is that of core.section = box");
+        break_rule(r, "design.variables: side is that of core.section = box");
     if (space.has_side && 2 * d->thickness_m.at[1] > d->width_m.at[0])
-        break_rule(r, TIED(design.width_m, design.thickness_m, design.variables),
-                   "design.width_m: twice a thickness of %g m (design.thickness_m) does not fit into %g m",
+        break_rule(r, "design.width_m: twice a thickness of %g m (design.thickness_m) does not fit into %g m",
                    d->thickness_m.at[1], d->width_m.at[0]);
     if (s->core.section == CORE_BOX && 2 * d->thickness_m.at[1] > s->core.width_m)
-        break_rule(r, TIED(design.thickness_m, core.width_m, core.section),
-                   "design.thickness_m: twice %g m does not fit into core.width_m = %g", d->thickness_m.at[1],
+        break_rule(r, "design.thickness_m: twice %g m does not fit into core.width_m = %g", d->thickness_m.at[1],
                    s->core.width_m);
 }
 
@@ -74,11 +63,9 @@ static void check_replicates(const Settings *s, const Rules *r)
     const int varies =
         u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0;
     if (s->sim.gap_tolerance_m > 0 && s->sim.replicates < 2)
-        break_rule(r, PAIR(sim.gap_tolerance_m, sim.replicates),
-                   "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+        break_rule(r, "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
     if (varies && s->sim.replicates < 2)
-        break_rule(r, PAIR(sim.uncertain, sim.replicates),
-                   "sim.uncertain: needs replicates that differ: set sim.replicates to 2 or more");
+        break_rule(r, "sim.uncertain: needs replicates that differ: set sim.replicates to 2 or more");
 }
 
 static void check_fidelity(const SearchOptions *s, const Rules *r)
@@ -86,12 +73,10 @@ static void check_fidelity(const SearchOptions *s, const Rules *r)
     if (s->fidelity == FIDELITY_OFF)
         return;
     if (s->asynchronous == SWITCH_ON)
-        break_rule(r, PAIR(search.fidelity, search.asynchronous),
-                   "search.fidelity: screens batches: set search.asynchronous = off");
+        break_rule(r, "search.fidelity: screens batches: set search.asynchronous = off");
     if (s->stop_after > 0)
-        break_rule(r, PAIR(search.fidelity, search.stop_after),
-                   "search.fidelity: finishes most designs at the end, so that what was gained lately is not known "
-                   "before: set search.stop_after = 0");
+        break_rule(r, "search.fidelity: finishes most designs at the end, so that what was gained lately is not known "
+                      "before: set search.stop_after = 0");
 }
 
 void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
@@ -102,6 +87,5 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
     check_replicates(s, r);
     check_fidelity(&s->search, r);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
-        break_rule(r, PAIR(problem.command, problem.kind),
-                   "problem.command: is none; problem.kind = external needs the command of the simulator");
+        break_rule(r, "problem.command: is none; problem.kind = external needs the command of the simulator");
 }

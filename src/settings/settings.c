@@ -470,14 +470,6 @@ Status table_find(const char *key, int *found, Err *err)
                 : fail(err, STATUS_BAD_DATA, "%s: no such setting; `imtet settings` lists all", key);
 }
 
-int table_at(size_t offset)
-{
-    int i = 0;
-    while (i < N_OPTIONS && OPTIONS[i].offset != offset)
-        i++;
-    return i < N_OPTIONS ? i : -1;
-}
-
 typedef struct {
     ListItemFn change;
     void *user;
@@ -549,9 +541,8 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
     return table_assign(s, i, equals + 1, err);
 }
 
-static void keep_first(const size_t fields[RULE_FIELDS], const char *text, void *user)
+static void keep_first(const char *text, void *user)
 {
-    (void)fields;
     Err *first = user;
     if (first->code == STATUS_OK)
         fail(first, STATUS_BAD_DATA, "%s", text);
@@ -638,13 +629,6 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     }
 }
 
-void table_text(const Settings *s, const char *key, char text[OPTION_TEXT_MAX])
-{
-    int i;
-    if (table_find(key, &i, NULL) == STATUS_OK)
-        format_value(s, &OPTIONS[i], text);
-}
-
 void settings_each(const Settings *s, SettingFn take, void *user)
 {
     char value[OPTION_TEXT_MAX];
@@ -707,4 +691,61 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
         const char *quote = !strstr(value, " #") ? "" : strchr(value, '"') ? "'" : "\"";
         fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }
+}
+
+/* ---- settings that do nothing because of another one's value ------------------------------------------------------ */
+
+/* keys, parted by blanks: one that ends in . stands for its section. They are read where `other` has the value, with !
+ * in front of it where it has any other. */
+static const struct {
+    const char *keys, *other, *value;
+} WAITING[] = {
+    {"building. core. contact. motion. sim. design. search.objectives", "problem.kind", "tower"},
+    {"problem.variables problem.objectives problem.variable_names problem.objective_names", "problem.kind", "!tower"},
+    {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", "problem.kind", "external"},
+    {"building.rayleigh_modes", "building.damping_model", "rayleigh"},
+    {"core.width_m design.thickness_m", "core.section", "!effective"},
+    {"core.areas_m2 core.inertias_m4 core.shear_areas_m2 core.masses_kg", "core.section", "effective"},
+    {"motion.sa_period_s", "motion.sa_g", "!0"},
+};
+
+static int names_key(const char *keys, const char *key)
+{
+    for (const char *p = keys; *p; p += strspn(p, " ")) {
+        const size_t n = strcspn(p, " ");
+        if (strncmp(p, key, n) == 0 && (!key[n] || p[n - 1] == '.'))
+            return 1;
+        p += n;
+    }
+    return 0;
+}
+
+void settings_idle(const Settings *was, const Settings *is, SettingFn idle, void *user)
+{
+    char before[OPTION_TEXT_MAX], now[OPTION_TEXT_MAX], text[160];
+    int other;
+    for (int i = 0; i < N_OPTIONS; i++)
+        for (size_t k = 0; k < sizeof WAITING / sizeof WAITING[0]; k++) {
+            const int is_other = WAITING[k].value[0] == '!';
+            const char *wanted = WAITING[k].value + is_other;
+            format_value(was, &OPTIONS[i], before);
+            format_value(is, &OPTIONS[i], now);
+            if (!names_key(WAITING[k].keys, OPTIONS[i].key) || strcmp(before, now) == 0 ||
+                table_find(WAITING[k].other, &other, NULL) != STATUS_OK)
+                continue;
+            format_value(is, &OPTIONS[other], now);
+            if ((strcmp(now, wanted) == 0) != is_other)
+                continue;
+            snprintf(text, sizeof text, "has no effect: it is read where %s %s %s", WAITING[k].other,
+                     is_other ? "is not" : "=", wanted);
+            idle(OPTIONS[i].key, text, user);
+            break;
+        }
+}
+
+int settings_screens(const Settings *s)
+{
+    const SearchOptions *search = &s->search;
+    const int repeats = s->problem.noisy == NOISY_YES && search->replicates_max > 1 && search->replicate_share > 0;
+    return search->fidelity != FIDELITY_OFF && !repeats && s->problem.kind == PROBLEM_TOWER && s->sim.replicates > 1;
 }

@@ -190,13 +190,20 @@ static void take_line(Reading *r, char *line)
         report_fault(r, place_of(r, begin), "neither [section] nor key = value");
 }
 
-static void report_broken(const size_t fields[RULE_FIELDS], const char *text, void *user)
+/* At the first key that the sentence names and the file sets. */
+static void report_broken(const char *text, void *user)
 {
     Reading *r = user;
     Place at = {0, 0};
-    for (int k = 0; k < RULE_FIELDS && !at.line; k++)
-        if (table_at(fields[k]) >= 0)
-            at = r->seen[table_at(fields[k])];
+    const char *first = NULL;
+    for (int i = 0; settings_key(i); i++) {
+        const char *named = r->seen[i].line ? strstr(text, settings_key(i)) : NULL;
+        const char end = named ? named[strlen(settings_key(i))] : 0;
+        if (named && (!first || named < first) && !(end == '_' || end == 's')) {
+            first = named;
+            at = r->seen[i];
+        }
+    }
     report_fault(r, at, text);
 }
 

@@ -11,10 +11,6 @@ enum { TABLE_MAX = 256 }; /* lines at most */
 
 /* The line of a key; errors: the nearest key. */
 Status table_find(const char *key, int *i, Err *err);
-int table_at(size_t offset); /* the line of a field of Settings, or -1 */
-
-/* The value of a key of the table, as settings_write prints it. */
-void table_text(const Settings *s, const char *key, char text[OPTION_TEXT_MAX]);
 
 /* A value as one would type it. */
 Status table_assign(Settings *s, int i, const char *value, Err *err);
