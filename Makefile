@@ -166,7 +166,7 @@ $(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
 $(BUILD)/tests/test_fuzz_corpus: $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
 
 WRAPPED := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_open_v2 sqlite3_errcode sqlite3_extended_errcode calloc malloc \
-           realloc open_memstream fopen fflush rename
+           realloc fopencookie fopen fflush rename
 $(BUILD)/tests/test_store_faults: LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_shared: LDFLAGS += -Wl,--wrap=statfs
 

@@ -248,18 +248,19 @@ TEST(damage_is_found_on_opening_whatever_was_hit)
         expect(74, "hurt/run.sqlite: ", "export @/hurt --csv @/none.csv");
     }
     overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
-    expect(74, "is no database of a run; --new --set search.start=", "status @/hurt");
+    expect(65, "is no database of a run; --new --set search.start=", "status @/hurt");
     write_in_place("hurt/letter.txt", "this is a letter");
     expect(66, "holds no run", "choose @/hurt/letter.txt");
+    expect(65, "letter.txt: is a file, no run and no folder of runs", "status @/hurt/letter.txt");
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
     expect(74, "is empty, no database of a run; --new --set search.start=", "optimize @/hurt");
     assert_int_equal(unlink(path_of("hurt/run.sqlite", path)), 0);
     assert_int_equal(mkdir(path, 0777), 0);
     expect(74, "hurt/run.sqlite: is no file", "status @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
-    expect(74, "has format 99, this program reads 5; a newer imtet wrote it", "status @/sound");
+    expect(74, "has format 99, this program reads 6; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
-    expect(74, "has format 1, this program reads 5; an older imtet wrote it", "status @/sound");
+    expect(74, "has format 1, this program reads 6; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
     char *list = output_of("status @");
     assert_non_null(strstr(list, "unreadable"));

@@ -393,12 +393,18 @@ TEST(another_program_or_record_on_a_rank_is_refused_by_name)
     expect_said("all ranks must be one program");
     snprintf(
         command, sizeof command,
-        "exec mpirun -n 2 -wdir '%s/here' '%s' optimize '%s/tower.ini' --set motion.records=none --set "
-        "motion.record=r.csv --set motion.unit=m_s2 --out '%s/y' : -n 1 -wdir '%s/there' '%s' serve >'%s/said' 2>&1",
-        place.folder, program(), place.folder, place.folder, place.folder, program(), place.folder);
+        "set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv --set motion.unit=m_s2 "
+        "--out '%s/y'; exec mpirun -n 2 -wdir '%s/here' '%s' \"$@\" : -n 1 -wdir '%s/there' '%s' \"$@\" >'%s/said' "
+        "2>&1",
+        place.folder, place.folder, place.folder, program(), place.folder, program(), place.folder);
     expect_code(spawn(command), 65);
     expect_said("rank 2 on ");
     expect_said("reads other files than rank 0");
+    snprintf(command, sizeof command,
+             "exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/z' : -n 1 '%s' status '%s' >'%s/said' 2>&1",
+             program(), place.folder, place.folder, program(), place.folder, place.folder);
+    expect_code(spawn(command), 65);
+    expect_said("has another command line than rank 0");
 }
 
 /* Rank 1 reads millions of samples, of which rank 0 knows nothing; without the stop it is refused for them. */

@@ -36,14 +36,17 @@ static void take_address(const char *url)
     assert_int_equal(sscanf(url, "http://127.0.0.1:%d/%48[0-9a-f]/", &server.port, server.token), 2);
 }
 
-/* `imtet serve FOLDER`, whose address is in `said` as soon as it listens; SIGINT ends it. */
-static void serve(const char *folder)
+/* `imtet serve FOLDER` with at most so many open files, whose address is in `said` as soon as it listens; SIGINT ends
+ * it. */
+static void serve_with(const char *folder, int files_max)
 {
-    char path[PATH_MAX], *text = NULL, *at = NULL;
+    char path[PATH_MAX], most[16], *text = NULL, *at = NULL;
     sigset_t ends;
     posix_spawn_file_actions_t files;
     posix_spawnattr_t signals;
-    char *words[] = {getenv("IMTET"), "serve", path_of(folder, path), NULL};
+    char script[] = "ulimit -n $2; exec \"$0\" serve \"$1\"", shell[] = "/bin/sh";
+    snprintf(most, sizeof most, "%d", files_max);
+    char *words[] = {shell, "-c", script, getenv("IMTET"), path_of(folder, path), most, NULL};
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, path_of("served", server.said),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -64,6 +67,11 @@ static void serve(const char *folder)
     assert_non_null(at);
     take_address(strstr(text, "http://"));
     free(text);
+}
+
+static void serve(const char *folder)
+{
+    serve_with(folder, 1024);
 }
 
 /* The same within this process: a fault of memory is seen. */
@@ -389,6 +397,39 @@ static void test_a_thousand_connections_leave_room_for_one_that_asks(void **stat
     expect_code(200, "GET", "/%T/0/front", "");
 }
 
+static double processor_s(void)
+{
+    char path[64];
+    long user, kernel;
+    snprintf(path, sizeof path, "/proc/%d/stat", (int)server.pid);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    assert_int_equal(fscanf(f, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld", &user, &kernel), 2);
+    fclose(f);
+    return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
+}
+
+/* At the limit of open files nothing could be accepted, again and again. */
+static void test_where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered(void **state)
+{
+    (void)state;
+    enum { MANY = 100 };
+    const Served before = server;
+    int fd[MANY];
+    serve_with("runs", 64);
+    expect_code(200, "GET", "/%T/0/front", "");
+    const double spent = processor_s();
+    for (int i = 0; i < MANY; i++)
+        fd[i] = dial();
+    rest(2);
+    assert_less(processor_s() - spent, 0.5);
+    expect_code(200, "GET", "/%T/0/front", "");
+    for (int i = 0; i < MANY; i++)
+        close(fd[i]);
+    assert_int_equal(end_server(), 0);
+    server = before;
+}
+
 /* -- answers ------------------------------------------------------------------------------------------------------- */
 
 static json_t *numbers_of_row(const Table *t, size_t row, size_t first, size_t n)
@@ -514,6 +555,12 @@ static void test_two_runs_are_measured_in_one_box(void **state)
             assert_at_most(json_number_value(json_array_get(v, g - 1)), json_number_value(json_array_get(v, g)));
         assert_true(json_equal(one, json_array_get(json_object_get(again, "runs"), 1 - r)));
     }
+    assert_int_equal(json_array_size(json_object_get(both, "differences")), 0); /* another seed */
+    json_t *others = ask_json("/%T/0/against/3"), *differs = json_object_get(others, "differences"), *key;
+    size_t i, n_records = 0;
+    json_array_foreach(differs, i, key) n_records += strcmp(json_string_value(key), "motion.records") == 0;
+    assert_int_equal(n_records, 1);
+    json_decref(others);
     json_decref(both);
     json_decref(again);
     expect_code(400, "GET", "/%T/0/against/2", ""); /* other objectives */
@@ -756,6 +803,48 @@ static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
     serve("runs");
 }
 
+/* Each takes a second or two, and pages that wait for them have gone. */
+static void test_ctrl_c_does_not_wait_for_the_questions_in_the_queue(void **state)
+{
+    (void)state;
+    enum { QUESTIONS = 8 };
+    const Served before = server;
+    if (SANITIZED)
+        skip(); /* a simulation of seconds takes a minute */
+    write_in_place("long.ini", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 800\n[search]\n"
+                               "initial = 4\npopulation = 4\nmax_evals = 400\nthreads = 1\n");
+    const pid_t pid = start("long.ini", "long/run");
+    while (finished_in("long/run") < 4)
+        rest(0.05);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    int fd[QUESTIONS];
+    serve("long");
+    json_t *bounds = ask_json("/%T/0/what-if");
+    for (int i = 0; i < QUESTIONS; i++) {
+        json_t *x = json_incref(json_object_get(bounds, "lower"));
+        json_t *question =
+            json_pack("{s:i, s:i, s:f, s:o}", "page", i, "turn", 1, "restitution", 0.5 + 0.01 * i, "x", x);
+        char *body = json_dumps(question, 0), *text = NULL;
+        assert_less(0,
+                    asprintf(&text, "POST /%s/0/what-if HTTP/1.1\r\nHost: localhost\r\nContent-Length: %zu\r\n\r\n%s",
+                             server.token, strlen(body), body));
+        fd[i] = dial();
+        say(fd[i], text);
+        free(text);
+        free(body);
+        json_decref(question);
+    }
+    rest(1);
+    const double start = now_s();
+    assert_int_equal(end_server(), 0);
+    assert_less(now_s() - start, 6);
+    for (int i = 0; i < QUESTIONS; i++)
+        close(fd[i]);
+    json_decref(bounds);
+    server = before;
+}
+
 /* -- a browser ----------------------------------------------------------------------------------------------------- */
 
 static void test_a_browser_follows_a_run_and_asks_what_if(void **state)
@@ -817,6 +906,7 @@ int main(void)
         cmocka_unit_test(test_what_is_too_large_is_not_read),
         cmocka_unit_test(test_a_slow_flood_leaves_others_answered),
         cmocka_unit_test(test_a_thousand_connections_leave_room_for_one_that_asks),
+        cmocka_unit_test(test_where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered),
         cmocka_unit_test(test_what_if_nothing_changes_is_what_the_run_has),
         cmocka_unit_test(test_what_if_under_another_motion_is_what_simulate_prints),
         cmocka_unit_test(test_what_if_of_a_run_of_several_simulations_is_one_of_them),
@@ -832,6 +922,7 @@ int main(void)
         cmocka_unit_test(test_a_run_that_is_not_asked_for_any_more_is_released),
         cmocka_unit_test(test_what_cannot_be_served_is_said),
         cmocka_unit_test(test_ctrl_c_ends_it_while_pages_look_on),
+        cmocka_unit_test(test_ctrl_c_does_not_wait_for_the_questions_in_the_queue),
         cmocka_unit_test(test_a_browser_follows_a_run_and_asks_what_if),
     };
     return cmocka_run_group_tests(tests, begin, finish);

@@ -8,14 +8,15 @@
 
 #include <sqlite3.h>
 
+#include "base/text.h"
 #include "study/study.h"
 
 enum { SOME = 3 };
 
-typedef enum { STEP, EXEC, PREPARE, OPEN, CALLOC, MALLOC, REALLOC, MEMSTREAM, FOPEN, FLUSH, RENAME, N_KINDS } Kind;
-static const char *const KINDS[N_KINDS] = {"sqlite3_step",    "sqlite3_exec",   "sqlite3_prepare_v2",
-                                           "sqlite3_open_v2", "calloc",         "malloc",
-                                           "realloc",         "open_memstream", "fopen",
+typedef enum { STEP, EXEC, PREPARE, OPEN, CALLOC, MALLOC, REALLOC, COOKIE, FOPEN, FLUSH, RENAME, N_KINDS } Kind;
+static const char *const KINDS[N_KINDS] = {"sqlite3_step",    "sqlite3_exec", "sqlite3_prepare_v2",
+                                           "sqlite3_open_v2", "calloc",       "malloc",
+                                           "realloc",         "fopencookie",  "fopen",
                                            "fflush",          "rename"};
 
 static struct {
@@ -74,7 +75,7 @@ WRAP(int, sqlite3_open_v2, OPEN, SQLITE_CANTOPEN, (const char *path, sqlite3 **d
 WRAP(void *, calloc, CALLOC, NULL, (size_t n, size_t size), (n, size))
 WRAP(void *, malloc, MALLOC, NULL, (size_t size), (size))
 WRAP(void *, realloc, REALLOC, NULL, (void *old, size_t size), (old, size))
-WRAP(FILE *, open_memstream, MEMSTREAM, NULL, (char **text, size_t *n), (text, n))
+WRAP(FILE *, fopencookie, COOKIE, NULL, (void *cookie, const char *mode, cookie_io_functions_t io), (cookie, mode, io))
 WRAP(FILE *, fopen, FOPEN, NULL, (const char *path, const char *mode), (path, mode))
 WRAP(int, fflush, FLUSH, EOF, (FILE * f), (f))
 WRAP(int, rename, RENAME, -1, (const char *from, const char *to), (from, to))
@@ -352,7 +353,7 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
                 {SQLITE_BUSY, STATUS_IO, "is busy"},
                 {SQLITE_LOCKED, STATUS_IO, "is busy"},
                 {SQLITE_CORRUPT, STATUS_IO, "is damaged"},
-                {SQLITE_NOTADB, STATUS_IO, "is no database"},
+                {SQLITE_NOTADB, STATUS_BAD_DATA, "is no database"},
                 {SQLITE_IOERR, STATUS_IO, "read or written"},
                 {SQLITE_READONLY, STATUS_OK, ""},
                 {SQLITE_CANTOPEN, STATUS_OK, ""}};
@@ -390,6 +391,30 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
     assert_int_equal(database_create(&d, path_of("nowhere/run.sqlite", inside), &err), STATUS_IO);
     assert_non_null(strstr(err.text, "cannot be opened"));
     assert_int_equal(database_open(&d, inside, DATABASE_READ, &err), STATUS_MISSING);
+}
+
+/* It is whole, or it is said. */
+static void test_a_text_for_which_there_is_no_room_is_not_taken_for_whole(void **state)
+{
+    (void)state;
+    enum { LINES = 20000 };
+    char *text;
+    size_t length;
+    int n_failed = 0, failed = 1;
+    for (long at = 1; failed; at++) {
+        arm(REALLOC, at, 0);
+        FILE *f = text_open(&text, &length);
+        assert_non_null(f);
+        for (int i = 0; i < LINES; i++)
+            fprintf(f, "%06d\n", i);
+        failed = text_close(f);
+        fault.armed = 0;
+        assert_int_equal(failed != 0, fault.struck);
+        assert_int_equal(failed ? 0 : 7 * LINES, failed ? 0 : strlen(text));
+        n_failed += failed;
+        free(text);
+    }
+    assert_less(3, n_failed);
 }
 
 /* place/././.../name, n characters. */
@@ -483,6 +508,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables),
         cmocka_unit_test(test_every_fault_of_the_database_is_said_in_our_words),
+        cmocka_unit_test(test_a_text_for_which_there_is_no_room_is_not_taken_for_whole),
         cmocka_unit_test(test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next),
         cmocka_unit_test(test_a_generation_that_was_not_simulated_is_refused),
         cmocka_unit_test(test_a_study_whose_kth_call_fails_goes_on_to_the_same_front),

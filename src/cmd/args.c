@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cmd/outputs.h"
@@ -72,8 +73,9 @@ void args_suggest(const Args *args, Err *err)
     const char *path = args->operand, *slash = path ? strrchr(path, '/') : NULL, *names[NAMES_MAX];
     const int length = slash ? (int)(slash - path + 1) : 0;
     char folder[512];
+    struct stat there;
     struct dirent **entries;
-    if (!path || access(path, F_OK) == 0 || err->sub == SUB_SUGGESTS)
+    if (!path || lstat(path, &there) == 0 || err->sub == SUB_SUGGESTS) /* a link that leads nowhere is there */
         return;
     snprintf(folder, sizeof folder, "%.*s", length ? length : 1, length ? path : ".");
     const int n = scandir(folder, &entries, is_visible, alphasort);

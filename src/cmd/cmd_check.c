@@ -5,6 +5,7 @@
 
 #include "base/json.h"
 #include "base/list.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -101,14 +102,14 @@ static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
     char *lines = NULL;
     size_t length = 0;
     int n = 0;
-    FILE *f = open_memstream(&lines, &length);
+    FILE *f = text_open(&lines, &length);
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "check: out of memory");
     const Status status = args_settings(args, s, f, &n, err);
-    fclose(f);
-    if (status != STATUS_OK && n == 0) { /* no faults of settings: they could not be read */
+    const int is_whole = text_close(f) == 0;
+    if (!is_whole || (status != STATUS_OK && n == 0)) { /* no faults of settings: they could not be read */
         free(lines);
-        return status;
+        return is_whole ? status : fail(err, STATUS_NO_MEMORY, "check: out of memory");
     }
     take_lines(c, lines);
     free(lines);

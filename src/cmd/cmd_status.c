@@ -159,6 +159,8 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
+    if (s->n_lost > 0)
+        json_object_set_new(o, "lost", json_integer((json_int_t)s->n_lost));
     return o;
 }
 
@@ -219,6 +221,8 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
     char path[PATH_MAX + 288];
     struct dirent **entries;
     const int n = scandir(folder, &entries, NULL, versionsort);
+    if (n < 0 && errno == ENOTDIR)
+        return fail(err, STATUS_BAD_DATA, "%s: is a file, no run and no folder of runs", folder);
     if (n < 0)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
     json_t *list = json_array();
@@ -255,6 +259,9 @@ static void print_head(const char *folder, const Run *run, const Standing *s, js
     json_object_del(described, "state");
     json_object_del(described, "process");
     figures_list(2, described);
+    if (s->n_lost > 0)
+        printf("%zu evaluations more were stored, as its file `lock` says: the journal run.sqlite-wal is missing\n",
+               s->n_lost);
     if (isfinite(e.waiting)) {
         effort_words(&e, effort);
         puts(effort);

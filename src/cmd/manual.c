@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "cmd/commands.h"
 #include "store/provenance.h"
 
@@ -109,14 +110,14 @@ Status manual_write(const Command *c, FILE *out, Err *err)
 {
     char name[40], *text = NULL;
     size_t size;
-    FILE *help = open_memstream(&text, &size);
+    FILE *help = text_open(&text, &size);
     if (!help)
         return fail(err, STATUS_NO_MEMORY, "no memory for a manual page");
     if (c)
         command_help(c, help);
     else
         usage_write(help);
-    fclose(help);
+    const int is_whole = text_close(help) == 0;
     snprintf(name, sizeof name, "imtet%s%s", c ? "-" : "", c ? c->name : "");
     fprintf(out, ".TH \"%s\" 1 \"\" \"imtet %s\" \"User commands\"\n.SH NAME\n", name, program_version());
     roff(out, name);
@@ -126,5 +127,5 @@ Status manual_write(const Command *c, FILE *out, Err *err)
     roff(out, text);
     fprintf(out, ".fi\n.SH SEE ALSO\n.BR imtet%s (1)\n", c ? "" : "\\-optimize");
     free(text);
-    return STATUS_OK;
+    return is_whole ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a manual page");
 }

@@ -7,7 +7,7 @@
  *
  * Life cycle  cluster_join, first thing in main -> executors, or cluster_disband -> cluster_leave, last thing
  * Threads     one executor of the cluster at a time
- * Errors      another version of the program on a rank is refused, host and rank named */
+ * Errors      another version of the program, or another command, on a rank is refused, host and rank named */
 #ifndef IMTET_EVALUATE_CLUSTER_H
 #define IMTET_EVALUATE_CLUSTER_H
 

@@ -19,7 +19,15 @@
 #include "evaluate/threads.h"
 #include "evaluate/helper.h"
 
-enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
+enum {
+    REQUEST_BYTES = 64,
+    NUMBER_BYTES = 26,
+    LINE_MAX_BYTES = 1 << 20,
+    READ_BYTES = 1 << 16,
+    WORDS_MAX = 128,
+    GRACE_MS = 1000,
+    LOOK_MS = 200
+};
 
 /* A process that ends so soon after a request had ended after its answer before. */
 static const double LEFT_BEFORE_S = 1.0;
@@ -33,7 +41,7 @@ typedef struct {
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
     size_t n_line;
-    char *request;
+    char *request; /* behind it, REQUEST_BYTES and NUMBER_BYTES of each variable */
     size_t n_request, n_sent;
     ExternalAnswer *answer; /* to be filled; NULL: idle */
     long id;
@@ -180,24 +188,16 @@ __attribute__((format(printf, 5, 6))) static void settle(External *e, Worker *w,
         worker_end(e, w, 1);
 }
 
-static Status write_request(External *e, Worker *w, const Task *task, Err *err)
+/* Into room that is there from the start: half a request would be waited for. */
+static void write_request(const External *e, Worker *w, const Task *task)
 {
-    size_t size;
-    free(w->request);
-    w->request = NULL;
-    FILE *f = open_memstream(&w->request, &size);
-    if (!f)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a request");
-    fprintf(f, "{\"id\":%ld,\"x\":[", w->id);
+    char *to = w->request;
+    to += sprintf(to, "{\"id\":%ld,\"x\":[", w->id);
     for (size_t d = 0; d < e->n_var; d++)
-        fprintf(f, "%s%.17g", d ? "," : "", task->x[d]);
-    fputs("]}\n", f);
-    const int is_cut = ferror(f);
-    if (fclose(f) != 0 || is_cut)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a request");
-    w->n_request = size;
+        to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
+    to += sprintf(to, "]}\n");
+    w->n_request = (size_t)(to - w->request);
     w->n_sent = 0;
-    return STATUS_OK;
 }
 
 static Status send_request(External *e, Worker *w, const Task *task, Err *err)
@@ -207,7 +207,7 @@ static Status send_request(External *e, Worker *w, const Task *task, Err *err)
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
     w->id = task->id;
-    TRY(write_request(e, w, task, err));
+    write_request(e, w, task);
     w->answer = task->result;
     w->again = w->is_second = 0;
     w->asked = clock_seconds();
@@ -435,7 +435,6 @@ static void external_close(void *self)
     for (size_t i = 0; i < e->n_workers; i++) {
         worker_end(e, &e->worker[i], 1);
         free(e->worker[i].line);
-        free(e->worker[i].request);
     }
     helper_end(&e->helper);
     free(e->worker);
@@ -485,9 +484,10 @@ static Status create_workers(External *e, size_t n, Err *err)
     e->worker = calloc(n, sizeof *e->worker);
     for (; e->worker && e->n_workers < n; e->n_workers++) {
         Worker *w = &e->worker[e->n_workers];
-        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES)};
+        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES + REQUEST_BYTES + NUMBER_BYTES * e->n_var)};
         if (!w->line)
             break;
+        w->request = w->line + LINE_MAX_BYTES;
     }
     return e->n_workers == n ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", n);
 }

@@ -7,10 +7,12 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "mpi/message.h"
 
 typedef struct {
     char host[HOST_MAX], version[CLUSTER_VERSION_MAX];
+    uint64_t arguments; /* hash of the command line */
 } Hello;
 
 void host_name(char host[HOST_MAX])
@@ -34,29 +36,35 @@ static int n_ranks(void)
 }
 
 /* Of all ranks, on rank 0. */
-static Status compare_versions(const Hello hello[], Err *err)
+static Status compare(const Hello hello[], Err *err)
 {
-    for (int i = 1; i < n_ranks(); i++)
+    for (int i = 1; i < n_ranks(); i++) {
         if (memcmp(hello[i].version, hello[0].version, sizeof hello[i].version) != 0)
             return fail(err, STATUS_BAD_DATA,
                         "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
                         hello[i].host, hello[i].version, hello[0].host, hello[0].version);
+        if (hello[i].arguments != hello[0].arguments)
+            return fail(err, STATUS_BAD_DATA, "rank %d on %s has another command line than rank 0: all must have one",
+                        i, hello[i].host);
+    }
     return STATUS_OK;
 }
 
 /* The verdict of rank 0 is that of all; the reason is rank 0's to tell. */
-static Status check_versions(const char version[CLUSTER_VERSION_MAX], Err *err)
+static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VERSION_MAX], Err *err)
 {
-    Hello mine;
+    Hello mine = {.arguments = HASH_SEED};
     int verdict = STATUS_OK;
     Hello *all = calloc((size_t)n_ranks(), sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     host_name(mine.host);
     memcpy(mine.version, version, sizeof mine.version);
+    for (int i = 1; i < argc; i++)
+        mine.arguments = hash_fnv1a(argv[i], strlen(argv[i]) + 1, mine.arguments);
     MPI_Gather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, 0, MPI_COMM_WORLD);
     if (rank_of_this() == 0)
-        verdict = (int)compare_versions(all, err);
+        verdict = (int)compare(all, err);
     MPI_Bcast(&verdict, 1, MPI_INT, 0, MPI_COMM_WORLD);
     free(all);
     return (Status)verdict;
@@ -78,7 +86,7 @@ Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_
     *serves = rank_of_this() > 0;
     if (*serves)
         ignore_signals();
-    Status status = check_versions(version, err);
+    Status status = check_ranks(*argc, *argv, version, err);
     if (status == STATUS_OK && level < MPI_THREAD_SERIALIZED)
         status = fail(err, STATUS_INTERNAL, "this MPI cannot be called by one thread after the other");
     if (status != STATUS_OK) {

@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "report/report.h"
 #include "report/report_json.h"
 #include "report/thin.h"
@@ -75,14 +76,14 @@ Status report_live(const Run *run, char **text, Err *err)
     *text = NULL;
     if (run->n_front == 0)
         return run_why_empty(run, err);
-    FILE *out = open_memstream(text, &length);
+    FILE *out = text_open(text, &length);
     if (!out)
         return fail(err, STATUS_NO_MEMORY, "no memory for a page");
     r.knee = r.chosen = run_knee(run);
     r.n_shown = run->n_front;
     r.shown = run->front;
     Status status = write_page(&r, _binary_build_web_live_html_start, _binary_build_web_live_html_end, out, err);
-    if (fclose(out) != 0 && status == STATUS_OK)
+    if (text_close(out) && status == STATUS_OK)
         status = fail(err, STATUS_NO_MEMORY, "no memory for a page");
     if (status != STATUS_OK) {
         free(*text);

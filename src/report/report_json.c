@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/json.h"
+#include "base/text.h"
 #include "moga/hypervolume.h"
 #include "report/words.h"
 #include "settings/settings.h"
@@ -17,11 +18,11 @@ static json_t *json_of_settings(const Settings *s)
 {
     char *text = NULL;
     size_t length;
-    FILE *stream = open_memstream(&text, &length);
+    FILE *stream = text_open(&text, &length);
     if (!stream)
         return NULL;
     settings_write(s, stream, SETTINGS_PLAIN);
-    json_t *string = fclose(stream) == 0 ? json_words(text) : NULL;
+    json_t *string = text_close(stream) == 0 ? json_words(text) : NULL;
     free(text);
     return string;
 }

@@ -5,7 +5,8 @@
  *            read has the state "unreadable", the "reason", and its last numbers if there are any
  *   front    {"generation", "knee", "ids": [n_front], "f": [n_front][n_obj]} in natural signs and units, and
  *            growth_json (report/report_json.h)
- *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same]}, both volumes in one
+ *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same], "differences": settings in which they are two
+ *            problems, whose fronts are no comparison}, both volumes in one
  *            box: from a fifth of the range of both fronts below their best to their worst, by fixed samples
  *            (moga/hypervolume.h), of the designs that were on a front so far
  *

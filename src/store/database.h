@@ -13,8 +13,8 @@
  *
  * Life cycle  database_create or database_open -> database_do, database_each ... -> database_close
  * Threads     one connection, one thread at a time
- * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and
- *             cause; no such file: STATUS_MISSING
+ * Errors      disk full, read-only, busy, damaged, of a newer version: STATUS_IO with file and cause; of another
+ *             program: STATUS_BAD_DATA; no such file: STATUS_MISSING
  * Source      https://sqlite.org/wal.html, https://sqlite.org/pragma.html#pragma_synchronous */
 #ifndef IMTET_STORE_DATABASE_H
 #define IMTET_STORE_DATABASE_H

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/json.h"
+#include "base/text.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
@@ -189,9 +190,9 @@ static int put_some(FILE *f, const Many *m, size_t first, size_t end)
 
 static int put_block(char **text, size_t *length, const Many *m, size_t first, size_t end)
 {
-    FILE *f = open_memstream(text, length);
+    FILE *f = text_open(text, length);
     const int failed = !f || put_some(f, m, first, end);
-    return (f && fclose(f) != 0) || failed;
+    return (f && text_close(f)) || failed;
 }
 
 /* Numbers become text in blocks, by all threads. */

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "base/text.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 #include "store/output.h"
@@ -174,7 +175,7 @@ static Status tables_text(const Schema *s, char **text, Err *err)
     size_t length;
     Numbers list[N_NUMBERS];
     *text = NULL;
-    FILE *f = open_memstream(text, &length);
+    FILE *f = text_open(text, &length);
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
     fputs(OTHERS, f);
@@ -188,7 +189,7 @@ static Status tables_text(const Schema *s, char **text, Err *err)
         for (size_t c = 0; c < list[k].n; c++)
             put_column(f, s->column[list[k].first + c].name, list[k].end);
     fputs(");", f);
-    return fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
+    return text_close(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
 }
 
 typedef struct {
@@ -265,10 +266,13 @@ static uint64_t digest_kind(EvaluationKind kind, long generation)
 static Status settings_text(const Settings *s, char **text, Err *err)
 {
     size_t length;
-    FILE *f = open_memstream(text, &length);
+    FILE *f = text_open(text, &length);
     if (f)
         settings_write(s, f, SETTINGS_PLAIN);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the settings");
+    if (f && text_close(f) == 0)
+        return STATUS_OK;
+    free(*text);
+    return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
 }
 
 static long digest_of_head(const char *settings, const char *provenance, long planned_evals, long n_var)

@@ -139,6 +139,8 @@ void standing_of(Standing *out, const char *folder, const Run *run)
                                                   : RUN_INTERRUPTED;
     count(out, run);
     out->progress.generations = run->n_generations;
+    const size_t n = run_first_polished(run);
+    out->n_lost = out->state != RUN_RUNNING && out->holder.n_stored > n ? out->holder.n_stored - n : 0;
     if (run->n_generations > 0)
         out->hypervolume = run->generation[run->n_generations - 1].hypervolume;
     for (size_t i = 0; i < run->n_sessions; i++)

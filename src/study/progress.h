@@ -29,6 +29,7 @@ typedef struct {
     LockHolder holder;
     Progress progress;
     size_t n_failed, n_polished;
+    size_t n_lost;      /* evaluations that were stored, as the lock says, and are not there: the journal is missing */
     double seconds;     /* of work, all sessions together */
     double hypervolume; /* of the last generation; NAN: none */
     long max_evals;

@@ -1,0 +1,56 @@
+#include "base/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    char **text;
+    size_t *length, room;
+} Text;
+
+/* 0: no memory, which becomes the error of the stream. */
+static ssize_t append(void *cookie, const char *bytes, size_t n)
+{
+    Text *t = cookie;
+    const size_t needed = *t->length + n + 1;
+    if (needed > t->room) {
+        const size_t room = needed > 2 * t->room ? needed : 2 * t->room;
+        char *wider = realloc(*t->text, room);
+        if (!wider)
+            return 0;
+        *t->text = wider;
+        t->room = room;
+    }
+    memcpy(*t->text + *t->length, bytes, n);
+    *t->length += n;
+    (*t->text)[*t->length] = 0;
+    return (ssize_t)n;
+}
+
+static int end(void *cookie)
+{
+    free(cookie);
+    return 0;
+}
+
+FILE *text_open(char **text, size_t *length)
+{
+    Text *t = malloc(sizeof *t);
+    *text = calloc(1, 1);
+    *length = 0;
+    if (t)
+        *t = (Text){text, length, 1};
+    FILE *f = t && *text ? fopencookie(t, "w", (cookie_io_functions_t){.write = append, .close = end}) : NULL;
+    if (!f) {
+        free(t);
+        free(*text);
+        *text = NULL;
+    }
+    return f;
+}
+
+int text_close(FILE *stream)
+{
+    const int failed = ferror(stream);
+    return fclose(stream) != 0 || failed;
+}
