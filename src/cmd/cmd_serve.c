@@ -65,10 +65,9 @@ static Status run(const Args *args, Err *err)
         fprintf(stderr, "%s\n", why.text);
     while (!signals_asked(NULL))
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
-    serve_close(server);
     if (page[0])
         unlink(page);
-    return STATUS_OK;
+    _exit(fflush(stdout)); /* nothing is to be stored, and no simulation under way is waited for */
 }
 
 static const ArgOption OPTIONS[] = {

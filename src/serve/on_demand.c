@@ -31,7 +31,6 @@ struct OnDemand {
     Settings settings; /* of the run, as is the provenance; neither changes */
     char *provenance;
     const RecordPaths *moved;
-    atomic_int stops;
     pthread_mutex_t pages; /* of the next four */
     int n_users;
     long page[PAGES_MAX], turn[PAGES_MAX];
@@ -84,12 +83,6 @@ OnDemand *on_demand_share(OnDemand *o)
     o->n_users++;
     pthread_mutex_unlock(&o->pages);
     return o;
-}
-
-void on_demand_stop(OnDemand *o)
-{
-    if (o)
-        o->stops = 1;
 }
 
 void on_demand_close(OnDemand *o)
@@ -167,8 +160,6 @@ static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err
         return STATUS_OK;
     if (run->settings->problem.kind != PROBLEM_TOWER || row == run->table.n)
         return fail(err, STATUS_MISSING, "%s: has no design %ld to be simulated", run->folder, id);
-    if (o->stops)
-        return fail(err, STATUS_STOPPED, "the server ends");
     TRY(simulate(o, run, row, with_devices, text, err));
     free(place->text);
     *place = (KnownDesign){id, with_devices, strdup(*text)};
@@ -394,8 +385,8 @@ Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size
     TRY(take_question(o, question, n, &q, err));
     is_latest(o, &q);
     pthread_mutex_lock(&o->scene);
-    if (o->stops || !is_latest(o, &q))
-        status = fail(err, STATUS_STOPPED, "a later question of this page is there, or the server ends");
+    if (!is_latest(o, &q))
+        status = fail(err, STATUS_STOPPED, "a later question of this page is there");
     if (status == STATUS_OK)
         status = open_scene(o, &q.ground, err);
     if (status == STATUS_OK)

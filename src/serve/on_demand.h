@@ -35,7 +35,6 @@ typedef struct OnDemand OnDemand;
 /* moved: borrowed. */
 Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, Err *err);
 OnDemand *on_demand_share(OnDemand *o);
-void on_demand_stop(OnDemand *o);  /* what waits to be simulated is not any more: STATUS_STOPPED; NULL is fine */
 void on_demand_close(OnDemand *o); /* NULL is fine */
 
 /* The run, as it is now, is that of on_demand_open: no other has been made in its place. */

@@ -268,9 +268,6 @@ void watch_stop(Watch *w)
 {
     pthread_mutex_lock(&w->mutex);
     w->stops = 1;
-    for (size_t i = 0; i < w->n; i++)
-        if (w->run[i]->view.look)
-            on_demand_stop(w->run[i]->view.look->on_demand);
     pthread_cond_broadcast(&w->changed);
     pthread_cond_broadcast(&w->wanted);
     pthread_mutex_unlock(&w->mutex);
