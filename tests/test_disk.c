@@ -248,7 +248,7 @@ TEST(damage_is_found_on_opening_whatever_was_hit)
         expect(74, "hurt/run.sqlite: ", "export @/hurt --csv @/none.csv");
     }
     overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
-    expect(65, "is no database of a run; --new --set search.start=", "status @/hurt");
+    expect(74, "is no database of a run; --new --set search.start=", "status @/hurt");
     write_in_place("hurt/letter.txt", "this is a letter");
     expect(66, "holds no run", "choose @/hurt/letter.txt");
     expect(65, "letter.txt: is a file, no run and no folder of runs", "status @/hurt/letter.txt");
