@@ -1,11 +1,13 @@
 #include "cmd/args.h"
 
 #include <dirent.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cmd/designs.h"
 #include "cmd/outputs.h"
 #include "settings/settings.h"
 
@@ -132,17 +134,10 @@ static Status take_option(Args *args, int argc, char *const argv[], int *i, Err 
 /* A run is its folder; who names the database in it means that. */
 static Status take_run_folder(Args *args, Err *err)
 {
-    static const char DATABASE[] = "run.sqlite";
-    const size_t n = strlen(args->operand), n_name = sizeof DATABASE - 1;
-    if (n < n_name || strcmp(args->operand + n - n_name, DATABASE) != 0)
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s", args->operand) >= (int)sizeof path || !run_drop_name(path))
         return STATUS_OK;
-    if (n > n_name && args->operand[n - n_name - 1] != '/')
-        return STATUS_OK;
-    size_t n_folder = n - n_name;
-    while (n_folder > 1 && args->operand[n_folder - 1] == '/')
-        n_folder--;
-    args->folder = n_folder == 0 ? strdup(".") : strndup(args->operand, n_folder);
-    args->operand = args->folder;
+    args->operand = args->folder = strdup(path);
     return args->folder ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a path");
 }
 
@@ -257,16 +252,10 @@ void args_free(Args *args)
 
 static Status apply_one(const Given *g, Settings *s, Err *err)
 {
+    Err why = {0};
     if (strcmp(g->option->name, "--set") == 0)
         return settings_set(s, g->value, err);
-    if (!g->option->setting)
-        return STATUS_OK;
-    char *assignment = NULL;
-    if (asprintf(&assignment, "%s=%s", g->option->setting, g->value) < 0)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %s", g->option->name);
-    Err why = {0};
-    const Status status = settings_set(s, assignment, &why);
-    free(assignment);
+    const Status status = g->option->setting ? settings_put(s, g->option->setting, g->value, &why) : STATUS_OK;
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "%s: %s", g->option->name, why.text);
 }
 

@@ -247,7 +247,6 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
 {
     static const char *const OTHERS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
     const char *pga = args_value(args, "--pga");
-    char assignment[64];
     e->n_levels = 1;
     if (args_has(args, "--svg") && !(pga && strchr(pga, ':')))
         return fail(err, STATUS_USAGE, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO");
@@ -262,9 +261,7 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
         e->level = levels;
         return ida_levels(pga, levels, &e->n_levels, err);
     }
-    if (snprintf(assignment, sizeof assignment, "motion.pga_g=%s", pga) >= (int)sizeof assignment)
-        return fail(err, STATUS_USAGE, "--pga: '%.40s...' is no number", pga);
-    return settings_set(s, assignment, err);
+    return settings_put(s, "motion.pga_g", pga, err);
 }
 
 typedef struct {

@@ -83,7 +83,6 @@ static Status run(const Args *args, Err *err)
     int n_names = 0, known = 0;
     Settings s;
     Adapter *adapter;
-    char kind[64];
     for (; textbook((size_t)n_names); n_names++) {
         names[n_names] = textbook((size_t)n_names)->name;
         known |= strcmp(args->operand, names[n_names]) == 0;
@@ -93,10 +92,9 @@ static Status run(const Args *args, Err *err)
     if (!args_has(args, "--csv"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
     settings_defaults(&s);
-    snprintf(kind, sizeof kind, "problem.kind=%s", args->operand);
-    TRY(settings_set(&s, kind, err));
+    TRY(settings_put(&s, "problem.kind", args->operand, err));
     TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_set(&s, kind, err)); /* whatever --set says: the operand is the problem */
+    TRY(settings_put(&s, "problem.kind", args->operand, err)); /* whatever --set says: the operand is the problem */
     TRY(settings_check(&s, err));
     TRY(adapter_open(&adapter, &s, err));
     const Status status = search(args, &s, adapter, err);

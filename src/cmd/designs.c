@@ -1,5 +1,6 @@
 #include "cmd/designs.h"
 
+#include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,18 +11,18 @@
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
-/* What front.csv and nearest.csv have beside the variables. */
+/* What front.csv and nearest.csv have beside the variables: results, as err_NAME and NAME_sd too. */
 static int is_result(const char *name)
 {
-    const char *const others[] = {"id", "replicates", "violation"};
-    const size_t length = strlen(name), n = length > 3 && strcmp(name + length - 3, "_sd") == 0 ? length - 3 : length;
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-        if (strcmp(name, others[i]) == 0)
-            return 1;
+    static const char *const OTHERS[] = {"id", "replicates", "violation"};
+    const char *of = name + (strncmp(name, "err_", 4) == 0 ? 4 : 0);
+    const size_t length = strlen(of), n = length > 3 && strcmp(of + length - 3, "_sd") == 0 ? length - 3 : length;
+    int found = 0;
+    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
+        found |= strcmp(name, OTHERS[i]) == 0;
     for (int k = 0; k < N_MEASURES; k++)
-        if (strlen(measure(k)->name) == n && strncmp(name, measure(k)->name, n) == 0)
-            return 1;
-    return 0;
+        found |= strlen(measure(k)->name) == n && strncmp(of, measure(k)->name, n) == 0;
+    return found;
 }
 
 /* The variables alone, in their order. */
@@ -62,8 +63,8 @@ static Status choose_row(Designs *d, const char *path, const char *choice, Err *
             keep_row(d, i);
             return STATUS_OK;
         }
-    return d->id ? fail(err, STATUS_BAD_DATA, "%s: has no design of id %ld", path, wanted)
-                 : fail(err, STATUS_BAD_DATA, "%s: has no design %ld; it holds %zu", path, wanted, d->n);
+    return fail(err, STATUS_BAD_DATA, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted,
+                d->n);
 }
 
 /* The column id, of (t->n_rows) for the caller to free; NULL: there is none. */
@@ -124,17 +125,18 @@ static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
 static Status check_space(const Run *run, const char *folder, const DesignSpace *space, Err *err)
 {
     char name[TABLE_NAME_MAX];
-    if (run->schema.n_var != (size_t)space->n_var)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
-                    folder, run->schema.n_var, space->n_floors, space->n_var);
-    for (int j = 0; j < space->n_var; j++) {
-        design_variable_name(space, j, name);
-        if (strcmp(schema_variable(&run->schema, (size_t)j)->name, name) != 0)
-            return fail(err, STATUS_BAD_DATA, "%s: variable %d of its designs is %s, here it is %s (design.variables)",
-                        folder, j + 1, schema_variable(&run->schema, (size_t)j)->name, name);
+    const size_t n_var = run->schema.n_var;
+    for (size_t j = 0; j < n_var && (int)j < space->n_var; j++) {
+        design_variable_name(space, (int)j, name);
+        if (strcmp(schema_variable(&run->schema, j)->name, name) != 0)
+            return fail(err, STATUS_BAD_DATA, "%s: variable %zu of its designs is %s, here it is %s (design.variables)",
+                        folder, j + 1, schema_variable(&run->schema, j)->name, name);
     }
-    return STATUS_OK;
+    return n_var == (size_t)space->n_var
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA,
+                      "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
+                      folder, n_var, space->n_floors, space->n_var);
 }
 
 static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space, Err *err)
@@ -159,16 +161,14 @@ typedef struct {
     int is_run;
 } Place;
 
-/* The folder of run.sqlite is the run. */
-static int is_run(char path[PATH_MAX])
+int run_drop_name(char *path)
 {
-    static const char DATABASE[] = "run.sqlite";
-    char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    if (strcmp(name, DATABASE) == 0) {
-        snprintf(slash ? slash : name, slash ? 1 : 2, "%s", slash ? "" : ".");
-        return 1;
-    }
-    return run_is_there(path);
+    const char *slash = strrchr(path, '/'), *folder;
+    if (strcmp(slash ? slash + 1 : path, "run.sqlite") != 0)
+        return 0;
+    folder = dirname(path);
+    memmove(path, folder, strlen(folder) + 1);
+    return 1;
 }
 
 static int is_there(const char *word, size_t length, Place *p)
@@ -189,7 +189,7 @@ static void find_place(const char *word, Place *p)
         is_there(word, (size_t)(colon - word), p);
         p->choice = colon + 1;
     }
-    p->is_run = is_run(p->path);
+    p->is_run = run_drop_name(p->path) || run_is_there(p->path);
 }
 
 Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err *err)

@@ -23,6 +23,9 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
+/* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
+int run_drop_name(char *path);
+
 /* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1". */
 enum { DESIGN_LABEL_MAX = 160 };
 void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX]);

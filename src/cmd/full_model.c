@@ -228,11 +228,8 @@ Status show_full_model(const Args *args, Err *err)
         if (args_has(args, OTHERS[i]))
             return fail(err, STATUS_USAGE, "--full-model: leave %s out", OTHERS[i]);
     TRY(is_run ? settings_of_run(args, &s, err) : args_settings(args, &s, NULL, NULL, err));
-    if (pga) {
-        char assignment[64];
-        snprintf(assignment, sizeof assignment, "motion.pga_g=%.40s", pga);
-        TRY(settings_set(&s, assignment, err));
-        TRY(settings_check(&s, err));
-    }
+    if (pga)
+        TRY(settings_put(&s, "motion.pga_g", pga, err));
+    TRY(settings_check(&s, err));
     return verify_by(args, &s, is_run ? args->operand : NULL, err);
 }

@@ -529,6 +529,13 @@ void settings_each_path(const Settings *s, SettingFn take, void *user)
         table_change_files(&copy, i, take_path, &(EachPath){OPTIONS[i].key, take, user});
 }
 
+Status settings_put(Settings *s, const char *key, const char *value, Err *err)
+{
+    int i = 0;
+    TRY(table_find(key, &i, err));
+    return table_assign(s, i, value, err);
+}
+
 Status settings_set(Settings *s, const char *assignment, Err *err)
 {
     char key[128];
@@ -536,9 +543,7 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
     if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof key)
         return fail(err, STATUS_USAGE, "--set %s: write --set section.key=value", assignment);
     snprintf(key, sizeof key, "%.*s", (int)(equals - assignment), assignment);
-    int i = 0;
-    TRY(table_find(key, &i, err));
-    return table_assign(s, i, equals + 1, err);
+    return settings_put(s, key, equals + 1, err);
 }
 
 static void keep_first(const char *text, void *user)

@@ -46,6 +46,8 @@ void settings_each(const Settings *s, SettingFn take, void *user);
 /* The same for every file or folder that a setting reads, one by one. */
 void settings_each_path(const Settings *s, SettingFn take, void *user);
 
+Status settings_put(Settings *s, const char *key, const char *value, Err *err);
+
 /* "section.key=value" as given to --set. */
 Status settings_set(Settings *s, const char *assignment, Err *err);
 
