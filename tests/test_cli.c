@@ -369,6 +369,7 @@ TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
     write_in_place("own.sqlite", "SQLite format 3");
     expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
     expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
+    expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/./a.csv");
     expect(2, "is a database", "simulate @/own.ini --design none --history @/own.sqlite");
     char *settings = read_in_place("own.ini");
     assert_string_equal(settings, "[sim]\nduration_s = 5\n");
@@ -412,6 +413,9 @@ TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
     expect(2, "K.csv, which building.model names", "building @/tower.ini --svg @/tower/K.csv");
     expect(2, "motion.csv, which the command reads", "spectrum @/motion.csv --csv @/motion.csv");
     expect(2, "motion.csv, which the command reads", "export @/held --csv @/motion.csv");
+    write_in_place("moved.csv", "t,a_g\n0,0\n0.01,0.1\n0.02,0\n");
+    expect(2, "moved.csv, which the command reads",
+           "polish @/held --set motion.record=@/moved.csv --design 1 --csv @/moved.csv");
     expect(2, "motion.csv, which the command reads", "choose @/held/run.sqlite --csv @/motion.csv");
     expect(2, "motion.csv, which the command reads", "simulate configs/quick.ini --design @/held:1 --csv @/motion.csv");
     char *kept = read_in_place("held/front.csv");

@@ -38,6 +38,23 @@ static void folder_of(const char *path, char folder[PATH_MAX])
     snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
+static const char *name_in(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The same name in the same folder, there or not, however it was typed. */
+static int is_same_place(const char *one, const char *other)
+{
+    struct stat a, b;
+    char folder[2][PATH_MAX];
+    folder_of(one, folder[0]);
+    folder_of(other, folder[1]);
+    return strcmp(name_in(one), name_in(other)) == 0 && stat(folder[0], &a) == 0 && stat(folder[1], &b) == 0 &&
+           a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 /* Is it that file, or one in that folder, which is no run's and holds more than pictures? */
 static int is_read_from(const char *out, const char *place)
 {
@@ -63,9 +80,8 @@ static void compare(const char *key, const char *path, void *user)
 {
     Looking *l = user;
     struct stat is;
-    const char *slash = strrchr(l->out, '/');
     const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
-    if (is_read_from(l->out, path) && (!is_folder || building_reads(slash ? slash + 1 : l->out)))
+    if (is_read_from(l->out, path) && (!is_folder || building_reads(name_in(l->out))))
         snprintf(l->reader, sizeof l->reader, "%s names", key);
 }
 
@@ -128,10 +144,11 @@ static Status check_one(const Args *args, const Given *out, Err *err)
         const Given *other = &args->given[j];
         if (other == out || !other->value)
             continue;
-        if (is_written(other) && strcmp(other->value, out->value) == 0)
+        if (is_written(other) && is_same_place(other->value, out->value))
             return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
                         other->option->name, out->value);
-        n_readers += !is_written(other) && is_read(out->value, other->value);
+        const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;
+        n_readers += !is_written(other) && is_read(out->value, equals ? equals + 1 : other->value);
     }
     return n_readers ? refuse(out, "the command reads", err) : STATUS_OK;
 }
