@@ -137,7 +137,8 @@ static void add_case(json_t *table, const MeasureOrder *order, const EvaluatedRu
         baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c].device, device);
     snprintf(label, sizeof label, "%s%s%s%s", EVALUATION_CASES[c].word, *device ? " (" : "", device,
              *device ? ")" : "");
-    figures_result(table, label, order, &run->result[c], c == EVALUATED_DESIGN && run->error_known ? run->error : NULL);
+    const int is_known = c == EVALUATED_DESIGN && run->error_known;
+    figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
     if (c == EVALUATED_DESIGN && run->replicates.n_replicates > 0)
         figures_replicates(table, order, &run->replicates);
 }

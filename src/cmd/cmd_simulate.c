@@ -24,7 +24,7 @@ typedef struct {
     size_t n;
     SimTask *tasks;            /* (n) */
     SimResult *results;        /* (n) */
-    double *error, *sd, *open; /* (n, N_MEASURES) of analysis/estimate.h, the larger of both; NULL: no estimate */
+    double *error, *sd;        /* (n, N_MEASURES) of analysis/estimate.h; NULL: no estimate */
     int has_parts;             /* replicates or further records, summed up by the rule of a study */
     ReplicateSummary *summary; /* (n) where there are some */
 } Job;
@@ -92,15 +92,11 @@ static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
     if (s->sim.engine != ENGINE_FAST || job->kind == SCENE_RIGID)
         return STATUS_OK;
     const size_t n = job->n * N_MEASURES;
-    job->error = calloc(3 * n, sizeof *job->error);
+    job->error = calloc(2 * n, sizeof *job->error);
     if (!job->error)
         return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
     job->sd = job->error + n;
-    job->open = job->sd + n;
-    TRY(estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err));
-    for (size_t i = 0; i < n; i++)
-        job->open[i] = job->error[i] < job->sd[i] ? job->sd[i] : job->error[i];
-    return STATUS_OK;
+    return estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err);
 }
 
 /* Of design i, of an array of all designs. */
@@ -161,7 +157,7 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
     for (size_t i = 0; i < job->n; i++) {
         design_label(&job->designs, args_value(args, "--design"), i, label);
         figures_result(table, job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i],
-                       row_of(job->open, i));
+                       row_of(job->error, i), row_of(job->sd, i));
         if (job->has_parts)
             figures_replicates(table, order, &job->summary[i]);
     }

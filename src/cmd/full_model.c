@@ -95,7 +95,7 @@ static void add_design(json_t *table, const Job *job, const char *word, size_t i
     for (int m = 0; m < MODELS; m++) {
         snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], job->found.dofs[m]);
         figures_result(table, label, &job->order, &job->found.result[m][i],
-                       job->found.error ? job->found.error + i * N_MEASURES : NULL);
+                       job->found.error ? job->found.error + i * N_MEASURES : NULL, NULL);
     }
     json_t *row = figures_row(table);
     json_object_set_new(row, "", json_string("  error of the reduced"));

@@ -411,14 +411,14 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
 }
 
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
-                       const double error[])
+                       const double error[], const double sd[])
 {
     char note[200] = "";
     json_t *row = figures_row(table);
     json_object_set_new(row, "", json_words(label));
     for (int i = 0; i < order->n_obj; i++)
         figures_put(row, measure(order->of[i])->name, measure_value(r, order->of[i]), error ? error[order->of[i]] : NAN,
-                    NAN);
+                    sd ? sd[order->of[i]] : NAN);
     json_object_set_new(row, "impacts", json_integer(r->impacts));
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)

@@ -52,10 +52,10 @@ void put_replicates(json_t *row, const ReplicateSummary *r);
  * was done to the samples and of what does not fit, where there is any. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
-/* A simulation: label, objectives with their likely errors (N_MEASURES) or NULL, impacts, and a note where it failed or
- * left the contact law. Returns its row. */
+/* A simulation: label, objectives with their likely errors and standard deviations (N_MEASURES; analysis/estimate.h) or
+ * NULL, impacts, and a note where it failed or left the contact law. Returns its row. */
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
-                       const double error[]);
+                       const double error[], const double sd[]);
 
 /* A row of means and standard deviations of the objectives; without them where a replicate failed. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r);
