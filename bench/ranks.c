@@ -17,7 +17,7 @@
 #include "base/clock.h"
 #include "evaluate/cluster.h"
 #include "evaluate/queue.h"
-#include "evaluate/threads.h"
+#include "evaluate/tasks.h"
 
 enum { WINDOW = 23, BATCH = 92, PARTS = 4, MANY = 4096 };
 

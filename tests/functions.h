@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "evaluate/queue.h"
-#include "evaluate/threads.h"
+#include "evaluate/tasks.h"
 
 /* n designs X (n, n_var), of which draws[i] evaluations were made before; minimised F (n, n_obj), G (n, n_con), ok (n). */
 typedef Status (*FunctionFn)(size_t n, const double X[], const size_t draws[], double F[], double G[],
@@ -70,8 +70,7 @@ static inline Problem function_problem(Function *function, size_t n_var, size_t 
                      .self = function,
                      .n_parts = 1,
                      .part_size = (n_obj + n_con + 1) * sizeof(double),
-                     .n_workers = 1,
-                     .executor = &EXECUTOR_CLIENT};
+                     .n_workers = 1};
 }
 
 /* n evaluations of before, whose numbers begin with first_id; G and generation may be NULL. */

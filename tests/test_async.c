@@ -324,7 +324,7 @@ TEST(the_search_is_nearly_as_good_as_one_in_batches)
 TEST(every_limit_ends_with_all_that_was_simulated)
 {
     world(6, 3, 4);
-    here.problem.executor = &EXECUTOR_THREADS;
+    here.problem.executor = NULL; /* threads */
     SearchConfig c = config(20, 200);
     c.generations = 5;
     search(&c, NULL, &whole);

@@ -8,7 +8,6 @@
 
 #include "base/random.h"
 #include "evaluate/queue.h"
-#include "evaluate/threads.h"
 
 enum { VAR = 2, OBJ = 2, PARTS = 3, DESIGNS = 60, WORKERS = 4 };
 
@@ -100,8 +99,6 @@ static Queue *open_queue(size_t workers, QueueOrder order)
     bench.problem.n_parts = PARTS;
     bench.problem.part_size = sizeof(Part);
     bench.problem.n_workers = workers;
-    if (!bench.problem.executor)
-        bench.problem.executor = executor_for(workers);
     CHECK_OK(queue_open(&q, &bench.problem, order, 1, 100, &err), &err);
     return q;
 }

@@ -7,7 +7,6 @@
 
 #include "base/hash.h"
 #include "check.h"
-#include "evaluate/threads.h"
 #include "moga/constants.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
@@ -109,7 +108,6 @@ static void open_world(World *w, size_t n_workers)
                            .n_cheap = CHEAP,
                            .part_size = sizeof(Part),
                            .n_workers = n_workers,
-                           .executor = executor_for(n_workers),
                            .observer = {.done = note_done, .user = w}};
 }
 

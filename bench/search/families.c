@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "evaluate/threads.h"
 
 typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
@@ -359,7 +358,6 @@ Status family_open(Problem *p, size_t i, Err *err)
                    .self = m,
                    .n_parts = 1,
                    .part_size = (a->n_obj + a->n_con + 1) * sizeof(double),
-                   .n_workers = 1,
-                   .executor = &EXECUTOR_CLIENT};
+                   .n_workers = 1};
     return STATUS_OK;
 }

@@ -5,7 +5,7 @@
 
 #include "evaluate/external.h"
 #include "evaluate/textbook.h"
-#include "evaluate/threads.h"
+#include "evaluate/tasks.h"
 
 struct Adapter {
     Schema schema;

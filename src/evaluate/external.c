@@ -16,7 +16,6 @@
 #include "base/clock.h"
 #include "base/list.h"
 #include "base/visible.h"
-#include "evaluate/threads.h"
 #include "evaluate/helper.h"
 
 enum {
@@ -522,7 +521,6 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .self = e,
                    .n_parts = 1,
                    .part_size = e->part_size,
-                   .n_workers = e->n_workers,
-                   .executor = executor_for(e->n_workers)};
+                   .n_workers = e->n_workers};
     return STATUS_OK;
 }

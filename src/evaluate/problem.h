@@ -54,7 +54,8 @@ typedef struct {
     void (*close)(void *self); /* NULL is fine */
 } Simulator;
 
-/* Who does the tasks: evaluate/threads.h. */
+/* Who does the tasks in the place of this process (evaluate/tasks.h), which has a thread for each of several workers;
+ * where there is one, the client does them itself while it waits. */
 typedef struct {
     Status (*start)(void **self, Queue *queue, Err *err);
     void (*help)(void *self); /* called while the client waits: does something; NULL: needs no help */
@@ -86,7 +87,7 @@ struct Problem {
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
     size_t n_cheap;           /* 0: there is no cheap level */
-    const Executor *executor; /* evaluate/threads.h */
+    const Executor *executor; /* NULL: this process */
     const void
         *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem; NULL: none */
     size_t recipe_size;

@@ -1,11 +1,13 @@
 #include "evaluate/queue.h"
 
+#include <omp.h>
 #include <pthread.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/carve.h"
+#include "evaluate/cluster.h"
 
 typedef enum { PENDING, FINISHED, KNOWN } Place; /* KNOWN: as arrived, its evaluation is among those from before */
 
@@ -22,6 +24,12 @@ typedef struct {
     double *note;
     char *parts;
 } Slot;
+
+typedef struct {
+    Queue *queue;
+    size_t number;
+    pthread_t thread;
+} Worker;
 
 struct Queue {
     const Problem *problem;
@@ -44,8 +52,9 @@ struct Queue {
     Status status;
     size_t rank; /* of the task that ended it */
     Err why;
-    const Executor *executor;
-    void *executing;
+    void *executing;  /* the problem's executor; without one: */
+    Worker *worker;   /* (n_threads) */
+    size_t n_threads; /* 0: the client itself is the worker, while it waits */
     pthread_mutex_t lock, finishing;
     pthread_cond_t work, news;
 };
@@ -307,14 +316,29 @@ static size_t find_next(const Queue *q)
     return first;
 }
 
+static int do_task(Queue *q, size_t worker, int wait)
+{
+    Task task;
+    Err why = {0};
+    if (!queue_take(q, wait, &task))
+        return 0;
+    const Status status = q->problem->simulator->simulate(q->problem->self, worker, &task, &why);
+    queue_give(q, &task, status, &why);
+    return 1;
+}
+
 static void wait_for_news(Queue *q)
 {
-    if (!q->executor->help) {
+    const Executor *e = q->problem->executor;
+    if (e ? !e->help : q->n_threads > 0) {
         pthread_cond_wait(&q->news, &q->lock);
         return;
     }
     pthread_mutex_unlock(&q->lock);
-    q->executor->help(q->executing);
+    if (e)
+        e->help(q->executing);
+    else
+        do_task(q, 0, 0);
     pthread_mutex_lock(&q->lock);
 }
 
@@ -492,6 +516,45 @@ void queue_give(Queue *q, const Task *task, Status status, const Err *why)
     pthread_mutex_unlock(&q->lock);
 }
 
+/* -- who does the tasks -------------------------------------------------------------------------------------------- */
+
+size_t threads_wanted(long setting)
+{
+    return setting > 0 ? (size_t)setting : (size_t)omp_get_num_procs();
+}
+
+void executor_choose(Problem *p)
+{
+    size_t n_ranks;
+    p->executor = p->recipe ? cluster_executor(&n_ranks) : NULL;
+    p->n_workers *= p->executor ? n_ranks : 1;
+}
+
+static void *work(void *user)
+{
+    const Worker *w = user;
+    while (do_task(w->queue, w->number, 1))
+        ;
+    return NULL;
+}
+
+static Status start(Queue *q, Err *err)
+{
+    const size_t n = q->problem->n_workers;
+    if (q->problem->executor)
+        return q->problem->executor->start(&q->executing, q, err);
+    q->worker = n > 1 ? calloc(n, sizeof *q->worker) : NULL;
+    if (n > 1 && !q->worker)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu threads", n);
+    for (; n > 1 && q->n_threads < n; q->n_threads++) {
+        Worker *w = &q->worker[q->n_threads];
+        *w = (Worker){.queue = q, .number = q->n_threads};
+        if (pthread_create(&w->thread, NULL, work, w) != 0)
+            return fail(err, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", q->n_threads + 1, n);
+    }
+    return STATUS_OK;
+}
+
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
 Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err)
@@ -508,8 +571,7 @@ Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t 
     pthread_mutex_init(&q->finishing, NULL);
     pthread_cond_init(&q->work, NULL);
     pthread_cond_init(&q->news, NULL);
-    q->executor = problem->executor;
-    const Status status = q->executor->start(&q->executing, q, err);
+    const Status status = start(q, err);
     if (status == STATUS_OK)
         *out = q;
     else
@@ -526,7 +588,10 @@ void queue_close(Queue *q)
     pthread_cond_broadcast(&q->work);
     pthread_mutex_unlock(&q->lock);
     if (q->executing)
-        q->executor->stop(q->executing);
+        q->problem->executor->stop(q->executing);
+    for (size_t i = 0; i < q->n_threads; i++)
+        pthread_join(q->worker[i].thread, NULL);
+    free(q->worker);
     pthread_mutex_destroy(&q->lock);
     pthread_mutex_destroy(&q->finishing);
     pthread_cond_destroy(&q->work);

@@ -14,4 +14,13 @@ int queue_take(Queue *q, int wait, Task *task);
 /* The task is done, its part lies at task->result; a status ends everything, `why` is its reason. */
 void queue_give(Queue *q, const Task *task, Status status, const Err *why);
 
+/* -- who does them ------------------------------------------------------------------------------------------------- */
+
+/* Of a problem with n_workers of its own: the ranks of the cluster (evaluate/cluster.h) where there are some and it has
+ * a recipe, as many workers each; else the same. */
+void executor_choose(Problem *p);
+
+/* Workers for a setting of so many threads; 0: one for each processor. */
+size_t threads_wanted(long setting);
+
 #endif

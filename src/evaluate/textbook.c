@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "evaluate/threads.h"
 
 static double square_off_middle(size_t n_var, size_t n_obj, const double x[])
 {
@@ -215,8 +214,7 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
                    .self = e,
                    .n_parts = 1,
                    .part_size = e->n_obj * sizeof(double),
-                   .n_workers = 1,
-                   .executor = &EXECUTOR_CLIENT};
+                   .n_workers = 1};
     return STATUS_OK;
 }
 

@@ -9,7 +9,7 @@
 #include "base/hash.h"
 #include "base/list.h"
 #include "evaluate/device.h"
-#include "evaluate/threads.h"
+#include "evaluate/tasks.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
 
@@ -354,8 +354,7 @@ static Problem problem_on(Tower *t)
                      .n_parts = t->plan.n_records * t->plan.n_replicates,
                      .n_cheap = t->plan.n_replicates > 1 ? t->plan.n_records : 0,
                      .part_size = sizeof(Measured),
-                     .n_workers = t->n_workers,
-                     .executor = executor_for(t->n_workers)};
+                     .n_workers = t->n_workers};
 }
 
 static Status prepare(Tower *t, Err *err)
@@ -566,7 +565,7 @@ static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult r
     }
     own.n_workers = n_simulations < own.n_workers ? n_simulations : own.n_workers;
     if (own.n_workers < 2)
-        own.executor = executor_for(1);
+        own.executor = NULL;
     TRY(queue_open(&q, &own, QUEUE_AS_ASKED, 0, 0, err));
     const Status status = run_all(q, n, tasks, results, tell, user, err);
     queue_close(q);

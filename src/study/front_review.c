@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/linalg.h"
-#include "evaluate/threads.h"
+#include "evaluate/tasks.h"
 #include "settings/options.h"
 #include "evaluate/tower.h"
 #include "study/record_paths.h"
