@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/figure.h"
+#include "cmd/show.h"
 
 static void expect_figure(double value, double error, double sd, const char *wanted)
 {
@@ -62,6 +63,18 @@ TEST(a_standard_deviation_above_the_error_is_what_is_printed)
     expect_figure(13.25, 0.1, 1.16, "13 ± 1 sd");
     expect_figure(13.25, 0.1, 0.01, "13.2 ± 0.1");
     expect_figure(13.25, NAN, 0.2, "13.2 ± 0.2 sd");
+}
+
+TEST(a_share_that_is_a_negative_nothing_is_none)
+{
+    json_t *table = json_array(), *row = figures_row(table);
+    figures_put(row, "ed5_10_pct", -0.0066, NAN, NAN);
+    figures_put(row, "edcs_pct", -3.21, NAN, NAN); /* a mean less a standard deviation */
+    figures_put(row, "ed1_pct", -0.0066, 0.01, NAN);
+    assert_string_equal(json_string_value(json_object_get(row, "ed5_10_pct")), "0.0");
+    assert_string_equal(json_string_value(json_object_get(row, "edcs_pct")), "-3.21");
+    assert_string_equal(json_string_value(json_object_get(row, "ed1_pct")), "0.00 ± 0.01");
+    json_decref(table);
 }
 
 /* The page has the rule once more, in its own language: the same text for every value and error. */

@@ -23,8 +23,10 @@ json_t *figures_row(json_t *table)
 
 void figures_put(json_t *row, const char *column, double value, double error, double sd)
 {
-    char text[FIGURE_MAX];
-    figure_text(value, error, sd, text);
+    static const double NOTHING = 0.05; /* [%] of a share, which is not negative but by rounding or a deviation */
+    char text[FIGURE_MAX] = "0.0";
+    if (!(strstr(column, "_pct") && value < 0 && value > -NOTHING && isnan(error) && isnan(sd)))
+        figure_text(value, error, sd, text);
     json_object_set_new(row, column, json_string(text));
 }
 
