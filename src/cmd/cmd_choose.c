@@ -73,12 +73,6 @@ static Status take_reference(const Choice *c, const char *list, double reference
 
 typedef double (*CostFn)(const Choice *c, size_t row, const double values[]);
 
-static double distance_cost(const Choice *c, size_t row, const double values[])
-{
-    (void)values;
-    return run_distance2(c->run, &c->box, row);
-}
-
 static double weighted_cost(const Choice *c, size_t row, const double weights[])
 {
     double sum = 0;
@@ -87,14 +81,15 @@ static double weighted_cost(const Choice *c, size_t row, const double weights[])
     return sum;
 }
 
-static double reference_cost(const Choice *c, size_t row, const double reference[])
+/* To a point in natural signs, NAN where nothing is wished for; NULL: the ideal one. */
+static double distance_cost(const Choice *c, size_t row, const double point[])
 {
     double sum = 0;
-    for (size_t k = 0; k < c->run->schema.n_obj; k++) {
-        const double off = (run_f(c->run, row)[k] - reference[k]) / c->box.span[k];
-        sum += isnan(reference[k]) ? 0 : off * off;
+    for (size_t k = 0; point && k < c->run->schema.n_obj; k++) {
+        const double off = (run_f(c->run, row)[k] - point[k]) / c->box.span[k];
+        sum += isnan(point[k]) ? 0 : off * off;
     }
-    return sum;
+    return point ? sum : run_distance2(c->run, &c->box, row);
 }
 
 /* -- what is chosen ------------------------------------------------------------------------------------------------ */
@@ -109,7 +104,7 @@ typedef struct {
     } pick[PICKS_MAX];
 } Picks;
 
-/* The cheapest design within the limits; values[0] of best_cost is the objective's number. */
+/* The cheapest design within the limits. */
 static void add_pick(const Choice *c, const char *name, CostFn cost, const double values[], Picks *p)
 {
     const Run *run = c->run;
@@ -121,11 +116,6 @@ static void add_pick(const Choice *c, const char *name, CostFn cost, const doubl
     }
     snprintf(p->pick[p->n].name, sizeof p->pick[0].name, "%s", name);
     p->pick[p->n++].row = best;
-}
-
-static double best_cost(const Choice *c, size_t row, const double values[])
-{
-    return run_scaled(c->run, &c->box, row, (size_t)values[0]);
 }
 
 static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
@@ -143,12 +133,14 @@ static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
     for (size_t k = 0; k < c->run->schema.n_obj; k++) {
         char name[TABLE_NAME_MAX + 8];
         snprintf(name, sizeof name, "best_%s", schema_objective(&c->run->schema, k)->name);
-        add_pick(c, name, best_cost, (const double[]){(double)k}, p);
+        double alone[OBJECTIVES_MAX] = {0};
+        alone[k] = 1;
+        add_pick(c, name, weighted_cost, alone, p);
     }
     if (args_has(args, "--weights"))
         add_pick(c, "weighted", weighted_cost, weights, p);
     if (args_has(args, "--reference"))
-        add_pick(c, "nearest to reference", reference_cost, reference, p);
+        add_pick(c, "nearest to reference", distance_cost, reference, p);
     return STATUS_OK;
 }
 

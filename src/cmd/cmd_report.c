@@ -24,21 +24,17 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
 {
     static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
-    r->n = 0;
-    for (int i = 0; (path = args_next(args, "--record", &i));) {
-        if (r->n == RECORDS_MAX)
-            return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX);
+    const size_t further = list_is_given(run->motion.records) ? list_count(run->motion.records) : 0;
+    for (int i = 0; r->n < RECORDS_MAX && (path = args_next(args, "--record", &i));)
         r->path[r->n++] = path;
+    const int is_given = r->n > 0;
+    if (r->n == RECORDS_MAX)
+        return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
+    for (size_t i = 0; i < further && !is_given && r->n < RECORDS_MAX; i++, r->n++) {
+        list_item(run->motion.records, i, r->own[r->n], sizeof r->own[0]);
+        r->path[r->n] = r->own[r->n];
     }
-    if (args_has(args, "--record"))
-        return STATUS_OK;
-    const size_t further = strcmp(run->motion.records, "none") == 0 ? 0 : list_count(run->motion.records);
-    for (size_t i = 0; i < further && r->n < RECORDS_MAX; i++)
-        if (list_item(run->motion.records, i, r->own[r->n], sizeof r->own[0])) {
-            r->path[r->n] = r->own[r->n];
-            r->n++;
-        }
-    for (size_t i = 0; further == 0 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
+    for (size_t i = 0; !is_given && further == 0 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
             r->path[r->n++] = BUILT_IN[i];
     return STATUS_OK;
@@ -48,7 +44,7 @@ static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
 {
     const char *design = args_value(args, "--design");
     Settings other = *run->settings;
-    Records records;
+    Records records = {0};
     size_t row;
     long floor;
     DetailOptions options = {.other = &other, .records = records.path};

@@ -40,14 +40,17 @@ static void drop_zeros(char *text)
         text[n - (text[n - 1] == '.')] = 0;
 }
 
-void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX])
+enum { CELL_MAX = 600 };
+
+/* As it is shown; NULL: empty. */
+static void cell_words(const json_t *cell, char text[CELL_MAX])
 {
     if (!cell || json_is_string(cell))
-        snprintf(text, FIGURES_CELL_MAX, "%s", cell ? json_string_value(cell) : "");
+        snprintf(text, CELL_MAX, "%s", cell ? json_string_value(cell) : "");
     else if (json_is_integer(cell))
-        snprintf(text, FIGURES_CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
+        snprintf(text, CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
     else if (json_is_boolean(cell))
-        snprintf(text, FIGURES_CELL_MAX, "%s", json_is_true(cell) ? "yes" : "no");
+        snprintf(text, CELL_MAX, "%s", json_is_true(cell) ? "yes" : "no");
     else
         figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, text);
     if (json_is_real(cell))
@@ -68,12 +71,12 @@ static json_t *columns_of(json_t *table)
 {
     json_t *columns = json_object(), *row, *cell;
     const char *name;
-    char text[FIGURES_CELL_MAX];
+    char text[CELL_MAX];
     size_t i;
     json_array_foreach(table, i, row) json_object_foreach(row, name, cell)
     {
         const json_int_t before = json_integer_value(json_object_get(columns, name));
-        figures_cell(cell, text);
+        cell_words(cell, text);
         const int head = width_of(name), own = width_of(text), width = head > own ? head : own;
         if (!before || width > before)
             json_object_set_new(columns, name, json_integer(width));
@@ -86,11 +89,11 @@ static void print_row(json_t *columns, const json_t *row)
 {
     const char *name, *gap = "";
     json_t *width;
-    char text[FIGURES_CELL_MAX];
+    char text[CELL_MAX];
     json_object_foreach(columns, name, width)
     {
         if (row)
-            figures_cell(json_object_get(row, name), text);
+            cell_words(json_object_get(row, name), text);
         else
             snprintf(text, sizeof text, "%s", name);
         const int blanks = (int)json_integer_value(width) - width_of(text), is_word = !*gap || *name == ' ';
@@ -118,11 +121,11 @@ enum { LISTED_MAX = 32 }; /* numbers in a line: more are not for the eye */
 
 static void list_value(const json_t *value)
 {
-    char text[FIGURES_CELL_MAX];
+    char text[CELL_MAX];
     size_t i;
     json_t *item;
     json_array_foreach(value, i, item) list_value(item);
-    figures_cell(value, text);
+    cell_words(value, text);
     if (!json_is_array(value))
         printf(" %s", text);
 }
@@ -155,11 +158,11 @@ void figures_list(int indent, json_t *o)
 
 static void write_cell(FILE *out, const json_t *cell)
 {
-    char text[FIGURES_CELL_MAX], safe[FIGURES_CELL_MAX];
+    char text[CELL_MAX], safe[CELL_MAX];
     if (json_is_real(cell)) {
         print_number(out, json_real_value(cell));
     } else if (cell && !json_is_null(cell)) {
-        figures_cell(cell, text);
+        cell_words(cell, text);
         cell_text(safe, sizeof safe, text);
         fputs(safe, out);
     }

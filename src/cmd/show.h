@@ -18,10 +18,6 @@ json_t *figures_row(json_t *table); /* a further one */
  * known. */
 void figures_put(json_t *row, const char *column, double value, double error, double sd);
 
-/* A cell as it is shown; NULL: empty. */
-enum { FIGURES_CELL_MAX = 600 };
-void figures_cell(const json_t *cell, char text[FIGURES_CELL_MAX]);
-
 void figures_print(json_t *table);
 
 /* An object on standard output, a line for every member that is neither empty nor rows; borrowed. */

@@ -43,40 +43,22 @@ static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *er
 /* -- contacts one by one ------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    size_t n, room; /* of the run under way */
-    SimContact *at;
-    int out_of_memory;
-} ContactList;
+    FILE *rows; /* of the run under way, which may be repeated with shorter steps */
+    long design;
+} ContactRows;
 
-static void add_contact(const SimContact *contact, void *user)
+static void add_contact(const SimContact *c, void *user)
 {
-    ContactList *list = user;
-    if (!contact) { /* a run begins */
-        list->n = 0;
+    const ContactRows *r = user;
+    if (!c) { /* a run begins */
+        rewind(r->rows);
         return;
     }
-    if (list->n == list->room) {
-        const size_t room = list->room ? 2 * list->room : 256;
-        SimContact *at = realloc(list->at, room * sizeof *at);
-        list->out_of_memory |= !at;
-        if (!at)
-            return;
-        list->at = at;
-        list->room = room;
-    }
-    list->at[list->n++] = *contact;
-}
-
-static void print_contacts(FILE *out, long design, const ContactList *list)
-{
-    for (size_t i = 0; i < list->n; i++) {
-        const SimContact *c = &list->at[i];
-        fprintf(out, "%ld,%d,%d,%d", design, c->floor + 1, c->side, c->open);
-        print_cells(out, 8,
-                    (const double[]){c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse,
-                                     c->lost});
-        fputc('\n', out);
-    }
+    fprintf(r->rows, "%ld,%d,%d,%d", r->design, c->floor + 1, c->side, c->open);
+    print_cells(
+        r->rows, 8,
+        (const double[]){c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost});
+    fputc('\n', r->rows);
 }
 
 static void write_contacts_header(FILE *out, int n_floors)
@@ -88,14 +70,19 @@ static void write_contacts_header(FILE *out, int n_floors)
 
 static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    ContactList list = {0};
-    sim_worker_contacts(worker, add_contact, &list);
+    char *text = NULL;
+    size_t length = 0;
+    ContactRows rows = {open_memstream(&text, &length), number_of(job, i)};
+    if (!rows.rows)
+        return fail(err, STATUS_NO_MEMORY, "--contacts: no memory");
+    sim_worker_contacts(worker, add_contact, &rows);
     Status status = run_again(job, worker, i, err);
-    if (status == STATUS_OK && list.out_of_memory)
-        status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for %zu contacts", list.n);
+    const long end = ftell(rows.rows);
+    if ((fclose(rows.rows) != 0 || end < 0) && status == STATUS_OK)
+        status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for the contacts of design %ld", rows.design);
     if (status == STATUS_OK)
-        print_contacts(out, number_of(job, i), &list);
-    free(list.at);
+        fwrite(text, 1, (size_t)end, out);
+    free(text);
     return status;
 }
 

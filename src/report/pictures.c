@@ -73,34 +73,26 @@ static void write_objectives(FILE *out, const Report *r, double first, const dou
     fputc('\n', out);
 }
 
-/* Pairs of objectives against each other: those of the paper that are there, then the first ones. */
-static size_t choose_panels(const Report *r, size_t panels[3][2])
+/* Pairs of objectives against each other: those of the paper where all are there, else the first ones. */
+static size_t choose_panels(const Schema *s, size_t panels[3][2])
 {
-    static const int PAPER[3][2] = {{MEASURE_J1, MEASURE_J3}, {MEASURE_J1, MEASURE_J2}, {MEASURE_ED1, MEASURE_ED5_10}};
-    static const size_t PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    const Schema *s = &r->run->schema;
-    size_t n = 0;
-    for (int i = 0; i < 6 && n < 3; i++) {
-        const int is_paper = i < 3;
-        if (is_paper && !r->has_detail)
-            continue;
-        const size_t x = is_paper ? schema_find_objective(s, measure(PAPER[i][0])->name) : PAIRS[i - 3][0];
-        const size_t y = is_paper ? schema_find_objective(s, measure(PAPER[i][1])->name) : PAIRS[i - 3][1];
-        int is_new = x < s->n_obj && y < s->n_obj;
-        for (size_t k = 0; k < n; k++)
-            is_new = is_new && !(panels[k][0] + panels[k][1] == x + y && (panels[k][0] == x || panels[k][0] == y));
-        panels[n][0] = is_new ? x : panels[n][0];
-        panels[n][1] = is_new ? y : panels[n][1];
-        n += is_new != 0;
+    static const char *const PAPER[3][2] = {{"j1_m", "j3_g"}, {"j1_m", "j2_m"}, {"ed1_pct", "ed5_10_pct"}};
+    static const size_t FIRST[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    int has_all = 1;
+    for (int i = 0; i < 6; i++) {
+        panels[i / 2][i % 2] = schema_find_objective(s, PAPER[i / 2][i % 2]);
+        has_all = has_all && panels[i / 2][i % 2] < s->n_obj;
     }
-    return n;
+    if (!has_all)
+        memcpy(panels, FIRST, sizeof FIRST);
+    return has_all || s->n_obj > 2 ? 3 : 1;
 }
 
 static void write_front(FILE *out, const Report *r)
 {
     const Schema *schema = &r->run->schema;
     size_t panels[3][2] = {{0}};
-    const size_t n = choose_panels(r, panels);
+    const size_t n = choose_panels(schema, panels);
     double f[OBJECTIVES_MAX];
     fputs("$FRONT << EOD\n", out);
     for (size_t i = 0; i < r->run->n_front; i++)
