@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include "base/figure.h"
 #include "study/front_review.h"
 
 /* A short, cheap study of the tower. */
@@ -103,8 +104,8 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
         least = fmin(least, front.values[i * front.n_cols + 23]);
     table_free(&front);
     char *chosen = output_of("choose @/other --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
-    char wanted[32];
-    snprintf(wanted, sizeof wanted, "%.4g", least);
+    char wanted[FIGURE_MAX];
+    figure_text(least, NAN, NAN, wanted);
     assert_non_null(strstr(chosen, wanted));
     free(chosen);
     json_t *o = json_of("export @/other --json");
@@ -217,7 +218,7 @@ TEST(four_storeys_are_not_searched_for_modes_that_they_do_not_have)
     char command[512];
     snprintf(command, sizeof command, "check @/tower.ini %s", OPTIONS);
     char *said = output_of(command);
-    assert_non_null(strstr(said, "objectives j1_m, j2_m, j3_g, ed1_pct, edcs_pct, mcore_kg\n"));
+    assert_non_null(strstr(said, " j1_m j2_m j3_g ed1_pct edcs_pct mcore_kg\n"));
     assert_non_null(strstr(said, "ed5_10_pct is no objective: the building has no modes 5 to 10"));
     free(said);
     snprintf(command, sizeof command, "optimize @/tower.ini --out @/of-four %s", OPTIONS);
@@ -256,6 +257,8 @@ TEST(columns_stand_below_their_names_however_long_these_are)
     write_in_place("tower.ini", TOWER);
     char *said = output_of("optimize @/tower.ini --out @/long --set "
                            "search.objectives=j1_m,building_base_shear_n,contact_force_max_n,mcore_kg");
+    for (char *sign; (sign = strstr(said, "\u00b1"));) /* of two bytes, one place */
+        memmove(sign, sign + 1, strlen(sign));
     char *heads = line_from(said, " design ", 0), *row = line_from(said, "best building_base_shear_n", 0);
     while (heads > said && heads[-1] != '\n')
         heads--;

@@ -17,8 +17,8 @@
 #include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/tables.h"
-#include "sim/sim.h"
 #include "evaluate/adapter.h"
+#include "evaluate/tower.h"
 
 typedef struct {
     int as_json;
@@ -251,22 +251,6 @@ static void scene_json(Check *c, const CheckedScene *p)
 
 /* ---- the study ------------------------------------------------------------------------------------------------ */
 
-/* Wall time of one simulation of the design to try. */
-static Status time_simulation(const CheckedScene *p, SimResult *result, Err *err)
-{
-    const SceneOptions options = settings_scene(p->s);
-    Scene *scene = NULL;
-    SimWorker *worker = NULL;
-    Status status = scene_create(&scene, &options, &p->motion, err);
-    if (status == STATUS_OK)
-        status = sim_worker_create(&worker, scene, err);
-    if (status == STATUS_OK)
-        status = sim_run(worker, SCENE_IMPACT, p->x, result, err);
-    sim_worker_free(worker);
-    scene_free(scene);
-    return status;
-}
-
 /* What a study does beside its simulations, for the time that it takes: per evaluation and objective, growing with the
  * root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and record.
  * Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives, within 30 %,
@@ -287,13 +271,30 @@ static void expected_times(const CheckedScene *p, long simulations, long threads
     *all_s = all * each_s / (double)threads + *search_s + *baselines_s;
 }
 
-static void describe_study(Check *c, const CheckedScene *p)
+static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
+{
+    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
+    json_t *names = json_array();
+    for (size_t k = 0; k < schema->n_obj; k++)
+        json_array_append_new(names, json_words(schema_objective(schema, k)->name));
+    json_object_set_new(c->out, "objectives", names);
+    if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
+        warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
+    if (missing && strcmp(objectives, "auto") != 0)
+        warn("search.objectives", missing, c);
+    else if (missing)
+        json_object_set_new(c->out, "missing", json_string(missing));
+}
+
+/* The design to try is simulated once. */
+static void describe_study(Check *c, const CheckedScene *p, const Problem *problem)
 {
     Err e = {0};
     SimResult r;
     double search_s, baselines_s, all_s;
     const Settings *s = p->s;
-    if (!note(c, time_simulation(p, &r, &e), "simulation", &e))
+    const SimTask task = {.kind = SCENE_IMPACT, .x = p->x};
+    if (!note(c, tower_simulate(problem, 1, &task, &r, &e), "simulation", &e))
         return;
     const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
                                                                : here > 0            ? here
@@ -311,23 +312,8 @@ static void describe_study(Check *c, const CheckedScene *p)
                                   "seconds", all_s));
 }
 
-static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
-{
-    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
-    json_t *names = json_array();
-    for (size_t k = 0; k < schema->n_obj; k++)
-        json_array_append_new(names, json_words(schema_objective(schema, k)->name));
-    json_object_set_new(c->out, "objectives", names);
-    if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
-        warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
-    if (missing && strcmp(objectives, "auto") != 0)
-        warn("search.objectives", missing, c);
-    else if (missing)
-        json_object_set_new(c->out, "missing", json_string(missing));
-}
-
 /* Limits, further records and whatever else a search opens before it starts. */
-static void open_study(Check *c, const Settings *s)
+static void open_study(Check *c, const Settings *s, const CheckedScene *p)
 {
     Err e = {0};
     Adapter *adapter;
@@ -338,6 +324,8 @@ static void open_study(Check *c, const Settings *s)
     if (s->problem.kind == PROBLEM_TOWER) {
         describe_objectives(c, schema, s->search.objectives,
                             schema->design.n_bumpers > 0 || s->contact.bumper_stiffness_n_m > 0);
+        if (json_array_size(c->faults) == 0)
+            describe_study(c, p, adapter_problem(adapter));
     } else {
         json_object_set_new(
             c->out, "problem",
@@ -353,9 +341,7 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
     if (building && motion && choose_design(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
         scene_json(c, &p);
         if (json_array_size(c->faults) == 0)
-            open_study(c, s);
-        if (json_array_size(c->faults) == 0)
-            describe_study(c, &p);
+            open_study(c, s, &p);
     }
     building_free(&p.building);
     motion_free(&p.motion);
@@ -411,7 +397,7 @@ static Status run(const Args *args, Err *err)
         if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
         else if (json_array_size(c.faults) == 0)
-            open_study(&c, &s);
+            open_study(&c, &s, NULL);
         status = verdict(args, &c, err);
     }
     json_decref(c.out);

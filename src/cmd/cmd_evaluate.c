@@ -314,55 +314,59 @@ static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
     return status;
 }
 
-static Status evaluate_of_run(const Args *args, const Run *run, const char *word, Err *err)
+/* word: of the run's designs, or one from elsewhere. */
+static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, const char *word, Err *err)
 {
-    Settings s = *run->settings;
     size_t row;
     Designs other;
-    TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(design_of_run(run, word, &row, &other, err));
     const int is_own = row < run->table.n;
     const Chosen c = {&run->schema, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
-    const Status status =
-        s.problem.kind == PROBLEM_TOWER
-            ? evaluate(args, &s, &c, err)
-            : fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
+    const Status status = evaluate(args, s, &c, err);
     design_free(&other);
     return status;
 }
 
-static Status evaluate_by_config(const Args *args, const char *word, Err *err)
+static Status evaluate_by_config(const Args *args, Settings *s, const char *word, Err *err)
 {
-    Settings s;
     DesignSpace space;
     Schema schema;
     Designs d;
-    TRY(args_settings(args, &s, NULL, NULL, err));
-    if (s.problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower: no ground motion applies");
-    TRY(tower_space(&s, &space, err));
+    TRY(tower_space(s, &space, err));
     TRY(designs_take_one(&d, word, &space, err));
-    Status status = schema_of(&schema, &s, space.n_floors, err);
+    Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {
-        status = evaluate(args, &s, &(Chosen){&schema, 0, d.x, word}, err);
+        status = evaluate(args, s, &(Chosen){&schema, 0, d.x, word}, err);
         schema_free(&schema);
     }
     design_free(&d);
     return status;
 }
 
-static Status run(const Args *args, Err *err)
+/* run NULL: the operand is a CONFIG, else the settings are of that run. */
+static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *err)
 {
     const char *word = args_value(args, "--design");
-    Run r;
+    TRY(run ? args_apply(args, s, NULL, NULL, err) : args_settings(args, s, NULL, NULL, err));
+    if (s->problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.kind: is no tower but another problem: no ground motion applies, nor a full model");
     if (args_has(args, "--full-model"))
-        return show_full_model(args, err);
-    if (!word)
+        return show_full_model(args, s, run ? args->operand : NULL, err);
+    return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Settings s;
+    Run r = {0};
+    if (!args_has(args, "--full-model") && !args_value(args, "--design"))
         return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
     if (!run_is_there(args->operand))
-        return evaluate_by_config(args, word, err);
+        return evaluate_with(args, &s, NULL, err);
     TRY(run_read(&r, args->operand, err));
-    const Status status = evaluate_of_run(args, &r, word, err);
+    s = *r.settings;
+    const Status status = evaluate_with(args, &s, &r, err);
     run_free(&r);
     return status;
 }

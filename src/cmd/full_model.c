@@ -186,18 +186,29 @@ static Status take_designs(const Args *args, const char *folder, Job *job, Err *
     return STATUS_OK;
 }
 
-/* folder: of the run that the settings are of; NULL: of none. */
-static Status verify_by(const Args *args, Settings *s, const char *folder, Err *err)
+static Status check_wishes(const Args *args, Settings *s, const char *folder, Err *err)
 {
-    const int as_json = args_has(args, "--json");
-    Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
-    if (s->problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "problem.kind: only a tower has a full model");
+    static const char *const OTHERS[] = {"--records", "--csv", "--svg", "--replicates"};
+    const char *pga = args_value(args, "--pga");
+    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
+        if (args_has(args, OTHERS[i]))
+            return fail(err, STATUS_USAGE, "--full-model: leave %s out", OTHERS[i]);
     if (!frame_is(s->building.model))
         return fail(err, STATUS_BAD_DATA,
                     "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
                     "(nodes.csv) and guyan have",
                     s->building.model);
+    TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
+    TRY(settings_check(s, err));
+    return !folder || args_has(args, "--record") ? STATUS_OK
+                                                 : record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
+}
+
+Status show_full_model(const Args *args, Settings *s, const char *folder, Err *err)
+{
+    const int as_json = args_has(args, "--json");
+    Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
+    TRY(check_wishes(args, s, folder, err));
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
     TRY(measures_order(&job.order, s->search.objectives, job.space.n_floors, err));
@@ -205,31 +216,4 @@ static Status verify_by(const Args *args, Settings *s, const char *folder, Err *
     const Status status = show(args, &job, s, err);
     design_free(&job.designs);
     return status;
-}
-
-static Status settings_of_run(const Args *args, Settings *s, Err *err)
-{
-    Run r;
-    TRY(run_read(&r, args->operand, err));
-    *s = *r.settings;
-    run_free(&r);
-    TRY(args_apply(args, s, NULL, NULL, err));
-    TRY(settings_check(s, err));
-    return args_has(args, "--record") ? STATUS_OK : record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
-}
-
-Status show_full_model(const Args *args, Err *err)
-{
-    static const char *const OTHERS[] = {"--records", "--csv", "--svg", "--replicates"};
-    Settings s;
-    const char *pga = args_value(args, "--pga");
-    const int is_run = run_is_there(args->operand);
-    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
-        if (args_has(args, OTHERS[i]))
-            return fail(err, STATUS_USAGE, "--full-model: leave %s out", OTHERS[i]);
-    TRY(is_run ? settings_of_run(args, &s, err) : args_settings(args, &s, NULL, NULL, err));
-    if (pga)
-        TRY(settings_put(&s, "motion.pga_g", pga, err));
-    TRY(settings_check(&s, err));
-    return verify_by(args, &s, is_run ? args->operand : NULL, err);
 }

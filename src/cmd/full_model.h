@@ -5,6 +5,7 @@
 
 #include "cmd/args.h"
 
-Status show_full_model(const Args *args, Err *err);
+/* s: of the command; folder: of the run that they are of, NULL: of none. */
+Status show_full_model(const Args *args, Settings *s, const char *folder, Err *err);
 
 #endif

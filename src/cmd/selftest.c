@@ -11,6 +11,7 @@
 #include "sim/fast/fast.h"
 #include "evaluate/measures.h"
 #include "evaluate/adapter.h"
+#include "evaluate/tower.h"
 #include "study/study.h"
 
 typedef struct {
@@ -115,31 +116,21 @@ static Status set_all(Settings *s, const char *const assignments[], size_t n_max
     return STATUS_OK;
 }
 
-static Status simulate(const Scenario *w, const TowerCase *c, SimResult *r, Err *err)
-{
-    double x[FLOORS_MAX + 2];
-    SimWorker *worker;
-    const int n = scene_n_floors(w->scene);
-    for (int j = 0; j < n + 2; j++)
-        x[j] = j < n ? c->gap_m : c->wall_m;
-    TRY(sim_worker_create(&worker, w->scene, err));
-    const Status status = sim_run(worker, c->kind, x, r, err);
-    sim_worker_free(worker);
-    return status;
-}
-
 static Status answer_of(const TowerCase *c, double answer[PAPER_OBJECTIVES], Err *err)
 {
     Settings s;
-    Scenario w;
+    Problem p;
     SimResult r;
+    double x[FLOORS_MAX + 2];
     settings_defaults(&s);
     TRY(set_all(&s, COMMON, sizeof COMMON / sizeof COMMON[0], err));
     TRY(set_all(&s, c->settings, sizeof c->settings / sizeof c->settings[0], err));
-    const SceneOptions options = settings_scene(&s);
-    TRY(scenario_open(&w, &options, &s.motion, err));
-    const Status status = simulate(&w, c, &r, err);
-    scenario_close(&w);
+    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
+    const int n = tower_n_floors(tower_of(&p));
+    for (int j = 0; j < n + 2; j++)
+        x[j] = j < n ? c->gap_m : c->wall_m;
+    const Status status = tower_simulate(&p, 1, &(SimTask){.kind = c->kind, .x = x}, &r, err);
+    problem_close(&p);
     for (int k = 0; status == STATUS_OK && k < PAPER_OBJECTIVES; k++)
         answer[k] = r.outcome == RUN_OK ? measure_value(&r, k) : NAN;
     return status;

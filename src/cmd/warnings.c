@@ -1,6 +1,5 @@
 #include "cmd/warnings.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -47,37 +46,34 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 }
 
 /* "FILE:LINE: " of a design file, else "WORD: "; then what is said of it. */
-__attribute__((format(printf, 6, 7))) static void warn_of_one(const Designs *d, const char *word, size_t i, WarnFn warn,
-                                                              void *user, const char *format, ...)
+static void warn_of_one(const Designs *d, const char *word, size_t i, WarnFn warn, void *user, const char *what)
 {
     char text[900], line[16] = "";
-    va_list values;
     if (d->line && !d->id)
         snprintf(line, sizeof line, ":%d", d->line[i]);
-    const int n = snprintf(text, sizeof text, "%.600s%s: ", word, line);
-    va_start(values, format);
-    vsnprintf(text + n, sizeof text - (size_t)n, format, values);
-    va_end(values);
+    snprintf(text, sizeof text, "%.600s%s: %s", word, line, what);
     warn("--design", text, user);
 }
 
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user)
 {
     const DesignSpace *s = &d->space;
+    char name[TABLE_NAME_MAX], text[200];
     int has_wide = 0, has_top_heavy = 0;
     for (size_t i = 0; i < d->n; i++) {
         const double *gap = &d->x[i * (size_t)s->n_var], *wall = gap + s->n_gaps;
         for (int j = 0; j < s->n_gaps && !has_wide; j++)
             if (gap[j] > GAP_MAX_M) {
-                char name[TABLE_NAME_MAX];
                 design_variable_name(s, j, name);
+                snprintf(text, sizeof text, "%s is %g m and does not close; gaps are in metres", name, gap[j]);
+                warn_of_one(d, word, i, warn, user, text);
                 has_wide = 1;
-                warn_of_one(d, word, i, warn, user, "%s is %g m and does not close; gaps are in metres", name, gap[j]);
             }
         if (s->n_walls > 0 && wall[1] > wall[0] && !has_top_heavy) {
+            snprintf(text, sizeof text, "t_top_m %g is thicker than t_base_m %g; the search would not propose this",
+                     wall[1], wall[0]);
+            warn_of_one(d, word, i, warn, user, text);
             has_top_heavy = 1;
-            warn_of_one(d, word, i, warn, user,
-                        "t_top_m %g is thicker than t_base_m %g; the search would not propose this", wall[1], wall[0]);
         }
     }
 }
