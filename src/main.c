@@ -2,7 +2,6 @@
  *
  * Beside the commands: --help, help [COMMAND], --version [--json]; for `make install` --man [COMMAND], for that and for
  * scripts/completion.bash --commands. */
-#include <cblas.h>
 #include <fcntl.h>
 #include <jansson.h>
 #include <stdint.h>
@@ -17,6 +16,7 @@
 #include "cmd/show.h"
 #include "evaluate/cluster.h"
 #include "evaluate/adapter.h"
+#include "evaluate/recipe.h"
 #include "store/provenance.h"
 
 /* Below this the first deep call would end the program by a fault of its own. */
@@ -146,13 +146,20 @@ static void hold_standard_streams(void)
             return;
 }
 
+/* On another rank: with the kernels of the first. */
+static Status open_by_recipe(Problem *p, const void *recipe, size_t size, Err *err)
+{
+    linalg_use(((const Recipe *)recipe)->settings.search.blas);
+    return simulator_open(p, recipe, size, err);
+}
+
 /* A rank of a cluster other than the first evaluates for that one and runs no command. */
 static Status run_here(int argc, char *argv[], Err *err)
 {
     char version[CLUSTER_VERSION_MAX] = "";
     int serves;
     program_identity(sizeof version, version);
-    TRY(cluster_join(&argc, &argv, version, simulator_open, &serves, err));
+    TRY(cluster_join(&argc, &argv, version, open_by_recipe, &serves, err));
     return serves ? STATUS_OK : run(argc, argv, err);
 }
 
@@ -161,7 +168,7 @@ int main(int argc, char *argv[])
     Err err = {0};
     hold_standard_streams();
     json_set_alloc_funcs(json_memory, free);
-    openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
+    linalg_use(KERNELS_PINNED);
     Status status = run_here(argc, argv, &err);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
         status = fail(&err, STATUS_IO, "standard output: cannot be written");

@@ -1,4 +1,5 @@
-/* A run whose ground motions were moved: it says so, and takes them from their new place if they are the same. */
+/* A run whose ground motions were moved: it says so, and takes them from their new place if they are the same. And one
+ * that is moved to a processor whose linear algebra rounds otherwise. */
 #include "program.h"
 
 #define STUDY                                                                                                          \
@@ -88,6 +89,48 @@ TEST(records_are_taken_from_where_they_are_now)
     free(output_of("optimize @/run --max-evals 32 --force-settings " BOTH));
     free(output_of("report @/run")); /* the run knows its new places from there on */
     free(output_of("optimize @/run"));
+}
+
+static char *front_of(const char *under, const char *name)
+{
+    char file[64], command[256];
+    snprintf(place.under, sizeof place.under, "%s", under);
+    snprintf(command, sizeof command,
+             "optimize configs/quick.ini --set problem.kind=dtlz2 --threads 1 --max-evals 100 --set search.initial=40 "
+             "--set search.population=20 "
+             "--out @/%s",
+             name);
+    free(output_of(command));
+    place.under[0] = 0;
+    snprintf(file, sizeof file, "%s/front.csv", name);
+    return read_in_place(file);
+}
+
+/* OPENBLAS_CORETYPE stands for the processor. */
+TEST(linear_algebra_rounds_as_on_haswell_and_a_resumed_run_says_where_it_does_not)
+{
+    Said s;
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+        skip();
+    char *plain = front_of("", "plain"), *haswell = front_of("env OPENBLAS_CORETYPE=Haswell", "haswell"),
+         *prescott = front_of("env OPENBLAS_CORETYPE=Prescott", "prescott");
+    assert_string_equal(plain, haswell);
+    assert_string_not_equal(plain, prescott);
+    snprintf(place.under, sizeof place.under, "env OPENBLAS_CORETYPE=Prescott");
+    run(&s, "optimize @/plain --max-evals 110");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "by the kernels Haswell in the run, now Prescott"));
+    forget(&s);
+    place.under[0] = 0;
+    run(&s, "optimize @/haswell --max-evals 110");
+    assert_int_equal(s.code, 0);
+    assert_null(strstr(s.err, "kernels"));
+    forget(&s);
+    expect(65, "search.blas is pinned there, now native",
+           "optimize @/haswell --max-evals 120 --set search.blas=native");
+    free(plain);
+    free(haswell);
+    free(prescott);
 }
 
 int main(void)

@@ -4,7 +4,7 @@
 #include <jansson.h>
 #include <limits.h>
 #include <math.h>
-#include <cblas.h>
+#include "base/linalg.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +68,7 @@ static int set_up(void **state)
     (void)state;
     Err err = {0};
     const char *records[] = {"builtin:sylmar-like"};
-    openblas_set_num_threads(1); /* as the program does: other threads, other last digits, other impacts */
+    linalg_use(KERNELS_PINNED); /* as the program does: other threads, other last digits, other impacts */
     strcpy(folder, "/tmp/imtet-report-XXXXXX");
     if (!mkdtemp(folder))
         return 1;

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <time.h>
 
-#include <cblas.h>
+#include "base/linalg.h"
 #include <omp.h>
 
 #include "base/pack.h"
@@ -356,7 +356,7 @@ TEST(a_pack_reads_what_it_wrote_and_keeps_the_first_fault)
 static int quiet(void **state)
 {
     (void)state;
-    openblas_set_num_threads(1);
+    linalg_use(KERNELS_PINNED);
     omp_set_num_threads(1); /* more than one has a test of its own */
     return 0;
 }

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <cblas.h>
+#include "base/linalg.h"
 
 #include "base/hash.h"
 #include "check.h"
@@ -353,6 +353,6 @@ TEST(without_a_cheap_level_nothing_is_screened)
 
 int main(void)
 {
-    openblas_set_num_threads(1);
+    linalg_use(KERNELS_PINNED);
     return RUN_TESTS(set_up, tear_down);
 }

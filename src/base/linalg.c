@@ -21,6 +21,44 @@ static void fix_sign(int n, double *mode)
             mode[j] = -mode[j];
 }
 
+/* ---- kernels --------------------------------------------------------------------------------------------------- */
+
+/* Of OpenBLAS that is built for several processors: forget the kernels in use; choose again, by the processor or by
+ * OPENBLAS_CORETYPE. */
+__attribute__((weak)) void gotoblas_dynamic_quit(void);
+__attribute__((weak)) void gotoblas_dynamic_init(void);
+
+static int can_choose(void)
+{
+#ifdef __x86_64__
+    return gotoblas_dynamic_quit && gotoblas_dynamic_init && __builtin_cpu_supports("avx2") &&
+           __builtin_cpu_supports("fma");
+#else
+    return 0;
+#endif
+}
+
+const char *linalg_kernel_name(void)
+{
+    return openblas_get_corename();
+}
+
+/* The variable is gone again before another process is started, whose BLAS is its own affair. */
+void linalg_use(LinalgKernels kernels)
+{
+    static const char VARIABLE[] = "OPENBLAS_CORETYPE", PINNED[] = "Haswell";
+    openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
+    if (getenv(VARIABLE) || !can_choose() || (kernels == KERNELS_PINNED && strcmp(linalg_kernel_name(), PINNED) == 0))
+        return;
+    if (kernels == KERNELS_PINNED)
+        setenv(VARIABLE, PINNED, 1);
+    gotoblas_dynamic_quit();
+    gotoblas_dynamic_init();
+    unsetenv(VARIABLE);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------------------------- */
+
 /* Of one thread: the buffer of OpenBLAS (128 MiB), stack (8 MiB) and the C library's arena (128 MiB while it is
  * made). */
 static const size_t BYTES_OF_THREAD = (size_t)264 << 20;

@@ -1,13 +1,24 @@
 /* base/linalg.h -- the few dense operations that the scene needs, on LAPACK. Matrices are square (n, n) row-major;
  * symmetric ones are read in full.
  *
- * Threads  no state; BLAS is expected to run on one thread (main sees to it) */
+ * Threads  no state; BLAS is expected to run on one thread (linalg_use) */
 #ifndef IMTET_BASE_LINALG_H
 #define IMTET_BASE_LINALG_H
 
 #include <stddef.h>
 
+#include "base/option.h"
 #include "base/status.h"
+
+/* The kernels of OpenBLAS that are used: those that it has for the processor, whose rounding no other processor may
+ * share, or everywhere those of Haswell, which wherever there are AVX2 and FMA give the same bytes. Where OPENBLAS_CORETYPE
+ * is set, or there is no choice, both are what they are. */
+#define LINALG_KERNELS_LIST(X) X(KERNELS_PINNED, "pinned") X(KERNELS_NATIVE, "native")
+typedef enum { LINALG_KERNELS_LIST(CHOICE_NAME) } LinalgKernels;
+
+/* Changes BLAS for the whole process: for a program to call, before it starts threads, never for a library. */
+void linalg_use(LinalgKernels kernels);
+const char *linalg_kernel_name(void); /* "Haswell" */
 
 /* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at
  * once, the first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where

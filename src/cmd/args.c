@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/linalg.h"
 #include "cmd/designs.h"
 #include "cmd/outputs.h"
 #include "settings/settings.h"
@@ -291,6 +292,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
         return first;
     settings_idle(&before, s, tell_idle, NULL);
+    linalg_use(s->search.blas);
     return outputs_spare(args, s, err);
 }
 

@@ -6,6 +6,7 @@
 #ifndef IMTET_SETTINGS_OPTIONS_H
 #define IMTET_SETTINGS_OPTIONS_H
 
+#include "base/linalg.h"
 #include "settings/search_options.h"
 #include "motion/options.h"
 #include "scene/options.h"
@@ -46,6 +47,7 @@ typedef struct {
 
 typedef struct {
     long seed, threads, population, initial, generations, max_evals;
+    LinalgKernels blas;
     double max_hours; /* OPTION_WORD: by the Slurm job */
     double nondominated_share;
     SurrogateUse surrogate;

@@ -217,6 +217,8 @@ static const Option OPTIONS[] = {
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
+    CHOICE(search.blas, LinalgKernels, CHOICE_WORDS(LINALG_KERNELS_LIST), "pinned",
+           "linear algebra: the same bytes on every processor with AVX2, or what is fastest on this one"),
     WHOLE(search.population, "92", 4, 100000, "designs per generation"),
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),

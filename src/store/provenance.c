@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "base/linalg.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
 #include "settings/options.h"
@@ -68,7 +69,8 @@ void program_identity(size_t n, char text[])
     json_t *all = program_description();
     char *words = json_dumps(all, JSON_COMPACT);
     const uint64_t hash = words ? hash_fnv1a(words, strlen(words), HASH_SEED) : 0;
-    snprintf(text, n, "%s (%s, %s, build %016" PRIx64 ")", IMTET_VERSION, IMTET_REVISION, fast_kernel_name(), hash);
+    const char *bytes_of = strcmp(fast_kernel_name(), "base") == 0 ? "base" : "avx2"; /* with AVX-512 the same bytes */
+    snprintf(text, n, "%s (%s, %s, build %016" PRIx64 ")", IMTET_VERSION, IMTET_REVISION, bytes_of, hash);
     free(words);
     json_decref(all);
 }
@@ -94,8 +96,8 @@ static json_t *machine(int threads)
     system_name(system);
     gmtime_r(&now, &parts);
     strftime(started, sizeof started, "%FT%TZ", &parts);
-    return json_pack("{s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(),
-                     "threads", threads, "started", started);
+    return json_pack("{s:s, s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(),
+                     "blas", linalg_kernel_name(), "threads", threads, "started", started);
 }
 
 uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash)
@@ -110,6 +112,14 @@ uint64_t provenance_hash(const char *provenance, const char *input)
     const uint64_t hash = text ? strtoull(text, NULL, 16) : 0;
     json_decref(all);
     return hash;
+}
+
+void provenance_blas(const char *provenance, char name[32])
+{
+    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
+    const char *text = json_string_value(json_object_get(json_object_get(all, "machine"), "blas"));
+    snprintf(name, 32, "%s", text ? text : "");
+    json_decref(all);
 }
 
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)

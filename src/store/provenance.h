@@ -31,6 +31,7 @@ typedef struct {
 /* The hash of several files in their order, from the hash of each: FNV-1a, a word at a time; begins with 0. */
 uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash);
 uint64_t provenance_hash(const char *provenance, const char *input); /* in that JSON; 0: none */
+void provenance_blas(const char *provenance, char name[32]);         /* linalg_kernel_name then; empty: unknown */
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err);
 
 #endif

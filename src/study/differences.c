@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/linalg.h"
 #include "base/visible.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
@@ -80,6 +81,18 @@ static Status compare_inputs(const Comparison *c, Differences *d, Err *err)
     return STATUS_OK;
 }
 
+/* Another rounding is no other setting, but from here on it is another search. */
+static void tell_kernels(const Comparison *c)
+{
+    char was[32];
+    provenance_blas(c->run->provenance, was);
+    if (c->lines && was[0] && strcmp(was, linalg_kernel_name()) != 0)
+        fprintf(c->lines,
+                "note: linear algebra by the kernels %s in the run, now %s: rounded differently, the search goes on "
+                "otherwise than it would there\n",
+                was, linalg_kernel_name());
+}
+
 /* A limit below what is there already would leave a run that is neither finished nor can be resumed. */
 static Status check_limit(const Comparison *c, size_t n_there, Err *err)
 {
@@ -97,6 +110,7 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
     TRY(compare_inputs(c, &d, err));
     const size_t n = d.n_limits + d.n_others;
     *has_new_limits = d.n_limits > 0;
+    tell_kernels(c);
     if (d.n_others == 0 && (c->force || d.n_lowered == 0))
         return check_limit(c, n_there, err);
     return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
