@@ -11,8 +11,8 @@
 #include "base/status.h"
 
 /* The kernels of OpenBLAS that are used: those that it has for the processor, whose rounding no other processor may
- * share, or everywhere those of Haswell, which wherever there are AVX2 and FMA give the same bytes. Where OPENBLAS_CORETYPE
- * is set, or there is no choice, both are what they are. */
+ * share, or everywhere those of Haswell, which wherever there are AVX2 and FMA give the same bytes. Where
+ * OPENBLAS_CORETYPE is set, or there is no choice, both are what they are. */
 #define LINALG_KERNELS_LIST(X) X(KERNELS_PINNED, "pinned") X(KERNELS_NATIVE, "native")
 typedef enum { LINALG_KERNELS_LIST(CHOICE_NAME) } LinalgKernels;
 

@@ -7,8 +7,8 @@
  *   masses.csv    node, mass_kg [, mass_z_kg, rotary_kg_m2]                       (may be missing)
  *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
  *
- * Elements are beam-columns: axial stiffness EA/l, bending by scene/core_beam.h (shear where shear_area_m2 is given), pinned
- * ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
+ * Elements are beam-columns: axial stiffness EA/l, bending by scene/core_beam.h (shear where shear_area_m2 is given),
+ * pinned ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
  * sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary inertia
  * at nodes.
  *
