@@ -422,9 +422,10 @@ TEST(a_stop_while_ranks_open_the_problem_ends_at_once)
         place.folder);
     assert_int_equal(system(command), 0);
     snprintf(command, sizeof command,
-             "exec mpirun -n 1 -wdir '%s/short' '%s' optimize '%s/tower.ini' --set motion.records=none --set "
-             "motion.record=r.csv --set motion.unit=m_s2 --out '%s/y' : -n 1 -wdir '%s/long' '%s' x >'%s/said' 2>&1",
-             place.folder, program(), place.folder, place.folder, place.folder, program(), place.folder);
+             "set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv --set "
+             "motion.unit=m_s2 --out '%s/y'; "
+             "exec mpirun -n 1 -wdir '%s/short' '%s' \"$@\" : -n 1 -wdir '%s/long' '%s' \"$@\" >'%s/said' 2>&1",
+             place.folder, place.folder, place.folder, program(), place.folder, program(), place.folder);
     const pid_t mpirun = spawn(command);
     for (int i = 0; i < 1000 && !reads; i++) {
         rest(0.02);

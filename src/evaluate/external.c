@@ -237,55 +237,43 @@ static int take_objectives(const External *e, const json_t *list, double f[])
     return 1;
 }
 
-/* A number that begins at `text` in `line` and is too large to be one, 1e999 say. Its length, or 0. The end of a
- * number is none: 1.7976931348623157e+308 is finite, its last digits with the exponent are not. */
-static size_t overflow_length(const char *line, const char *text)
+/* What Python, C and others print for numbers that are none (NaN, -Infinity, inf) is no JSON: a word outside strings
+ * becomes "". */
+static void blank_words(char *line)
 {
-    char *end;
-    if ((*text != '-' && !isdigit((unsigned char)*text)) ||
-        (text > line && (isalnum((unsigned char)text[-1]) || strchr(".+-", text[-1]))))
-        return 0;
-    return isinf(strtod(text, &end)) && end > text + 2 ? (size_t)(end - text) : 0;
-}
-
-/* What Python, C and others print for numbers that are none is no JSON: outside strings it becomes "". */
-static void blank_non_numbers(char *line)
-{
-    static const char *const WORDS[] = {"NaN", "-NaN", "nan", "-nan", "Infinity", "-Infinity", "inf", "-inf"};
     int in_string = 0;
     for (char *c = line; *c; c++) {
+        size_t n = 0;
         if (in_string && *c == '\\' && c[1])
             c++;
         else if (*c == '"')
             in_string = !in_string;
-        const size_t too_large = in_string ? 0 : overflow_length(line, c);
-        if (too_large > 0) {
-            memset(c, ' ', too_large);
-            memset(c, '"', 2);
-            c += too_large - 1;
+        while (!in_string && isalpha((unsigned char)c[n]))
+            n++;
+        if (n < 3 || strncmp(c, "true", n) == 0 || strncmp(c, "false", n) == 0 || strncmp(c, "null", n) == 0) {
+            c += n > 0 ? n - 1 : 0;
             continue;
         }
-        for (size_t k = 0; !in_string && k < sizeof WORDS / sizeof WORDS[0]; k++) {
-            const size_t length = strlen(WORDS[k]);
-            if (strncmp(c, WORDS[k], length) != 0 || isalnum((unsigned char)c[length]))
-                continue;
-            memset(c, ' ', length);
-            memset(c, '"', 2);
-            c += length - 1;
-            break;
-        }
+        if (c > line && c[-1] == '-')
+            c[-1] = ' ';
+        memset(c, ' ', n);
+        memset(c, '"', 2);
+        c += n - 1;
     }
 }
 
 static void take_answer(External *e, Worker *w, char *line, size_t length)
 {
     json_error_t error;
-    blank_non_numbers(line);
+    if (line[strspn(line, " \t\r")] == '{')
+        blank_words(line);
     json_t *o = json_loadb(line, length, 0, &error);
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
     w->n_answered++;
-    if (!json_is_object(o) || !json_is_number(id))
+    if (!o && json_error_code(&error) == json_error_numeric_overflow)
+        settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+    else if (!json_is_object(o) || !json_is_number(id))
         settle(e, w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
     else if (json_number_value(id) != (double)w->id)
         settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
