@@ -353,7 +353,7 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
                 {SQLITE_BUSY, STATUS_IO, "is busy"},
                 {SQLITE_LOCKED, STATUS_IO, "is busy"},
                 {SQLITE_CORRUPT, STATUS_IO, "is damaged"},
-                {SQLITE_NOTADB, STATUS_BAD_DATA, "is no database"},
+                {SQLITE_NOTADB, STATUS_IO, "is no database"},
                 {SQLITE_IOERR, STATUS_IO, "read or written"},
                 {SQLITE_READONLY, STATUS_OK, ""},
                 {SQLITE_CANTOPEN, STATUS_OK, ""}};

@@ -218,34 +218,21 @@ Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
 
 /* -- files --------------------------------------------------------------------------------------------------------- */
 
-Status append_open(Append *a, const Folder *folder, const char *name, Err *err)
+/* O_NONBLOCK: a pipe without a reader is refused, not waited for. */
+Status folder_append(const Folder *folder, const char *name, const char *text, Err *err)
 {
-    folder_path(folder, name, a->path);
-    struct stat about;
-    if (lstat(a->path, &about) == 0 && !S_ISREG(about.st_mode))
-        return fail(err, STATUS_IO, "%s: is a link or no file, which is not written to; remove it", a->path);
-    a->stream = fopen(a->path, "ae");
-    return a->stream ? STATUS_OK : fail(err, STATUS_IO, "%s: cannot be written: %s", a->path, strerror(errno));
-}
-
-Status append_flush(const Append *a, Err *err)
-{
-    errno = EIO; /* of an earlier write whose cause is gone */
-    if (fflush(a->stream) != 0 || ferror(a->stream))
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", a->path, strerror(errno));
-    return STATUS_OK;
-}
-
-Status append_close(Append *a, Err *err)
-{
-    TRY(output_sync(a->stream, a->path, err));
-    append_free(a); /* all of it is on the disk */
-    return STATUS_OK;
-}
-
-void append_free(Append *a)
-{
-    if (a->stream)
-        fclose(a->stream);
-    a->stream = NULL;
+    char path[PATH_MAX];
+    struct stat about = {0};
+    folder_path(folder, name, path);
+    if (lstat(path, &about) == 0 && !S_ISREG(about.st_mode))
+        return fail(err, STATUS_IO, "%s: is a link or no file, which is not written to; remove it", path);
+    const size_t n = strlen(text);
+    const int fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    errno = fd < 0 ? errno : ENOSPC; /* of a line that is written in part */
+    const ssize_t written = fd < 0 ? -1 : write(fd, text, n);
+    if (written != (ssize_t)n)
+        fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    return written == (ssize_t)n ? STATUS_OK : STATUS_IO;
 }

@@ -5,7 +5,7 @@
  * system's (an open file description lock) and ends with its process, so that a file left behind by one that was killed
  * locks nothing. Across machines as far as the file system passes locks on.
  *
- * Life cycle  folder_take -> append_open ... -> folder_release ({.lock = -1} is fine)
+ * Life cycle  folder_take -> ... -> folder_release ({.lock = -1} is fine)
  * Links       in it are not followed when writing: the folder may come from elsewhere
  * Errors      STATUS_IO with path and cause */
 #ifndef IMTET_STORE_FOLDER_H
@@ -50,15 +50,8 @@ int folder_keeps(const char *path);
 /* Behind the message of a run.sqlite that is damaged or empty: what to do. Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);
 
-/* A file that only grows. {0} may be freed. */
-typedef struct {
-    FILE *stream; /* NULL: not open */
-    char path[PATH_MAX];
-} Append;
-Status append_open(Append *a, const Folder *folder, const char *name, Err *err);
-Status append_flush(const Append *a, Err *err); /* an earlier write that failed is an error too */
-Status append_close(Append *a, Err *err);       /* on the disk */
-void append_free(Append *a);
+/* Behind what a file of the folder holds. */
+Status folder_append(const Folder *folder, const char *name, const char *text, Err *err);
 
 /* 2026-01-31T23:59:59Z, now */
 void utc_now(char text[24]);

@@ -38,7 +38,7 @@ struct RunStore {
     Hypervolume *hypervolume;    /* that the front dominates; NULL: no design has succeeded yet */
     size_t n_measured;           /* designs that it has seen */
     RunSession session;
-    Append text, events; /* log.txt, log.jsonl */
+    int is_ready; /* for a session: what happens is written down */
 };
 
 const char *store_folder(const RunStore *store)
@@ -222,8 +222,10 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
 {
     folder_note(&store->folder, store->n_stored);
     TRY(write_origin(store, used, provenance, err));
-    TRY(append_open(&store->text, &store->folder, "log.txt", err));
-    return append_open(&store->events, &store->folder, "log.jsonl", err);
+    TRY(folder_append(&store->folder, "log.txt", "", err));
+    TRY(folder_append(&store->folder, "log.jsonl", "", err));
+    store->is_ready = 1;
+    return STATUS_OK;
 }
 
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
@@ -538,34 +540,42 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
 
+static Status append(RunStore *store, const char *name, char *text, Err *err)
+{
+    const Status status = !store->is_ready ? STATUS_OK
+                          : text           ? folder_append(&store->folder, name, text, err)
+                                           : fail(err, STATUS_NO_MEMORY, "%s: no memory for a line", name);
+    free(text);
+    return status;
+}
+
 Status store_log(RunStore *store, Err *err, const char *format, ...)
 {
-    char clock[32];
+    char clock[32], *words = NULL, *line = NULL;
     struct tm parts;
     va_list args;
     const time_t now = time(NULL);
-    if (!store->text.stream)
-        return STATUS_OK;
     localtime_r(&now, &parts);
     strftime(clock, sizeof clock, "%F %T", &parts);
-    fprintf(store->text.stream, "%s  ", clock);
     va_start(args, format);
-    vfprintf(store->text.stream, format, args);
+    if (vasprintf(&words, format, args) < 0 || asprintf(&line, "%s  %s\n", clock, words) < 0)
+        line = NULL;
     va_end(args);
-    fputc('\n', store->text.stream);
-    return append_flush(&store->text, err);
+    free(words);
+    return append(store, "log.txt", line, err);
 }
 
 Status store_event(RunStore *store, json_t *event, Err *err)
 {
-    char time[24];
-    FILE *f = store->events.stream;
+    char time[24], *line = NULL;
     utc_now(time);
     json_object_set_new(event, "time", json_string(time));
-    if (f && json_dumpf(event, f, JSON_SORT_KEYS) == 0)
-        fputc('\n', f);
+    char *words = json_dumps(event, JSON_SORT_KEYS);
+    if (!words || asprintf(&line, "%s\n", words) < 0)
+        line = NULL;
+    free(words);
     json_decref(event);
-    return f ? append_flush(&store->events, err) : STATUS_OK;
+    return append(store, "log.jsonl", line, err);
 }
 
 Status store_read(RunStore *store, Run *run, Err *err)
@@ -599,10 +609,6 @@ Status store_close(RunStore *store, const char *stopped, int is_final, double se
     Status status = end_session(store, stopped, is_final, session, err);
     if (status == STATUS_OK)
         status = store_write_front(store, &last, err);
-    if (status == STATUS_OK)
-        status = append_close(&store->events, err);
-    if (status == STATUS_OK)
-        status = append_close(&store->text, err);
     store_free(store);
     if (run && status == STATUS_OK)
         *run = last;
@@ -615,8 +621,6 @@ void store_free(RunStore *store)
 {
     if (!store)
         return;
-    append_free(&store->text);
-    append_free(&store->events);
     database_close(store->db);
     run_free(&store->run);
     free(store->was_on_front);
