@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -260,6 +261,24 @@ TEST(modes_take_the_wall_from_a_design)
     assert_string_equal(plain, given);
     free(plain);
     free(given);
+}
+
+/* A million samples: 8 MB each for five histories, 24 and 10 for the rows and the text of the file. */
+TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
+{
+    struct rusage used;
+    char *path = in_place("long.csv");
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fprintf(f, "# dt = 0.01 s, units: m/s2\n");
+    for (int i = 0; i < 1000000; i++)
+        fprintf(f, "%.6f\n", sin(i));
+    assert_int_equal(fclose(f), 0);
+    expect(0, "", "spectrum @/long.csv --json --history @/long_history.csv >/dev/null");
+    assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
+    if (!SANITIZED)
+        assert_at_most((double)used.ru_maxrss, 100e3); /* kB */
+    free(path);
 }
 
 TEST(the_spectrum_is_the_same_as_json_and_as_csv)

@@ -76,8 +76,7 @@ TEST(fixed_interface_modes_are_verified_as_the_reduced_model)
 
 TEST(peaks_over_the_height_are_listed)
 {
-    char *text =
-        output_of("evaluate --full-model configs/quick.ini --design none --set sim.duration_s=5");
+    char *text = output_of("evaluate --full-model configs/quick.ini --design none --set sim.duration_s=5");
     assert_non_null(strstr(text, "no core, full (106)"));
     assert_non_null(strstr(text, "\n20     80.77"));
     free(text);

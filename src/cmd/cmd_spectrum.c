@@ -24,7 +24,7 @@ typedef struct {
     MotionOptions options;
     CodeSpectrum code; /* motion.target */
     MotionFigures figures, recorded;
-    double *time, *velocity, *displacement, *husid; /* (n of the motion) */
+    double *velocity, *displacement, *husid; /* (n of the motion) */
     double T[N_PERIODS], psa[N_PERIODS], psv[N_PERIODS], sd[N_PERIODS];
     double target[N_PERIODS]; /* [m/s2] of the code, else 0 */
     int is_processed; /* by motion.baseline, highpass_hz or lowpass_hz; `recorded` is without them, same scale */
@@ -55,15 +55,6 @@ static Status compare_recorded(Spectrum *s, Err *err)
 static Status compute(Spectrum *s, Err *err)
 {
     const Motion *m = &s->motion;
-    s->time = malloc(4 * m->n * sizeof *s->time);
-    if (!s->time)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the histories of %zu samples", m->n);
-    s->velocity = s->time + m->n;
-    s->displacement = s->velocity + m->n;
-    s->husid = s->displacement + m->n;
-    for (size_t i = 0; i < m->n; i++)
-        s->time[i] = (double)i * m->dt_s;
-    motion_histories(m, s->velocity, s->displacement, s->husid);
     for (int i = 0; i < N_PERIODS; i++)
         s->T[i] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)i / (N_PERIODS - 1));
     spectrum_psa(m, DAMPING, N_PERIODS, s->T, s->psa);
@@ -75,7 +66,15 @@ static Status compute(Spectrum *s, Err *err)
     }
     motion_figures(m, &s->figures);
     s->is_processed = motion_is_corrected(&s->options) || s->options.lowpass_hz > 0;
-    return s->is_processed ? compare_recorded(s, err) : STATUS_OK;
+    if (s->is_processed) /* before there are histories: a record being read takes as much memory again */
+        TRY(compare_recorded(s, err));
+    s->velocity = malloc(3 * m->n * sizeof *s->velocity);
+    if (!s->velocity)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the histories of %zu samples", m->n);
+    s->displacement = s->velocity + m->n;
+    s->husid = s->displacement + m->n;
+    motion_histories(m, s->velocity, s->displacement, s->husid);
+    return STATUS_OK;
 }
 
 /* Does the displacement mean something? */
@@ -95,8 +94,7 @@ static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
 
 static void spectrum_close(Spectrum *s)
 {
-    free(s->time);
-    s->time = NULL;
+    free(s->velocity);
     motion_free(&s->motion);
 }
 
@@ -119,8 +117,8 @@ static const char *name_of(const Spectrum *s) /* the last part of its path */
 
 typedef struct {
     char name[160], title[24]; /* of CSV and JSON; of the table on the screen */
-    double unit;               /* of the table */
-    const double *x;           /* NULL: not asked for */
+    double unit;               /* of the table; of times, which are not stored, the step */
+    const double *x;           /* NULL: not asked for, or times */
 } Curve;
 
 enum { N_HISTORIES = 5 };
@@ -137,7 +135,7 @@ static void curves_of_one(const Spectrum *s, Curve c[CURVES_MAX])
 
 static void histories_of(const Spectrum *s, Curve c[N_HISTORIES])
 {
-    c[0] = (Curve){"time_s", "", 1, s->time};
+    c[0] = (Curve){"time_s", "", s->motion.dt_s, NULL};
     c[1] = (Curve){"accel_m_s2", "", 1, s->motion.accel};
     c[2] = (Curve){"velocity_m_s", "", 1, s->velocity};
     c[3] = (Curve){"displacement_m", "", 1, s->displacement};
@@ -162,12 +160,13 @@ static Status write_curves(const char *path, size_t n_rows, size_t n, const Curv
 {
     Output o;
     TRY(output_open(&o, path, err));
-    for (size_t k = 0; k < n; k++)
+    fputs(c->name, o.stream);
+    for (size_t k = 1; k < n; k++)
         if (c[k].x)
-            fprintf(o.stream, "%s%s", k ? "," : "", c[k].name);
+            fprintf(o.stream, ",%s", c[k].name);
     for (size_t i = 0; i < n_rows; i++) {
         fputc('\n', o.stream);
-        print_number(o.stream, c->x[i]);
+        print_number(o.stream, c->x ? c->x[i] : (double)i * c->unit);
         for (size_t k = 1; k < n; k++)
             if (c[k].x)
                 print_cells(o.stream, 1, &c[k].x[i]);
@@ -318,12 +317,27 @@ static json_t *describe(const Spectrum *s)
     return o;
 }
 
-static void add_histories(json_t *o, const Spectrum *s)
+/* The members of o, without the brackets around them. */
+static Status print_members(json_t *o, Err *err)
+{
+    const int failed = !o || json_dumpf(o, stdout, JSON_EMBED | JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
+    json_decref(o);
+    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
+}
+
+/* Histories number by number, for there may be millions. */
+static Status print_json(const Spectrum *s, Err *err)
 {
     Curve c[N_HISTORIES];
     histories_of(s, c);
-    for (size_t k = 1; k < N_HISTORIES; k++)
-        json_object_set_new(o, c[k].name, json_numbers(s->motion.n, c[k].x));
+    putchar('{');
+    TRY(print_members(describe(s), err));
+    for (size_t k = 1; k < N_HISTORIES; k++) {
+        printf(",\n  \"%s\": ", c[k].name);
+        print_list(stdout, s->motion.n, c[k].x);
+    }
+    puts("}");
+    return STATUS_OK;
 }
 
 /* All that is asked for; the table where nothing is. */
@@ -337,11 +351,8 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
     TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
     TRY(times ? write_curves(times, s->motion.n, N_HISTORIES, history, err) : STATUS_OK);
     TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
-    if (args_has(args, "--json")) {
-        json_t *o = describe(s);
-        add_histories(o, s);
-        return show_json(o, err);
-    }
+    if (args_has(args, "--json"))
+        return print_json(s, err);
     if (csv || times || svg)
         return STATUS_OK;
     json_t *o = describe(s);
@@ -357,18 +368,20 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
 
 /* ---- several ----------------------------------------------------------------------------------------------------- */
 
-static json_t *describe_all(size_t n, const Spectrum s[], const Curve c[])
+static Status print_all_json(size_t n, const Spectrum s[], const Curve c[], Err *err)
 {
-    json_t *o = json_object(), *list = json_array();
-    for (size_t k = 0; k < n; k++) {
-        json_array_append_new(list, describe(&s[k]));
-        add_histories(json_array_get(list, k), &s[k]);
-    }
-    json_object_set_new(o, "motions", list);
+    json_t *o = json_object();
     for (size_t k = 0; k < 3; k++)
         if (c[k].x)
             json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
-    return o;
+    putchar('{');
+    TRY(print_members(o, err));
+    for (size_t k = 0; k < n; k++) {
+        fputs(k ? "," : ",\n  \"motions\": [", stdout);
+        TRY(print_json(&s[k], err));
+    }
+    puts("]}");
+    return STATUS_OK;
 }
 
 static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[], Err *err)
@@ -380,7 +393,7 @@ static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[]
     TRY(csv ? write_curves(csv, N_PERIODS, n + 3, c, err) : STATUS_OK);
     TRY(svg ? gnuplot_draw(svg, draw_all, &(Picture){s, n + 3, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
-        return show_json(describe_all(n, s, c), err);
+        return print_all_json(n, s, c, err);
     if (csv || svg)
         return STATUS_OK;
     for (size_t k = 0; k < n; k++) {

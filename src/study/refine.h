@@ -34,10 +34,10 @@ typedef struct {
 } RefineConfig;
 
 typedef struct {
-    EvaluationTable designs;      /* (2) start and end, as simulated in step 3 */
-    double error[OBJECTIVES_MAX]; /* likely integration error of both, the greater one; NAN: not known */
-    double gain, gain_error;      /* of the value, > 0 is better; error NAN: not known */
-    double gain_finer;            /* of step 4; NAN: there is none */
+    EvaluationTable designs;                   /* (2) start and end, as simulated in step 3 */
+    double error[OBJECTIVES_MAX];              /* likely integration error of both, the greater one; NAN: not known */
+    double gain, gain_error;                   /* of the value, > 0 is better; error NAN: not known */
+    double gain_finer;                         /* of step 4; NAN: there is none */
     size_t n_evaluated, n_failed, n_simulated; /* designs, of them failed; simulations */
     double seconds;
     int has_changed; /* 0: nothing better was found, the end is the design itself */
