@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,41 +78,26 @@ static Status pad(Motion *m, size_t before, size_t behind, Err *err)
     return STATUS_OK;
 }
 
-static Status open_filter(const Motion *m, Filter *f, FilterKind kind, const char *key, double cutoff_hz, Err *err)
+static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_hz, Err *err)
 {
+    Filter f;
     Err why = {0};
-    const Status status = filter_butterworth(f, kind, cutoff_hz, m->dt_s, &why);
-    return status == STATUS_OK ? STATUS_OK : fail(err, status, "%s: motion.%s: %s", m->name, key, why.text);
-}
-
-static Status high_pass(Motion *m, double cutoff_hz, Err *err)
-{
-    Filter f;
-    TRY(open_filter(m, &f, FILTER_HIGH_PASS, "highpass_hz", cutoff_hz, err));
-    const double length_s = HIGHPASS_PAD / cutoff_hz;
-    const size_t padding = (size_t)ceil(length_s / m->dt_s);
+    const int is_high = kind == FILTER_HIGH_PASS;
+    const Status status = filter_butterworth(&f, kind, cutoff_hz, m->dt_s, &why);
+    if (status != STATUS_OK)
+        return fail(err, status, "%s: motion.%s: %s", m->name, key, why.text);
+    const size_t padding = is_high ? (size_t)ceil(HIGHPASS_PAD / cutoff_hz / m->dt_s) : filter_padding(&f);
     if (padding > PADDING_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: motion.highpass_hz: %g Hz needs %zu samples of padding; at most %d",
-                    m->name, cutoff_hz, padding, PADDING_MAX);
-    TRY(pad(m, padding, padding, err));
+        return fail(err, STATUS_BAD_DATA, "%s: motion.%s: %g Hz needs %zu samples of padding; at most %d", m->name, key,
+                    cutoff_hz, padding, PADDING_MAX);
+    TRY(pad(m, is_high ? padding : 0, padding, err));
     filter_zero_phase(&f, m->n, 1, m->accel);
-    say(m, "high-pass %g Hz (4th order Butterworth, zero phase), %.4g s of zeros added at both ends", cutoff_hz,
-        (double)padding * m->dt_s);
-    return STATUS_OK;
-}
-
-static Status low_pass(Motion *m, double cutoff_hz, Err *err)
-{
-    Filter f;
-    TRY(open_filter(m, &f, FILTER_LOW_PASS, "lowpass_hz", cutoff_hz, err));
-    const size_t padding = filter_padding(&f);
-    if (padding > PADDING_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: motion.lowpass_hz: %g Hz needs %zu samples of padding; at most %d",
-                    m->name, cutoff_hz, padding, PADDING_MAX);
-    TRY(pad(m, 0, padding, err));
-    filter_zero_phase(&f, m->n, 1, m->accel);
-    m->n -= padding;
-    say(m, "low-pass %g Hz (4th order Butterworth, zero phase)", cutoff_hz);
+    say(m, "%s-pass %g Hz (4th order Butterworth, zero phase)", is_high ? "high" : "low", cutoff_hz);
+    if (is_high)
+        snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
+                 ", %.4g s of zeros added at both ends", (double)padding * m->dt_s);
+    else
+        m->n -= padding;
     return STATUS_OK;
 }
 
@@ -122,9 +106,9 @@ Status motion_process(Motion *m, const MotionOptions *o, Err *err)
     if (o->baseline != BASELINE_NONE)
         TRY(subtract_baseline(m, (int)o->baseline - (int)BASELINE_MEAN, err));
     if (o->highpass_hz > 0)
-        TRY(high_pass(m, o->highpass_hz, err));
+        TRY(filter(m, FILTER_HIGH_PASS, "highpass_hz", o->highpass_hz, err));
     if (o->lowpass_hz > 0)
-        TRY(low_pass(m, o->lowpass_hz, err));
+        TRY(filter(m, FILTER_LOW_PASS, "lowpass_hz", o->lowpass_hz, err));
     return STATUS_OK;
 }
 
@@ -137,82 +121,79 @@ static const double DAMPING = 0.05;
 
 /* ---- code spectra ------------------------------------------------------------------------------------------------ */
 
-enum { EUROCODE8 = 1u << TARGET_EUROCODE8, ASCE7 = 1u << TARGET_ASCE7 };
-
-/* The numbers of motion.target: what a target must be given begins as 0. */
+/* The keys of motion.target. */
+enum { FROM, TO, SOIL, AG, S, TB, TC, TD, SDS, SD1, TL, N_KEYS };
 static const struct {
     const char *key;
-    size_t at;
-    double least, most;
-    unsigned of; /* the codes that have it */
-} NUMBERS[] = {
-    {"from", offsetof(CodeSpectrum, from_s), 1e-3, 1e3, EUROCODE8 | ASCE7},
-    {"to", offsetof(CodeSpectrum, to_s), 1e-3, 1e3, EUROCODE8 | ASCE7},
-    {"ag", offsetof(CodeSpectrum, ag_g), 1e-6, 1e6, EUROCODE8},
-    {"s", offsetof(CodeSpectrum, s), 0.1, 10, EUROCODE8},
-    {"tb", offsetof(CodeSpectrum, tb_s), 1e-3, 100, EUROCODE8},
-    {"tc", offsetof(CodeSpectrum, tc_s), 1e-3, 100, EUROCODE8},
-    {"td", offsetof(CodeSpectrum, td_s), 1e-3, 100, EUROCODE8},
-    {"sds", offsetof(CodeSpectrum, sds_g), 1e-6, 1e6, ASCE7},
-    {"sd1", offsetof(CodeSpectrum, sd1_g), 1e-6, 1e6, ASCE7},
-    {"tl", offsetof(CodeSpectrum, tl_s), 1e-3, 100, ASCE7},
+    TargetKind of;                 /* TARGET_NONE: both */
+    double least, most, otherwise; /* 0: none */
+} KEYS[N_KEYS] = {
+    {"from", TARGET_NONE, 1e-3, 1e3, 0.2},  {"to", TARGET_NONE, 1e-3, 1e3, 2},
+    {"soil", TARGET_EUROCODE8, 1, 5, 0},    {"ag", TARGET_EUROCODE8, 1e-6, 1e6, 0},
+    {"s", TARGET_EUROCODE8, 0.1, 10, 0},    {"tb", TARGET_EUROCODE8, 1e-3, 100, 0},
+    {"tc", TARGET_EUROCODE8, 1e-3, 100, 0}, {"td", TARGET_EUROCODE8, 1e-3, 100, 0},
+    {"sds", TARGET_ASCE7, 1e-6, 1e6, 0},    {"sd1", TARGET_ASCE7, 1e-6, 1e6, 0},
+    {"tl", TARGET_ASCE7, 1e-3, 100, 8},
 };
 
-/* EN 1998-1, Table 3.2: ground types A to E, spectrum of type 1. */
-static const struct {
-    double s, tb_s, tc_s, td_s;
-} SOILS[] = {{1, 0.15, 0.4, 2}, {1.2, 0.15, 0.5, 2}, {1.15, 0.2, 0.6, 2}, {1.35, 0.2, 0.8, 2}, {1.4, 0.15, 0.5, 2}};
+/* EN 1998-1, Table 3.2: S, TB, TC, TD of ground types A to E, spectrum of type 1. */
+static const double SOILS[][4] = {
+    {1, 0.15, 0.4, 2}, {1.2, 0.15, 0.5, 2}, {1.15, 0.2, 0.6, 2}, {1.35, 0.2, 0.8, 2}, {1.4, 0.15, 0.5, 2}};
 
-/* One "key=value". */
-static Status take_number(CodeSpectrum *c, const char *word, Err *err)
+/* One "key=value"; none twice, for the other one would be lost. */
+static Status take_number(TargetKind kind, const char *word, double x[N_KEYS], Err *err)
 {
     const size_t length = strcspn(word, "=");
+    const char *value = word + length + (word[length] == '=');
     char *end;
-    if (c->kind == TARGET_EUROCODE8 && strncmp(word, "soil=", 5) == 0 && word[5] >= 'A' && word[5] <= 'E' && !word[6]) {
-        const int k = word[5] - 'A';
-        c->s = SOILS[k].s;
-        c->tb_s = SOILS[k].tb_s;
-        c->tc_s = SOILS[k].tc_s;
-        c->td_s = SOILS[k].td_s;
-        return STATUS_OK;
+    int k = 0;
+    while (k < N_KEYS && !((KEYS[k].of == kind || KEYS[k].of == TARGET_NONE) && strlen(KEYS[k].key) == length &&
+                           strncmp(word, KEYS[k].key, length) == 0))
+        k++;
+    if (k == N_KEYS)
+        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of %s", word,
+                    kind == TARGET_ASCE7 ? "sds= sd1= tl= from= to=" : "ag= soil=A..E s= tb= tc= td= from= to=");
+    if (x[k] != 0)
+        return fail(err, STATUS_BAD_DATA, "motion.target: %s stands twice; the second is '%s'", KEYS[k].key, word);
+    x[k] = strtod(value, &end);
+    if (k == SOIL && *value >= 'A' && *value <= 'E') {
+        x[k] = *value - 'A' + 1;
+        end++;
     }
-    for (size_t i = 0; i < sizeof NUMBERS / sizeof NUMBERS[0]; i++) {
-        if (!(NUMBERS[i].of >> c->kind & 1) || strlen(NUMBERS[i].key) != length ||
-            strncmp(word, NUMBERS[i].key, length) != 0 || word[length] != '=')
-            continue;
-        const double x = strtod(word + length + 1, &end);
-        if (end == word + length + 1 || *end || !(x >= NUMBERS[i].least && x <= NUMBERS[i].most))
-            return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is no number from %g to %g", word, NUMBERS[i].least,
-                        NUMBERS[i].most);
-        memcpy((char *)c + NUMBERS[i].at, &x, sizeof x);
-        return STATUS_OK;
-    }
-    return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of %s", word,
-                c->kind == TARGET_ASCE7 ? "sds= sd1= tl= from= to=" : "ag= soil=A..E s= tb= tc= td= from= to=");
+    if (end == value || *end || !(x[k] >= KEYS[k].least && x[k] <= KEYS[k].most))
+        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is no number from %g to %g%s", word, KEYS[k].least,
+                    KEYS[k].most, k == SOIL ? " and no letter from A to E" : "");
+    return STATUS_OK;
 }
 
-static Status check_target(const CodeSpectrum *c, Err *err)
+/* Both codes rise from 0.4 to a plateau, which ends at TC, and fall with T and from TD on with its square. */
+static Status settle_target(CodeSpectrum *c, double x[N_KEYS], Err *err)
 {
+    for (int k = 0; k < N_KEYS; k++)
+        x[k] = x[k] != 0 ? x[k] : k >= S && k <= TD && x[SOIL] > 0 ? SOILS[(int)x[SOIL] - 1][k - S] : KEYS[k].otherwise;
+    const int is_eurocode = c->kind == TARGET_EUROCODE8;
+    const double ts = x[SD1] / x[SDS];
+    *c = is_eurocode ? (CodeSpectrum){c->kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
+                     : (CodeSpectrum){c->kind, x[FROM], x[TO], x[SDS], 0.2 * ts, ts, x[TL]};
+    if (!(c->plateau_g > 0 && c->tb_s > 0 && c->tc_s > 0 && c->td_s > 0))
+        return fail(err, STATUS_BAD_DATA, "motion.target: %s",
+                    is_eurocode ? "eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place"
+                                : "asce7 needs sds= and sd1= [g]");
     if (!(c->from_s < c->to_s))
         return fail(err, STATUS_BAD_DATA, "motion.target: from=%g must be below to=%g", c->from_s, c->to_s);
-    if (c->kind == TARGET_EUROCODE8 && !(c->ag_g > 0 && c->s > 0 && c->tb_s > 0 && c->tc_s > 0 && c->td_s > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "motion.target: eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place");
-    if (c->kind == TARGET_EUROCODE8 && !(c->tb_s <= c->tc_s && c->tc_s <= c->td_s))
-        return fail(err, STATUS_BAD_DATA, "motion.target: tb=%g, tc=%g and td=%g must rise", c->tb_s, c->tc_s, c->td_s);
-    if (c->kind == TARGET_ASCE7 && !(c->sds_g > 0 && c->sd1_g > 0))
-        return fail(err, STATUS_BAD_DATA, "motion.target: asce7 needs sds= and sd1= [g]");
-    if (c->kind == TARGET_ASCE7 && !(c->sd1_g / c->sds_g <= c->tl_s))
-        return fail(err, STATUS_BAD_DATA, "motion.target: tl=%g must not be below TS = sd1 / sds = %g", c->tl_s,
-                    c->sd1_g / c->sds_g);
-    return STATUS_OK;
+    return c->tb_s <= c->tc_s && c->tc_s <= c->td_s
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "motion.target: %s=%g, %s=%g and %s=%g must rise",
+                      is_eurocode ? "tb" : "T0", c->tb_s, is_eurocode ? "tc" : "TS", c->tc_s, is_eurocode ? "td" : "tl",
+                      c->td_s);
 }
 
 Status target_parse(const char *text, CodeSpectrum *out, Err *err)
 {
     static const char *const KINDS[] = {"none", "eurocode8", "asce7"};
     char copy[OPTION_TEXT_MAX], *rest = copy;
-    *out = (CodeSpectrum){.from_s = 0.2, .to_s = 2, .tl_s = 8};
+    double x[N_KEYS] = {0};
+    *out = (CodeSpectrum){0};
     snprintf(copy, sizeof copy, "%s", *text ? text : KINDS[TARGET_NONE]);
     const char *word = strsep(&rest, " ");
     while (out->kind <= TARGET_ASCE7 && strcmp(word, KINDS[out->kind]) != 0)
@@ -220,42 +201,18 @@ Status target_parse(const char *text, CodeSpectrum *out, Err *err)
     if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
         return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...",
                     text);
-    while ((word = strsep(&rest, " "))) {
-        const char *again = rest;
-        for (size_t n = strcspn(word, "=") + 1; *word && again; again = strchr(again, ' ')) {
-            again += strspn(again, " ");
-            if (strncmp(again, word, n) == 0)
-                return fail(err, STATUS_BAD_DATA, "motion.target: '%s' and '%s': one of them", word, again);
-        }
+    while ((word = strsep(&rest, " ")))
         if (*word)
-            TRY(take_number(out, word, err));
-    }
-    return out->kind == TARGET_NONE ? STATUS_OK : check_target(out, err);
-}
-
-static double eurocode8(const CodeSpectrum *c, double T)
-{
-    const double plateau = 2.5 * c->ag_g * c->s;
-    if (T < c->tb_s)
-        return plateau / 2.5 * (1 + 1.5 * T / c->tb_s);
-    if (T <= c->tc_s)
-        return plateau;
-    return T <= c->td_s ? plateau * c->tc_s / T : plateau * c->tc_s * c->td_s / (T * T);
-}
-
-static double asce7(const CodeSpectrum *c, double T)
-{
-    const double ts = c->sd1_g / c->sds_g, t0 = 0.2 * ts;
-    if (T < t0)
-        return c->sds_g * (0.4 + 0.6 * T / t0);
-    if (T <= ts)
-        return c->sds_g;
-    return T <= c->tl_s ? c->sd1_g / T : c->sd1_g * c->tl_s / (T * T);
+            TRY(take_number(out->kind, word, x, err));
+    return out->kind == TARGET_NONE ? STATUS_OK : settle_target(out, x, err);
 }
 
 double target_psa(const CodeSpectrum *c, double T)
 {
-    return c->kind == TARGET_NONE ? 0 : GRAVITY * (c->kind == TARGET_EUROCODE8 ? eurocode8(c, T) : asce7(c, T));
+    if (c->kind == TARGET_NONE)
+        return 0;
+    const double fall = T <= c->td_s ? c->tc_s / T : c->tc_s * c->td_s / (T * T);
+    return GRAVITY * c->plateau_g * (T < c->tb_s ? 0.4 + 0.6 * T / c->tb_s : T <= c->tc_s ? 1 : fall);
 }
 
 /* ln(target / PSa) over the range: its mean, and the root of its mean square. */
@@ -340,19 +297,19 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 
 int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX])
 {
-    char each[4][64] = {"", "", "", ""};
+    const struct {
+        const char *key;
+        double x, without;
+    } NUMBERS[] = {{"pga_g", o->pga_g, 0}, {"factor", o->factor, 1}, {"sa_g", o->sa_g, 0}};
     int n = 0;
-    if (o->pga_g > 0)
-        snprintf(each[n++], sizeof each[0], "motion.pga_g = %g", o->pga_g);
-    if (o->factor != 1)
-        snprintf(each[n++], sizeof each[0], "motion.factor = %g", o->factor);
-    if (o->sa_g > 0)
-        snprintf(each[n++], sizeof each[0], "motion.sa_g = %g", o->sa_g);
-    if (o->target[0] && strcmp(o->target, "none") != 0)
-        snprintf(each[n++], sizeof each[0], "motion.target = %.40s", o->target);
     text[0] = 0;
-    for (int i = 0; i < n; i++)
-        snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%s%s", i ? ", " : "", each[i]);
+    for (int i = 0; i < 3; i++)
+        if (NUMBERS[i].x != NUMBERS[i].without)
+            snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%smotion.%s = %g", n++ ? ", " : "",
+                     NUMBERS[i].key, NUMBERS[i].x);
+    if (o->target[0] && strcmp(o->target, "none") != 0)
+        snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%smotion.target = %.40s", n++ ? ", " : "",
+                 o->target);
     return n;
 }
 

@@ -69,8 +69,7 @@ typedef enum { TARGET_NONE, TARGET_EUROCODE8, TARGET_ASCE7 } TargetKind;
 typedef struct {
     TargetKind kind;
     double from_s, to_s;
-    double ag_g, s, tb_s, tc_s, td_s; /* eurocode8 */
-    double sds_g, sd1_g, tl_s;        /* asce7 */
+    double plateau_g, tb_s, tc_s, td_s; /* from 0.4 to the plateau at TB; ASCE 7: TB = T0, TC = TS, TD = TL */
 } CodeSpectrum;
 
 /* motion.target; STATUS_BAD_DATA names what is missing, unknown or out of range. */

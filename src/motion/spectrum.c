@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/clones.h"
 #include "base/units.h"
 
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
@@ -131,17 +132,15 @@ static double largest_inside(const Interval *in, double dt, double v_end)
 
 /* ---- four oscillators at once ------------------------------------------------------------------------------------ */
 
-typedef double v2 __attribute__((vector_size(16))); /* what every x86-64 and every ARM64 computes at once */
-typedef int64_t m2 __attribute__((vector_size(16)));
-enum { PAIRS = 2, LANES = 2 * PAIRS };
+typedef double v4 __attribute__((vector_size(32))); /* twice what every x86-64 and every ARM64 computes at once */
+typedef int64_t m4 __attribute__((vector_size(32)));
+enum { LANES = 4 };
 
-/* What an interval of length dt does to four oscillators, and what the bound on |u| needs. */
+/* What an interval of length dt does to four oscillators, and what the bounds on |u| need. */
 typedef struct {
-    v2 uu[PAIRS], uv[PAIRS], vu[PAIRS], vv[PAIRS]; /* u' = uu u + uv v - ua a - us slope, v' likewise */
-    v2 ua[PAIRS], us[PAIRS], va[PAIRS], vs[PAIRS];
-    v2 per_ww[PAIRS], lag[PAIRS], per_w[PAIRS], ww[PAIRS],
-        damping[PAIRS]; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
-    double dt, chord;   /* dt^4 / 64 */
+    v4 uu, uv, vu, vv, I1, I2;          /* u' = uu u + uv v - I1 a - I2 slope, v' = vu u + vv v - uv a - I1 slope */
+    v4 per_ww, lag, per_w, ww, damping; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
+    double dt, chord;                   /* dt^4 / 64 */
 } Flow4;
 
 static Flow4 flow4(const Oscillator o[LANES], double dt)
@@ -149,97 +148,65 @@ static Flow4 flow4(const Oscillator o[LANES], double dt)
     Flow4 g = {.dt = dt, .chord = pow(dt, 4) / 64};
     for (int k = 0; k < LANES; k++) {
         const Flow f = flow(&o[k], dt);
-        const int h = k / 2, j = k % 2;
-        g.uu[h][j] = f.h1 + 2 * o[k].zeta * o[k].w * f.h;
-        g.uv[h][j] = f.h;
-        g.ua[h][j] = f.I1;
-        g.us[h][j] = f.I2;
-        g.vu[h][j] = -o[k].w * o[k].w * f.h;
-        g.vv[h][j] = f.h1;
-        g.va[h][j] = f.h;
-        g.vs[h][j] = f.I1;
-        g.per_ww[h][j] = o[k].per_ww;
-        g.lag[h][j] = 2 * o[k].zeta * o[k].w * o[k].per_ww;
-        g.per_w[h][j] = o[k].w * o[k].per_ww;
-        g.ww[h][j] = o[k].w * o[k].w;
-        g.damping[h][j] = 2 * o[k].zeta * o[k].w;
+        g.ww[k] = o[k].w * o[k].w;
+        g.per_ww[k] = o[k].per_ww;
+        g.per_w[k] = o[k].w * o[k].per_ww;
+        g.damping[k] = 2 * o[k].zeta * o[k].w;
+        g.lag[k] = g.damping[k] * o[k].per_ww;
+        g.uu[k] = f.h1 + g.damping[k] * f.h;
+        g.uv[k] = f.h;
+        g.vu[k] = -g.ww[k] * f.h;
+        g.vv[k] = f.h1;
+        g.I1[k] = f.I1;
+        g.I2[k] = f.I2;
     }
     return g;
 }
 
 typedef struct {
-    v2 u[PAIRS], v[PAIRS], largest[PAIRS];
+    v4 u, v, largest;
 } State4;
 
-/* Can |u| of pair h be larger than so far in the interval? It is a line p (what the ground's line leads to in the end)
- * and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) / w)^2). All bits
- * where it can. */
-static inline m2 may_exceed(const Flow4 *g, const State4 *y, int h, double a, double slope)
+#define MAGNITUDE(x) ((v4)((m4)(x)&INT64_MAX)) /* all but the sign */
+
+/* Raises the largest |u| to what is in the interval from `begin` to y, where |u| may be larger than it was so far and is
+ * at both ends: where |u''| <= c, u lies less than dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j there, is
+ * a free vibration: c^2 = r^2 + (j / w)^2. A good bound for periods much longer than dt; `bounded` by the other one. */
+static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const Flow4 *g, const State4 *begin,
+                                                  State4 *y, double a, double slope, const m4 *bounded)
 {
-    const m2 magnitude = {INT64_MAX, INT64_MAX}; /* all but the sign */
-    const v2 rise = -slope * g->per_ww[h], p = -a * g->per_ww[h] - g->lag[h] * rise;
-    const v2 e = y->u[h] - p, de = (y->v[h] - rise) * g->per_w[h], square = e * e + de * de;
-    const v2 room0 = y->largest[h] - (v2)((m2)p & magnitude);
-    const v2 room1 = y->largest[h] - (v2)((m2)(p + rise * g->dt) & magnitude);
-    return ~((room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1));
+    const v4 r = -a - g->damping * begin->v - g->ww * begin->u, j = -slope - g->damping * r - g->ww * begin->v;
+    const v4 above = g->chord * (r * r + j * j * g->per_ww);
+    const v4 room0 = y->largest - MAGNITUDE(begin->u), room1 = y->largest - MAGNITUDE(y->u);
+    const m4 nowhere = *bounded | ((above <= room0 * room0) & (above <= room1 * room1));
+    for (int k = 0; k < LANES; k++)
+        if (!nowhere[k]) {
+            const Interval in = {.o = &o[k], .y = {begin->u[k], begin->v[k]}, .a = a, .slope = slope};
+            y->largest[k] = fmax(y->largest[k], largest_inside(&in, g->dt, y->v[k]));
+        }
 }
 
-/* Can |u| be larger than so far, which is no less than at both ends? Where |u''| <= c, u lies less than dt^2 / 8 c
- * above its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. The better
- * bound for periods much longer than dt. */
-static inline m2 may_exceed_chord(const Flow4 *g, const State4 *y, const State4 *end, int h, double a, double slope)
-{
-    const m2 magnitude = {INT64_MAX, INT64_MAX};
-    const v2 r = -a - g->damping[h] * y->v[h] - g->ww[h] * y->u[h];
-    const v2 j = -slope - g->damping[h] * r - g->ww[h] * y->v[h];
-    const v2 above = g->chord * (r * r + j * j * g->per_ww[h]);
-    const v2 room0 = end->largest[h] - (v2)((m2)y->u[h] & magnitude);
-    const v2 room1 = end->largest[h] - (v2)((m2)end->u[h] & magnitude);
-    return ~((above <= room0 * room0) & (above <= room1 * room1));
-}
-
-static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const State4 *y, State4 *end, double a,
-                                                  double slope, double dt, const m2 where[PAIRS])
-{
-    for (int k = 0; k < LANES; k++) {
-        const int h = k / 2, j = k % 2;
-        const Interval in = {.o = &o[k], .y = {y->u[h][j], y->v[h][j]}, .a = a, .slope = slope};
-        if (where[h][j])
-            end->largest[h][j] = fmax(end->largest[h][j], largest_inside(&in, dt, end->v[h][j]));
-    }
-}
-
-/* Advances y over an interval and raises the largest |u| to what is in it. */
+/* Advances y over an interval and raises the largest |u| to what is in it. u is a line p (what the ground's line leads
+ * to in the end) and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) /
+ * w)^2). A good bound for short periods. */
 static inline void cross(const Oscillator o[LANES], const Flow4 *g, State4 *y, double a, double slope)
 {
-    const m2 magnitude = {INT64_MAX, INT64_MAX};
-    m2 where[PAIRS], any = {0, 0};
-    State4 end;
-#pragma GCC unroll 2
-    for (int h = 0; h < PAIRS; h++) {
-        where[h] = may_exceed(g, y, h, a, slope);
-        any |= where[h];
-        end.u[h] = g->uu[h] * y->u[h] + g->uv[h] * y->v[h] - a * g->ua[h] - slope * g->us[h];
-        end.v[h] = g->vu[h] * y->u[h] + g->vv[h] * y->v[h] - a * g->va[h] - slope * g->vs[h];
-        const v2 reached = (v2)((m2)end.u[h] & magnitude);
-        const m2 higher = reached > y->largest[h];
-        end.largest[h] = (v2)(((m2)reached & higher) | ((m2)y->largest[h] & ~higher));
-    }
-    if (any[0] | any[1]) {
-        any = (m2){0, 0};
-#pragma GCC unroll 2
-        for (int h = 0; h < PAIRS; h++) {
-            where[h] &= may_exceed_chord(g, y, &end, h, a, slope);
-            any |= where[h];
-        }
-        if (any[0] | any[1])
-            look_inside(o, y, &end, a, slope, g->dt, where);
-    }
-    *y = end;
+    const State4 begin = *y;
+    const v4 rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
+    const v4 e = begin.u - p, de = (begin.v - rise) * g->per_w, square = e * e + de * de;
+    const v4 room0 = begin.largest - MAGNITUDE(p), room1 = begin.largest - MAGNITUDE(p + rise * g->dt);
+    const m4 nowhere = (room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1);
+    y->u = g->uu * begin.u + g->uv * begin.v - a * g->I1 - slope * g->I2;
+    y->v = g->vu * begin.u + g->vv * begin.v - a * g->uv - slope * g->I1;
+    const v4 reached = MAGNITUDE(y->u);
+    const m4 higher = reached > begin.largest;
+    y->largest = (v4)(((m4)reached & higher) | ((m4)begin.largest & ~higher));
+    if (!(nowhere[0] & nowhere[1] & nowhere[2] & nowhere[3]))
+        look_inside(o, g, &begin, y, a, slope, &nowhere);
 }
 
 /* Over the motion and then half a period of each of them at rest. */
-static void largest_displacements(const Motion *m, const Oscillator o[LANES], double largest[LANES])
+CLONED_AVX static void largest_displacements(const Motion *m, const Oscillator o[LANES], double largest[LANES])
 {
     State4 y = {0};
     const Flow4 g = flow4(o, m->dt_s);
@@ -247,10 +214,9 @@ static void largest_displacements(const Motion *m, const Oscillator o[LANES], do
         cross(o, &g, &y, m->accel[i], (m->accel[i + 1] - m->accel[i]) / m->dt_s);
     for (int k = 0; k < LANES; k++) {
         const double half_period = M_PI / o[k].wd;
-        const Flow rest = flow(&o[k], half_period);
-        const Interval in = {.o = &o[k], .y = {y.u[k / 2][k % 2], y.v[k / 2][k % 2]}};
-        const State end = advance(&o[k], &rest, in.y, 0, 0);
-        largest[k] = fmax(y.largest[k / 2][k % 2], fmax(fabs(end.u), largest_inside(&in, half_period, end.v)));
+        const Interval in = {.o = &o[k], .y = {y.u[k], y.v[k]}};
+        const State end = state_at(&in, half_period);
+        largest[k] = fmax(y.largest[k], fmax(fabs(end.u), largest_inside(&in, half_period, end.v)));
     }
 }
 
@@ -325,9 +291,14 @@ static double absolute_integral(const Ground *g)
     return g->dt * (g->a * g->a + b * b) / (2 * fabs(b - g->a));
 }
 
-static Ground ground_at(const Motion *m, size_t i)
+/* Interval i, behind another one or, where that is of no length, at rest. */
+static Ground ground_behind(const Ground *before, const Motion *m, size_t i)
 {
-    return (Ground){.a = m->accel[i], .slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s, .dt = m->dt_s};
+    return (Ground){.a = m->accel[i],
+                    .slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s,
+                    .dt = m->dt_s,
+                    .v = velocity(before, before->dt),
+                    .d = displacement(before, before->dt)};
 }
 
 /* When int a^2 has reached `level`; by bisection inside the interval where it does. */
@@ -335,7 +306,7 @@ static double time_of_level(const Motion *m, double level)
 {
     double sum = 0;
     for (size_t i = 0; i + 1 < m->n; i++) {
-        const Ground g = ground_at(m, i);
+        const Ground g = ground_behind(&(Ground){0}, m, i);
         const double more = square_integral(&g, g.dt);
         if (sum + more >= level) {
             double lo = 0, hi = g.dt;
@@ -355,18 +326,15 @@ static double time_of_level(const Motion *m, double level)
 
 void motion_figures(const Motion *m, MotionFigures *out)
 {
-    double v = 0, d = 0, squares = 0;
+    Ground g = {0};
+    double squares = 0;
     *out = (MotionFigures){.pga_m_s2 = motion_peak(m), .duration_s = (double)(m->n - 1) * m->dt_s};
     for (size_t i = 0; i + 1 < m->n; i++) {
-        Ground g = ground_at(m, i);
-        g.v = v;
-        g.d = d;
+        g = ground_behind(&g, m, i);
         out->pgv_m_s = fmax(out->pgv_m_s, largest_velocity(&g));
         out->pgd_m = fmax(out->pgd_m, largest_ground_displacement(&g));
         out->cav_m_s += absolute_integral(&g);
         squares += square_integral(&g, g.dt);
-        v = velocity(&g, g.dt);
-        d = displacement(&g, g.dt);
     }
     out->arias_m_s = M_PI / (2 * GRAVITY) * squares;
     out->d5_95_s = squares > 0 ? time_of_level(m, 0.95 * squares) - time_of_level(m, 0.05 * squares) : 0;
@@ -374,11 +342,10 @@ void motion_figures(const Motion *m, MotionFigures *out)
 
 void motion_histories(const Motion *m, double v[], double d[], double husid[])
 {
+    Ground g = {0};
     v[0] = d[0] = husid[0] = 0;
     for (size_t i = 0; i + 1 < m->n; i++) {
-        Ground g = ground_at(m, i);
-        g.v = v[i];
-        g.d = d[i];
+        g = ground_behind(&g, m, i);
         v[i + 1] = velocity(&g, g.dt);
         d[i + 1] = displacement(&g, g.dt);
         husid[i + 1] = husid[i] + square_integral(&g, g.dt);
