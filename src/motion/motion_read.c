@@ -133,56 +133,46 @@ static void plain_name(const char *name, char plain[64])
     plain[n] = 0;
 }
 
-/* How many channels have a name that is the wanted one (exactly) or begins with it; *found is the last of them. */
-static int count_named(const Record *r, const char *wanted, int exactly, const Channel **found)
+/* The only channel of that name, of that number, or whose name begins so. A name comes before a number, for azimuths
+ * are names. */
+static const Channel *find_channel(const Record *r, const char *wanted)
 {
-    char want[64], have[64];
-    int n = 0;
-    plain_name(wanted, want);
-    for (size_t i = 0; i < r->n_channels; i++) {
-        plain_name(r->channel[i].name, have);
-        if (!want[0] || (exactly ? strcmp(want, have) != 0 : strncmp(want, have, strlen(want)) != 0))
-            continue;
-        *found = &r->channel[i];
-        n++;
-    }
-    return n;
-}
-
-/* How many channels are accelerations; *found is the last of them. */
-static int count_accelerations(const Record *r, const Channel **found)
-{
-    int n = 0;
-    for (size_t i = 0; i < r->n_channels; i++)
-        if (is_acceleration(&r->channel[i])) {
-            *found = &r->channel[i];
-            n++;
-        }
-    return n;
-}
-
-/* A name comes before a number, for azimuths are names. */
-static const Channel *named_or_numbered(const Record *r, const char *wanted)
-{
-    const Channel *c = NULL;
-    char *end;
-    if (count_named(r, wanted, 1, &c) == 1)
-        return c;
+    char want[64], have[64], *end;
     const long number = strtol(wanted, &end, 10);
-    if (end != wanted && !*end && number >= 1 && number <= (long)r->n_channels)
-        return &r->channel[number - 1];
-    return count_named(r, wanted, 0, &c) == 1 ? c : NULL;
+    plain_name(wanted, want);
+    for (int exactly = 1; exactly >= 0; exactly--) {
+        const Channel *found = NULL;
+        int n = 0;
+        for (size_t i = 0; i < r->n_channels; i++) {
+            plain_name(r->channel[i].name, have);
+            if (want[0] && strncmp(want, have, exactly ? sizeof want : strlen(want)) == 0) {
+                found = &r->channel[i];
+                n++;
+            }
+        }
+        if (n == 1)
+            return found;
+        if (exactly && end != wanted && !*end && number >= 1 && number <= (long)r->n_channels)
+            return &r->channel[number - 1];
+    }
+    return NULL;
 }
 
 static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
 {
     char list[LIST_MAX];
-    const int automatic = !wanted || strcmp(wanted, "auto") == 0, n = count_accelerations(r, out);
+    const int automatic = !wanted || strcmp(wanted, "auto") == 0;
+    int n = 0;
+    for (size_t i = 0; i < r->n_channels; i++)
+        if (is_acceleration(&r->channel[i])) {
+            *out = &r->channel[i];
+            n++;
+        }
     list_channels(r, list);
     if (automatic && n == 0)
         return fail(err, STATUS_BAD_DATA, "%s: none of its channels is an acceleration: %s", path, list);
     if (!automatic || n > 1)
-        *out = automatic ? NULL : named_or_numbered(r, wanted);
+        *out = automatic ? NULL : find_channel(r, wanted);
     if (!*out && automatic)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
                     r->n_channels, list);
@@ -296,14 +286,21 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
 
 /* ---- samples -------------------------------------------------------------------------------------------------- */
 
-static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
+/* Where the sample lies farthest from `offset`. */
+static const Row *peak_from(const Series *s, double offset)
 {
     const Row *peak = row_at(s, 0);
-    for (size_t i = 0; i < s->n; i++) {
+    for (size_t i = 1; i < s->n; i++)
+        peak = fabs(row_at(s, i)->a - offset) > fabs(peak->a - offset) ? row_at(s, i) : peak;
+    return peak;
+}
+
+static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
+{
+    for (size_t i = 0; i < s->n; i++)
         if (!isfinite(row_at(s, i)->a))
             return fail(err, STATUS_BAD_DATA, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
-        peak = fabs(row_at(s, i)->a) > fabs(peak->a) ? row_at(s, i) : peak;
-    }
+    const Row *peak = peak_from(s, 0);
     if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
         return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
                     peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
@@ -319,23 +316,19 @@ static double offset_of(const Channel *c, const Series *s)
     return sum / (double)s->n;
 }
 
-/* The peak of the samples against the one that the header states, both in the unit of the file. */
+/* The peak of the samples against the one that the header states, in the unit of the file. */
 static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, double to_m_s2,
                                 MotionUnit unit, Err *err)
 {
-    double peak = 0;
-    if (!(c->peak > 0))
-        return STATUS_OK;
-    for (size_t i = 0; i < s->n; i++)
-        peak = fmax(peak, to_m_s2 * fabs(row_at(s, i)->a - offset));
-    const double error = fmax(fabs(peak - c->peak) - c->peak_slack, 0) / c->peak, to_file = c->scale / to_m_s2;
+    const double to_file = c->scale / to_m_s2, peak = to_m_s2 * fabs(peak_from(s, offset)->a - offset);
+    const double error = c->peak > 0 ? (fabs(peak - c->peak) - c->peak_slack) / c->peak : 0;
+    char what[160];
+    snprintf(what, sizeof what, "its samples peak at %.5g %s, its header says %.5g", peak * to_file, UNIT_NAMES[unit],
+             c->peak * to_file);
     if (error > PEAK_ERROR_MAX)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: its samples peak at %.5g %s, its header says %.5g; more than %g %% apart", s->path,
-                    peak * to_file, UNIT_NAMES[unit], c->peak * to_file, 100 * PEAK_ERROR_MAX);
+        return fail(err, STATUS_BAD_DATA, "%s: %s; more than %g %% apart", s->path, what, 100 * PEAK_ERROR_MAX);
     if (error > 0.2 * PEAK_ERROR_MAX)
-        snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak * to_file,
-                 UNIT_NAMES[unit], c->peak * to_file);
+        snprintf(m->warning, sizeof m->warning, "%s", what);
     return STATUS_OK;
 }
 

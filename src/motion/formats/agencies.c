@@ -108,8 +108,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
     Lines ahead = {0};
     *h = (Header){.count = NAN, .dt = NAN, .width = f->width, .from = l->from};
     if (f->text_lines < 0 && !(number_behind(l->from, l->to, "with", &n_lines) && n_lines > 0 && n_lines <= 1000))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of text lines in '%.*s'", l->path, l->number,
-                    line_shown(l), l->from);
+        return fail_at(err, l, "no usable number of text lines in '%.*s'", line_shown(l), l->from);
     for (int i = 1;; i++) {
         take_words(f, l, h);
         h->last = l->from < l->to ? *l : h->last;
@@ -122,8 +121,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
             return lines_skip(l, f->number_lines) ? STATUS_OK : fail_too_short(l, "header", err);
         if (!lines_next(l))
             return ended ? fail_too_short(l, f->integers ? "integer header" : "samples", err)
-                         : fail(err, STATUS_BAD_DATA, "%s:%d: the file ends before its line '%s'", l->path, l->number,
-                                f->ends);
+                         : fail_at(err, l, "the file ends before its line '%s'", f->ends);
     }
 }
 
@@ -274,15 +272,13 @@ static Status column_channel(const Format *f, Record *r, const Lines *l, Header 
     if (f->peak_of)
         take_named_peak(f, h, c, h->last.to);
     if (h->at[DURATION].from && h->count > 1 && fabs(h->count - (double)c->n) * h->dt > 1) /* stated in whole seconds */
-        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu rows, but its header announces %g s every %g s", l->path,
-                    l->number, c->n, h->count * h->dt, h->dt);
+        return fail_at(err, l, "%zu rows, but its header announces %g s every %g s", c->n, h->count * h->dt, h->dt);
     if (h->at[COUNT].from && h->count < (double)c->n && (double)c->n <= h->count + 16 && h->count >= 2 &&
         memchr(h->at[COUNT].from, '/', 4)) { /* as UNAM's files have them */
         c->n = (size_t)h->count;
         c->warning = "it has some rows more than its header announces; they are left out";
     } else if (h->at[COUNT].from && h->count != (double)c->n) {
-        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu rows, but its header announces %g for channel %d", l->path,
-                    l->number, c->n, h->count, k + 1);
+        return fail_at(err, l, "%zu rows, but its header announces %g for channel %d", c->n, h->count, k + 1);
     }
     return STATUS_OK;
 }
@@ -400,8 +396,7 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
             break;
     }
     if (!line_has_letters(l))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no line that announces the samples above this one", l->path,
-                    l->number);
+        return fail_at(err, l, "no line that announces the samples above this one");
     h->width = format_width(l) ? format_width(l) : 10;
     h->at[COUNT] = h->at[TYPE] = *l;
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
@@ -423,8 +418,7 @@ static Status part_begins(Lines *l, const char *word, double *n_lines, Err *err)
         return fail_too_short(l, "header", err);
     const int counted = number_behind(l->from, l->to, "follow on", n_lines);
     if (!line_has(l, word) || !counted || !(*n_lines >= 0 && *n_lines <= 1000))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not announce the %s", l->path, l->number, line_shown(l),
-                    l->from, word);
+        return fail_at(err, l, "'%.*s' does not announce the %s", line_shown(l), l->from, word);
     return STATUS_OK;
 }
 
@@ -440,8 +434,8 @@ static Status check_code(const Lines *unit, Err *err)
     const MotionUnit said = unit_of(unit->from, open);
     return !said || said == CODES[(int)code]
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "%s:%d: the unit in words, '%.*s', is not the one of its code %g",
-                      unit->path, unit->number, (int)(open - unit->from), unit->from, code);
+               : fail_at(err, unit, "the unit in words, '%.*s', is not the one of its code %g",
+                         (int)(open - unit->from), unit->from, code);
 }
 
 /* COSMOS 1.20: an integer and a real header and comments, each under a line that says how many lines follow, then
@@ -537,8 +531,8 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
         if (!lines_next(l))
             return fail_too_short(l, "samples", err);
         if (!line_begins(l, "|"))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: comment %g of %g does not begin with '|': '%.*s'", l->path,
-                        l->number, i + 1, integers[COMMENTS], line_shown(l), l->from);
+            return fail_at(err, l, "comment %g of %g does not begin with '|': '%.*s'", i + 1, integers[COMMENTS],
+                           line_shown(l), l->from);
     }
     h->count = integers[NUMBERS];
     h->dt = reals[RATE_AT] <= 1e5 ? 1 / reals[RATE_AT] : INFINITY;
@@ -600,8 +594,7 @@ static Status geonet_more(Lines *l, Header *h, Channel *c, Err *err)
     const int said = number_behind(h->from, h->last.to, "intervals of", &in_words) ||
                      number_behind(h->from, h->last.to, "data at", &in_words);
     if (said && fabs(in_words - h->dt) > 0.0006) /* three decimals */
-        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s in the numbers of the header, %g s in its words",
-                    l->path, l->number, h->dt, in_words);
+        return fail_at(err, l, "a step of %g s in the numbers of the header, %g s in its words", h->dt, in_words);
     return STATUS_OK;
 }
 
@@ -681,13 +674,11 @@ static Status tspair_read(Record *r, Lines *l, Err *err)
         TRY(record_channel(r, l, &c, err));
         TRY(series_more(l, &h, c, err));
         if (!(h.count >= 2 && h.dt > 0 && h.dt <= MOTION_STEP_MAX_S))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of samples or rate in '%.*s'", l->path,
-                        l->number, line_shown(l), l->from);
+            return fail_at(err, l, "no usable number of samples or rate in '%.*s'", line_shown(l), l->from);
         for (c->dt = h.dt; (double)c->n < h.count; c->n++) {
             Row row = {0};
             if (!lines_next_filled(l) || line_begins(l, "TIMESERIES "))
-                return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f",
-                            l->path, l->number, c->n, h.count);
+                return fail_at(err, l, "ends after %zu samples, but its header announces %.0f", c->n, h.count);
             const char *p = l->from;
             const Cell time = cell_next(&p, l->to, " ,;");
             last = time_of_day(time.from, time.to);

@@ -307,10 +307,10 @@ static Status fail_unknown(const Plain *t, Err *err)
 {
     Lines start = t->start;
     lines_next_filled(&start);
-    return fail(err, STATUS_BAD_DATA,
-                "%s:%d: in no format that is known here (docs/motions.md lists them), and no plain columns of "
-                "numbers; the first line is '%.*s'",
-                t->l->path, t->l->number, line_shown(&start), start.from);
+    return fail_at(err, t->l,
+                   "in no format that is known here (docs/motions.md lists them), and no plain columns of "
+                   "numbers; the first line is '%.*s'",
+                   line_shown(&start), start.from);
 }
 
 /* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one

@@ -58,7 +58,7 @@ Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err
         if (with_comma || !memchr(c.from, ',', (size_t)(c.to - c.from)))
             TRY(lines_note_mark(l, c, err));
         if (*n > CHANNELS_MAX)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
+            return fail_at(err, l, "more than %d channels", CHANNELS_MAX);
         TRY(record_add(r, l, row, err));
     }
     return STATUS_OK;
@@ -91,7 +91,7 @@ Status record_append(Record *r, const Record *from, const char *path, const char
     for (size_t i = 0; i < from->n; i++)
         TRY(record_add(r, &l, from->row[i], err));
     for (size_t k = 0; k < from->n_channels; k++) {
-        Channel *c;
+        Channel *c = NULL;
         char name[2 * CHANNEL_NAME_MAX], own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
         const char *slash = strrchr(member, '/');
         TRY(record_channel(r, &l, &c, err));
@@ -112,7 +112,7 @@ Status record_append(Record *r, const Record *from, const char *path, const char
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
 {
     if (r->n_channels == CHANNELS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
+        return fail_at(err, l, "more than %d channels", CHANNELS_MAX);
     *out = &r->channel[r->n_channels++];
     **out = (Channel){.scale = 1, .first = r->n, .stride = 1};
     return STATUS_OK;
@@ -190,11 +190,9 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
     Channel *c = &r->channel[r->n_channels - 1];
     const size_t each = c->digitized ? 2 : 1;
     if (!(count >= 2 && count <= 1e8 && count == floor(count)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) above this line", l->path,
-                    l->number);
+        return fail_at(err, l, "no usable number of points (2 or more) above this line");
     if (!c->digitized && !(dt > 0 && dt <= MOTION_STEP_MAX_S))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step (above 0, at most %g s) above this line", l->path,
-                    l->number, MOTION_STEP_MAX_S);
+        return fail_at(err, l, "no usable time step (above 0, at most %g s) above this line", MOTION_STEP_MAX_S);
     const size_t wanted = (size_t)count;
     c->dt = c->digitized ? 0 : dt;
     Lines ahead = lines_ahead(l);
@@ -203,19 +201,16 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
         *l = ahead;
         TRY(line_numbers(l, width, PER_LINE_MAX, x, &n, err));
         if (n % each)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: %zu numbers are not pairs of time and acceleration", l->path,
-                        l->number, n);
+            return fail_at(err, l, "%zu numbers are not pairs of time and acceleration", n);
         for (size_t i = 0; i < n; i += each)
             TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = 3}, err));
         c->n += n / each;
     }
     if (c->n < wanted)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %zu", l->path,
-                    l->number, c->n, wanted);
+        return fail_at(err, l, "ends after %zu samples, but its header announces %zu", c->n, wanted);
     for (; lines_behind > 0; lines_behind--)
         if (!lines_next(l) || line_has_letters(l))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: velocities and displacements end before the number of the header",
-                        l->path, l->number);
+            return fail_at(err, l, "velocities and displacements end before the number of the header");
     ahead = lines_ahead(l);
     if (c->n > wanted || (!c->digitized && ahead.from && !line_is_marker(&ahead) && !line_has_letters(&ahead)))
         return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
@@ -225,7 +220,7 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
 
 Status fail_too_short(const Lines *l, const char *what, Err *err)
 {
-    return fail(err, STATUS_BAD_DATA, "%s:%d: the file ends before its %s", l->path, l->number, what);
+    return fail_at(err, l, "the file ends before its %s", what);
 }
 
 Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err)
@@ -235,8 +230,7 @@ Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err)
             return fail_too_short(l, "header", err);
         TRY(line_numbers(l, width, n - done, x + done, &more, err));
         if (more == 0)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: the header has %zu numbers, %zu are expected", l->path, l->number,
-                        done, n);
+            return fail_at(err, l, "the header has %zu numbers, %zu are expected", done, n);
     }
     return STATUS_OK;
 }

@@ -2,9 +2,21 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+Status fail_at(Err *err, const Lines *l, const char *what, ...)
+{
+    char text[sizeof err->text];
+    va_list list;
+    va_start(list, what);
+    vsnprintf(text, sizeof text, what, list);
+    va_end(list);
+    return fail(err, STATUS_BAD_DATA, "%s:%d: %s", l->path, l->number, text);
+}
 
 /* ---- lines ---------------------------------------------------------------------------------------------------- */
 
@@ -84,15 +96,12 @@ Status line_number(const Lines *l, Cell c, int with_comma, double *x, Err *err)
     const int shown = n < 40 ? (int)n : 40;
     const CellKind kind = cell_number(c, with_comma, x);
     if (with_comma && memchr(c.from, '.', n) && memchr(c.from, ',', n))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: '%.*s' has a point and a comma; write numbers without marks of thousands", l->path,
-                    l->number, shown, c.from);
+        return fail_at(err, l, "'%.*s' has a point and a comma; write numbers without marks of thousands", shown,
+                       c.from);
     if (kind == NO_NUMBER)
         return fail_sub(err, STATUS_BAD_DATA, SUB_NO_NUMBER, "%s:%d: '%.*s' is not a number", l->path, l->number, shown,
                         c.from);
-    return kind == NUMBER ? STATUS_OK
-                          : fail(err, STATUS_BAD_DATA, "%s:%d: found %g; only finite numbers are accepted", l->path,
-                                 l->number, *x);
+    return kind == NUMBER ? STATUS_OK : fail_at(err, l, "found %g; only finite numbers are accepted", *x);
 }
 
 int number_behind(const char *from, const char *to, const char *word, double *x)
@@ -165,8 +174,8 @@ static Status parted_numbers(const Lines *l, int width, size_t max, double x[], 
         const Cell c = cell_next(&p, l->to, " ,;");
         const long length = c.to - c.from;
         if (width && length > width && !memchr(c.from, '.', (size_t)length))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' is wider than %d characters", l->path, l->number,
-                        (int)(length < 40 ? length : 40), c.from, width);
+            return fail_at(err, l, "'%.*s' is wider than %d characters", (int)(length < 40 ? length : 40), c.from,
+                           width);
         TRY(line_number(l, c, 0, &x[*n], err));
     }
     return STATUS_OK;
