@@ -326,7 +326,7 @@ static const struct {
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
     {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.unit (--unit) to counts=VALUE"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
-    {"one.tspair", "100 sps", "0 sps", ":1: no usable number of samples or rate"},
+    {"one.tspair", "100 sps", "0 sps", ":1: no usable time step"},
     {"film.smc", "        86", "        96", ": ends after 43 samples, but its header announces 48"},
     {"three.csmip.v2", "=   -123.400", "=   -223.400", "its samples peak at 123.4 cm_s2, its header says 223.4"},
     {"one.esm", "PGA_CM/S^2: -123.4", "PGA_CM/S^2: -223.4", "its header says 223.4"},

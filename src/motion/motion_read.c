@@ -391,6 +391,8 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         status = uniform_step(&s, &dt, &uneven);
     }
     TRY(check_step(&s, c, dt, status == STATUS_OK, err));
+    if (c->other_dt > 0 && fabs(dt - c->other_dt) * (double)c->n < 0.1 * dt) /* printed times have fewer digits */
+        dt = c->other_dt;
     if (status != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
     TRY(settle_unit(path, c, how, &unit, &to_m_s2, err));

@@ -43,7 +43,7 @@ typedef struct Format {
     const char *ends;                /* of the header; NULL: the first line of numbers */
     int text_lines, number_lines;    /* of the header; -1: "with N text lines" */
     int integers;                    /* it ends before a line of integers */
-    int width, pairs;                /* pairs: of time and acceleration, digitized from film */
+    int width, pairs;                /* pairs: of time and acceleration; without `more` digitized from film */
     const char *parting;             /* of names; NULL: samples stand row by row */
     const char *peak_of;             /* what stands before the peak of the channel %s */
     int one_word;                    /* the name is the first word of its value */
@@ -343,7 +343,8 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
         channel_name(c, h.at[NAME].from, h.at[NAME].to);
     if (f->one_word)
         c->name[strcspn(c->name, " ")] = 0;
-    c->digitized = f->pairs;
+    c->digitized = f->pairs && !f->more;
+    c->is_timed = f->pairs && f->more;
     if (f->more)
         TRY(f->more(l, &h, c, err));
     TRY(check_type(&h.at[TYPE], err));
@@ -653,46 +654,6 @@ static Status series_more(Lines *l, Header *h, Channel *c, Err *err)
     return STATUS_OK;
 }
 
-/* Seconds of the day of "2001-01-01T00:00:00.010000"; NAN: written otherwise. */
-static double time_of_day(const char *from, const char *to)
-{
-    double h, m, s;
-    const char *t = memchr(from, 'T', (size_t)(to - from));
-    return t && to - t > 8 && t[3] == ':' && t[6] == ':' && number_behind(t + 1, t + 3, "", &h) &&
-                   number_behind(t + 4, t + 6, "", &m) && number_behind(t + 7, to, "", &s)
-               ? 3600 * h + 60 * m + s
-               : NAN;
-}
-
-static Status tspair_read(Record *r, Lines *l, Err *err)
-{
-    for (Lines ahead = lines_ahead(l); ahead.from && line_begins(&ahead, "TIMESERIES "); ahead = lines_ahead(l)) {
-        Channel *c;
-        Header h = {.count = NAN, .dt = NAN};
-        double first = NAN, last = NAN;
-        *l = ahead;
-        TRY(record_channel(r, l, &c, err));
-        TRY(series_more(l, &h, c, err));
-        if (!(h.count >= 2 && h.dt > 0 && h.dt <= MOTION_STEP_MAX_S))
-            return fail_at(err, l, "no usable number of samples or rate in '%.*s'", line_shown(l), l->from);
-        for (c->dt = h.dt; (double)c->n < h.count; c->n++) {
-            Row row = {0};
-            if (!lines_next_filled(l) || line_begins(l, "TIMESERIES "))
-                return fail_at(err, l, "ends after %zu samples, but its header announces %.0f", c->n, h.count);
-            const char *p = l->from;
-            const Cell time = cell_next(&p, l->to, " ,;");
-            last = time_of_day(time.from, time.to);
-            first = c->n == 0 ? last : first;
-            row.line = l->number;
-            TRY(line_number(l, cell_next(&p, l->to, "\n"), 0, &row.a, err));
-            TRY(record_add(r, l, row, err));
-        }
-        last += last < first ? 24 * 3600 : 0; /* past midnight */
-        c->other_dt = isfinite(first) && isfinite(last) ? (last - first) / (double)(c->n - 1) : 0;
-    }
-    return STATUS_OK;
-}
-
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
 static const Format FORMATS[] = {
@@ -770,7 +731,7 @@ static const Format FORMATS[] = {
      .words = {{NAME, "COMP", ""}, {COUNT, "", "NO. OF POINTS"}, {UNIT, "UNITS ARE", " and "}}},
     {"sac", .is = sac_text_is, .read = sac_text_read},
     {"slist", .begins = "TIMESERIES ", .has = "SLIST", .within = 1, .text_lines = 1, .more = series_more},
-    {"tspair", .begins = "TIMESERIES ", .has = "TSPAIR", .within = 1, .read = tspair_read},
+    {"tspair", .begins = "TIMESERIES ", .has = "TSPAIR", .within = 1, .text_lines = 1, .pairs = 1, .more = series_more},
     {"", .begins = "Response and Fourier amplitude spectra", .within = 1,
      .refused = "response and Fourier spectra of CSMIP (V3); take its V2 or V1"},
     {"", .begins = "RESPONSE", .has = "FOURIER", .within = 1,

@@ -188,13 +188,15 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
     enum { PER_LINE_MAX = 64 };
     double x[PER_LINE_MAX];
     Channel *c = &r->channel[r->n_channels - 1];
-    const size_t each = c->digitized ? 2 : 1;
+    const int is_pair = c->digitized || c->is_timed;
+    const size_t each = is_pair ? 2 : 1;
     if (!(count >= 2 && count <= 1e8 && count == floor(count)))
         return fail_at(err, l, "no usable number of points (2 or more) above this line");
     if (!c->digitized && !(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail_at(err, l, "no usable time step (above 0, at most %g s) above this line", MOTION_STEP_MAX_S);
     const size_t wanted = (size_t)count;
-    c->dt = c->digitized ? 0 : dt;
+    c->dt = is_pair ? 0 : dt;
+    c->other_dt = c->is_timed ? dt : 0;
     Lines ahead = lines_ahead(l);
     for (; c->n < wanted && ahead.from && !line_is_marker(&ahead); ahead = lines_ahead(l)) {
         size_t n;
@@ -203,7 +205,8 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
         if (n % each)
             return fail_at(err, l, "%zu numbers are not pairs of time and acceleration", n);
         for (size_t i = 0; i < n; i += each)
-            TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = 3}, err));
+            TRY(record_add(
+                r, l, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = c->is_timed ? 6 : 3}, err));
         c->n += n / each;
     }
     if (c->n < wanted)

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <time.h>
 
 Status fail_at(Err *err, const Lines *l, const char *what, ...)
 {
@@ -90,11 +91,31 @@ int line_has(const Lines *l, const char *word)
 
 enum { NUMBER_MAX = 64 };
 
+/* "2001-01-01T00:00:00.010000" in seconds. */
+static int is_time(Cell c, double *x)
+{
+    char text[NUMBER_MAX] = "";
+    struct tm day = {0};
+    double second;
+    const size_t n = (size_t)(c.to - c.from);
+    if (n < 19 || n >= sizeof text || c.from[10] != 'T')
+        return 0;
+    memcpy(text, c.from, n);
+    if (sscanf(text, "%4d-%2d-%2dT%2d:%2d:%lf", &day.tm_year, &day.tm_mon, &day.tm_mday, &day.tm_hour, &day.tm_min,
+               &second) != 6 ||
+        !(second >= 0 && second < 61))
+        return 0;
+    day.tm_year -= 1900;
+    day.tm_mon--;
+    *x = (double)timegm(&day) + second;
+    return 1;
+}
+
 Status line_number(const Lines *l, Cell c, int with_comma, double *x, Err *err)
 {
     const size_t n = (size_t)(c.to - c.from);
     const int shown = n < 40 ? (int)n : 40;
-    const CellKind kind = cell_number(c, with_comma, x);
+    const CellKind kind = is_time(c, x) ? NUMBER : cell_number(c, with_comma, x);
     if (with_comma && memchr(c.from, '.', n) && memchr(c.from, ',', n))
         return fail_at(err, l, "'%.*s' has a point and a comma; write numbers without marks of thousands", shown,
                        c.from);
