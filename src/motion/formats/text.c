@@ -125,30 +125,6 @@ Status line_number(const Lines *l, Cell c, int with_comma, double *x, Err *err)
     return kind == NUMBER ? STATUS_OK : fail_at(err, l, "found %g; only finite numbers are accepted", *x);
 }
 
-int number_behind(const char *from, const char *to, const char *word, double *x)
-{
-    char text[NUMBER_MAX], *stop;
-    const char *p = find_word(from, to, word);
-    if (!p)
-        return 0;
-    for (p += strlen(word); p < to && strchr(" \t=:(", *p) && *p; p++)
-        ;
-    const size_t n = (size_t)(to - p) < sizeof text - 1 ? (size_t)(to - p) : sizeof text - 1;
-    memcpy(text, p, n);
-    text[n] = 0;
-    for (size_t i = 1; i + 1 < n; i++) /* Fortran's exponent */
-        if (strchr("dD", text[i]) && strchr("0123456789.", text[i - 1]) && strchr("+-0123456789", text[i + 1]))
-            text[i] = 'E';
-    *x = strtod(text, &stop);
-    if (*stop == ',' && stop > text && isdigit((unsigned char)stop[-1]) && isdigit((unsigned char)stop[1]) &&
-        !memchr(text, '.', strcspn(text, " \t"))) { /* a decimal comma */
-        *stop = '.';
-        *x = strtod(text, &stop);
-    }
-    return stop != text && isfinite(*x) && !memchr(text, 'x', (size_t)(stop - text)) &&
-           !memchr(text, 'X', (size_t)(stop - text));
-}
-
 static const char *skip(const char *p, const char *to, const char *set)
 {
     while (p < to && *p && strchr(set, *p))
@@ -156,32 +132,60 @@ static const char *skip(const char *p, const char *to, const char *set)
     return p;
 }
 
+/* Behind the number at p, "-1.5E+3", "1,5", "2.D-2"; p: there is none. */
+static const char *number_end(const char *p, const char *to)
+{
+    static const char DIGITS[] = "0123456789";
+    const char *begin = p, *first = p < to && strchr("+-", *p) ? p + 1 : p;
+    p = skip(first, to, DIGITS);
+    if (p < to && (*p == '.' || (*p == ',' && p > first && skip(p + 1, to, DIGITS) > p + 1)))
+        p = skip(p + 1, to, DIGITS);
+    if (p == first || (p == first + 1 && *first == '.'))
+        return begin;
+    const char *power = p < to && strchr("eEdD", *p) ? p + 1 : to;
+    power = power < to && strchr("+-", *power) ? power + 1 : power;
+    return power < to && isdigit((unsigned char)*power) ? skip(power, to, DIGITS) : p;
+}
+
+/* Where the number behind `word` begins; NULL: there is no such word. */
+static const char *behind(const char *from, const char *to, const char *word)
+{
+    const char *p = find_word(from, to, word);
+    return p ? skip(p + strlen(word), to, " \t=:(") : NULL;
+}
+
+int number_behind(const char *from, const char *to, const char *word, double *x)
+{
+    const char *p = behind(from, to, word);
+    const Cell c = {.from = p, .to = p ? number_end(p, to) : p};
+    return c.to > c.from && cell_number(c, memchr(c.from, ',', (size_t)(c.to - c.from)) != NULL, x) == NUMBER;
+}
+
 int quantity_behind(const char *from, const char *to, const char *word, int is_rate, double *x)
 {
     static const struct {
-        const char *word;
+        const char *words;
         double seconds, hertz; /* 0: none of this quantity */
-    } WORDS[] = {{"s", 1, 0},     {"sec", 1, 0},     {"secs", 1, 0},  {"second", 1, 0},  {"seconds", 1, 0},
-                 {"ms", 1e-3, 0}, {"msec", 1e-3, 0}, {"us", 1e-6, 0}, {"usec", 1e-6, 0}, {"milliseconds", 1e-3, 0},
-                 {"min", 0, 0},   {"minutes", 0, 0}, {"ns", 0, 0},    {"hours", 0, 0},   {"hz", 0, 1},
-                 {"sps", 0, 1},   {"khz", 0, 1e3}};
+    } UNITS[] = {{"s|sec|secs|second|seconds", 1, 0},
+                 {"ms|msec|milliseconds", 1e-3, 0},
+                 {"us|usec", 1e-6, 0},
+                 {"min|minutes|ns|hours", 0, 0},
+                 {"hz|sps", 0, 1},
+                 {"khz", 0, 1e3}};
     double below;
     if (!number_behind(from, to, word, x))
         return 0;
-    const char *p = skip(find_word(from, to, word) + strlen(word), to, " \t=:(");
-    p = skip(skip(p, to, "0123456789.,+-eEdD"), to, " \t");
+    const char *p = skip(number_end(behind(from, to, word), to), to, " \t");
     if (p < to && *p == '/' && number_behind(p + 1, to, "", &below) && below > 0) { /* "1/200 s" */
         *x /= below;
-        p = skip(skip(p + 1, to, " \t0123456789.,+-eEdD"), to, " \t");
+        p = skip(number_end(behind(p + 1, to, ""), to), to, " \t");
     }
     const char *end = p;
     while (end < to && isalpha((unsigned char)*end))
         end++;
-    if (end < to && strchr("-^/", *end)) /* s-1, m/s2 */
-        return 1;
-    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
-        if ((size_t)(end - p) == strlen(WORDS[i].word) && strncasecmp(p, WORDS[i].word, (size_t)(end - p)) == 0) {
-            const double unit = is_rate ? WORDS[i].hertz : WORDS[i].seconds;
+    for (size_t i = 0; i < sizeof UNITS / sizeof UNITS[0] && !(end < to && strchr("-^/", *end)); i++) /* s-1, m/s2 */
+        if (text_is(EQUALS, p, end, UNITS[i].words)) {
+            const double unit = is_rate ? UNITS[i].hertz : UNITS[i].seconds;
             *x *= unit;
             return unit > 0 ? 1 : -1;
         }
