@@ -459,7 +459,7 @@ TEST(a_sac_header_of_velocities_or_of_fewer_samples_is_refused)
         const char *says;
     } CASES[] = {{16, 7, "not an acceleration: IDEP in its SAC header says velocity"},
                  {16, 6, "says displacement"},
-                 {9, 30, "holds 43 samples, more than the 30 that its header announces"}};
+                 {9, 30, "holds 43 samples, not the 30 that its header announces"}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Text t = read_specimen("little.sac");
         Err err = {0};
@@ -937,7 +937,7 @@ TEST(what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said)
         {2056 + 16, 4, "is of type 4"},
         {2056 + 16 + 14, 1 << 6, "samples of 2 bytes"},
         {2056 + 16 + 11, 3, "60 are expected"},
-        {2056 + 16 + 13, 99, "no usable channels or rate"},
+        {2056 + 16 + 13, 99, "99 Hz; type 3"},
         {2056 + 138 + 16 + 11, 3, "60 are expected"},
         {2056 + 4 + 3, 1, "holds 0 frames"},
     };

@@ -19,7 +19,7 @@
 #include "base/units.h"
 #include "motion/formats/record.h"
 
-typedef enum { NAME, COUNT, STEP, RATE, DURATION, UNIT, PEAK, FACTOR, TYPE, NAMES, N_FIELDS } Field;
+typedef enum { NAME, PLACE, COUNT, STEP, RATE, DURATION, UNIT, PEAK, FACTOR, TYPE, NAMES, N_FIELDS } Field;
 
 typedef struct {
     Lines at[N_FIELDS]; /* the line, from its value on; from == NULL: none */
@@ -329,6 +329,28 @@ static int is_corrected(const char *from, const char *end)
     return text_is(HOLDS, from, end, "corrected acc") && !text_is(HOLDS, from, end, "uncorrected");
 }
 
+/* "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof": with the location, which tells the channels of a
+ * building apart. */
+static void take_name(const Header *h, Channel *c)
+{
+    char text[2 * CHANNEL_NAME_MAX];
+    const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
+    const char *from = name->from, *to = from;
+    if (!from)
+        return;
+    for (const char *p = from; p < name->to && strchr(" 0123456789:", *p); p++)
+        from = *p == ':' ? p + 1 : from;
+    while (to < name->to && *to != '(' && !(to > from && text_is(BEGINS, to, name->to, "Location")))
+        to++;
+    channel_name(c, from, to);
+    for (from = place->from; from && from < place->to && strchr(" :=", *from);)
+        from++;
+    if (from)
+        channel_name(c, text,
+                     text + snprintf(text, sizeof text, "%s, %.*s", c->name,
+                                     (int)fmin((double)(place->to - from), CHANNEL_NAME_MAX), from));
+}
+
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 {
     Header h;
@@ -339,8 +361,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     if (f->parting)
         return read_columns(f, r, l, &h, err);
     TRY(record_channel(r, l, &c, err));
-    if (h.at[NAME].from)
-        channel_name(c, h.at[NAME].from, h.at[NAME].to);
+    take_name(&h, c);
     if (f->one_word)
         c->name[strcspn(c->name, " ")] = 0;
     c->digitized = f->pairs && !f->more;
@@ -369,20 +390,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum { REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
-    const Lines name = h->at[NAME];
-    const char *place = name.from ? find_word(name.from, name.to, "Location") : NULL;
-    const char *bracket = name.from ? memchr(name.from, '(', (size_t)(name.to - name.from)) : NULL;
     double x;
-    if (name.from) {
-        char text[2 * CHANNEL_NAME_MAX];
-        channel_name(c, name.from, bracket && (!place || bracket < place) ? bracket : place ? place : name.to);
-        place = place ? place + strcspn(place, " :=") : NULL;
-        while (place && place < name.to && strchr(" :=", *place))
-            place++;
-        const int n = snprintf(text, sizeof text, "%s%s%.*s", c->name, place ? ", " : "",
-                               place ? (int)(name.to - place < 64 ? name.to - place : 64) : 0, place ? place : "");
-        channel_name(c, text, text + n);
-    }
     const int is_v2 = strncasecmp(h->from, "corrected", 9) == 0;
     for (int i = 0; i < REAL_LINES_MAX; i++) {
         const Lines ahead = lines_ahead(l);
@@ -448,12 +456,7 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum { N_REALS = 100, STEP_AT = 61 };
     double n_lines = 0, reals[N_REALS];
-    const Lines name = h->at[NAME];
-    if (name.from) { /* "Sta Chan  1: 340 deg (Rcrdr Chan  1)" or "Sta Cha 1: 340 deg: Up (" */
-        const char *from = name.from, *stop = memchr(from, '(', (size_t)(name.to - from));
-        const char *deg = find_word(from, name.to, "deg"), *colon = memchr(from, ':', (size_t)(name.to - from));
-        channel_name(c, colon && deg && colon < deg ? colon + 1 : from, stop && stop > from ? stop : name.to);
-    }
+    (void)c;
     TRY(part_begins(l, "Integer-header", &n_lines, err));
     if (!lines_skip(l, (int)n_lines))
         return fail_too_short(l, "header", err);
@@ -715,6 +718,7 @@ static const Format FORMATS[] = {
     {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .within = 1, .integers = 1,
      .number_lines = 7, .more = csmip_more,
      .words = {{NAME, "Chan", ":"},
+               {PLACE, "Chan", "Location"},
                {COUNT, "", "of points"},
                {STEP, "", "spaced intervals of"},
                {UNIT, "Units of", " and "},

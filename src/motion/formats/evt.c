@@ -53,13 +53,11 @@ static Form form_of(const unsigned char *frame)
 static Status check_form(const char *path, size_t at, const Form *f, const unsigned char *frame, size_t samples,
                          Err *err)
 {
-    if (frame[0] != FRAME_OF_12)
-        return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: the frame at byte %zu is of type %d; 3 is read", path,
-                    at, frame[0]);
-    if (f->bytes < 3 || f->bytes > 4)
-        return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: samples of %u bytes; 3 and 4 are read", path, f->bytes);
-    if (!f->channels || f->rate < 10 || f->rate % 10)
-        return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: no usable channels or rate at byte %zu", path, at);
+    if (frame[0] != FRAME_OF_12 || f->bytes < 3 || f->bytes > 4 || !f->channels || f->rate < 10 || f->rate % 10)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: Kinemetrics EVT: the frame at byte %zu is of type %d with samples of %u bytes, channels %#x, "
+                    "%u Hz; type 3 with 3 or 4 bytes is read",
+                    path, at, frame[0], f->bytes, f->channels, f->rate);
     const size_t wanted = (size_t)f->rate / 10 * f->bytes * (size_t)__builtin_popcount(f->channels);
     return samples == wanted
                ? STATUS_OK
@@ -143,18 +141,11 @@ static Status read_frames(Record *r, const char *path, const unsigned char *b, s
 static Status read(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const unsigned char *b = (const unsigned char *)bytes;
-    if (b[1] != 1)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: Kinemetrics EVT with the least significant byte first is not read; convert it to miniSEED, SAC "
-            "or text (K2COSMOS, kw2asc)",
-            path);
-    if (u32(b + 4) != TAG_HEADER || u16(b + 8) != HEADER || n < TAG + HEADER)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: Kinemetrics EVT without a header of %d bytes (12 channels) is not read; convert it to miniSEED, "
-            "SAC or text (K2COSMOS, kw2asc)",
-            path, HEADER);
+    if (b[1] != 1 || u32(b + 4) != TAG_HEADER || u16(b + 8) != HEADER || n < TAG + HEADER)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: Kinemetrics EVT %s is not read; convert it to miniSEED, SAC or text (K2COSMOS, kw2asc)", path,
+                    b[1] != 1 ? "with the least significant byte first"
+                              : "without a header of 2040 bytes (12 channels)");
     return read_frames(r, path, b, n, err);
 }
 

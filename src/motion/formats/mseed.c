@@ -47,29 +47,16 @@ static Status take_trace(Record *r, const Lines *l, const MSTrace *t, Err *err)
     return STATUS_OK;
 }
 
-/* Bytes that a sample takes at least, times two: a Steim frame of 64 bytes holds 105 samples at most. */
+/* Bytes that a sample takes at least, times two; of what is not listed, 1: a Steim frame of 64 bytes holds 105 samples
+ * at most. */
+static const char HALF_BYTES[] = {[DE_ASCII] = 2,    [DE_INT16] = 4,      [DE_INT32] = 8,       [DE_FLOAT32] = 8,
+                                  [DE_FLOAT64] = 16, [DE_GEOSCOPE24] = 6, [DE_GEOSCOPE163] = 4, [DE_GEOSCOPE164] = 4,
+                                  [DE_CDSN] = 4,     [DE_SRO] = 4,        [DE_DWWSSN] = 4};
+
 static int half_bytes(int encoding)
 {
-    switch (encoding) {
-    case DE_ASCII:
-        return 2;
-    case DE_INT32:
-    case DE_FLOAT32:
-        return 8;
-    case DE_FLOAT64:
-        return 16;
-    case DE_GEOSCOPE24:
-        return 6;
-    case DE_INT16:
-    case DE_GEOSCOPE163:
-    case DE_GEOSCOPE164:
-    case DE_CDSN:
-    case DE_SRO:
-    case DE_DWWSSN:
-        return 4;
-    default:
-        return 1;
-    }
+    const int is_listed = encoding >= 0 && encoding < (int)sizeof HALF_BYTES && HALF_BYTES[encoding];
+    return is_listed ? HALF_BYTES[encoding] : 1;
 }
 
 /* The library decodes as many samples as the header announces, wherever the record ends. */

@@ -100,11 +100,8 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
     Channel *c;
     TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped),
                      integer_at(bytes, IDEP, swapped), err));
-    if (n < HEADER + 4 * (size_t)npts)
-        return fail(err, STATUS_BAD_DATA, "%s: ends after %zu samples, but its header announces %d", path,
-                    (n - HEADER) / 4, npts);
-    if (n >= HEADER + 4 * ((size_t)npts + 1) && n != HEADER + 4 * (size_t)npts + FOOTER)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, more than the %d that its header announces", path,
+    if ((n - HEADER) / 4 != (size_t)npts && n != HEADER + 4 * (size_t)npts + FOOTER)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, not the %d that its header announces", path,
                     (n - HEADER) / 4, npts);
     TRY(record_channel(r, &l, &c, err));
     *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = (size_t)npts};
