@@ -16,7 +16,6 @@
  *             digits, and where the names name one column and no number has a point */
 #include <ctype.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -35,21 +34,10 @@ typedef struct {
     Channel all;                   /* unit, or stated, of every column that has none in its name */
     int is_counted;                /* the first column counts rows */
     int restated_line;             /* of a step, a count or a unit below the first row; 0: none */
-    char wrong[160];               /* what is contradicted or not understood, and where */
-    int wrong_line;                /* 0: nothing */
+    Err wrong;                     /* what is contradicted or not understood; empty: nothing */
 } Plain;
 
 /* ---- header ------------------------------------------------------------------------------------------------------ */
-
-__attribute__((format(printf, 3, 4))) static void note_wrong(Plain *t, const Lines *l, const char *what, ...)
-{
-    va_list list;
-    va_start(list, what);
-    if (!t->wrong_line)
-        vsnprintf(t->wrong, sizeof t->wrong, what, list);
-    t->wrong_line = t->wrong_line ? t->wrong_line : l->number;
-    va_end(list);
-}
 
 /* A step or a count that is stated twice must be the same. */
 static void take_number(Plain *t, double *have, double x, const char *what, const Lines *l)
@@ -57,7 +45,7 @@ static void take_number(Plain *t, double *have, double x, const char *what, cons
     if (*have == 0)
         *have = x;
     else if (fabs(x - *have) > 0.01 * *have)
-        note_wrong(t, l, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x, *have);
+        fail_at(&t->wrong, l, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x, *have);
 }
 
 static int names_seconds(Cell c)
@@ -117,7 +105,7 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
         if (next && names_seconds((Cell){.from = c.stated, .to = c.stated + strlen(c.stated)}))
             take_unit(&c, next + 1, l->to);
         if (c.unit && t->all.unit && c.unit != t->all.unit)
-            note_wrong(t, l, "states another unit than a line above");
+            fail_at(&t->wrong, l, "states another unit than a line above");
         if (!t->all.unit && c.scale == 1)
             t->all = c;
         return;
@@ -125,7 +113,7 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
     const int got =
         kind == COUNT ? number_behind(mark, l->to, "", &x) : quantity_behind(mark, l->to, "", kind == RATE, &x);
     if (got < 0)
-        note_wrong(t, l, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
+        fail_at(&t->wrong, l, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
     else if (got > 0 && x > 0 && x <= 1e6)
         take_number(t, kind == COUNT ? &t->count : &t->dt, kind == RATE ? 1 / x : x,
                     kind == COUNT ? "number of samples" : "step", l);
@@ -388,7 +376,7 @@ static void take_count(Plain *t)
     const double count = r->row[0].a, dt = r->row[1].a, rows = (double)t->n_rows, n = (double)r->n;
     const int in_two = t->width == 1 && r->row[2].line != r->row[1].line && count == n - 2;
     const int is_pair = t->width == 2 && (count == n - 2 || count == rows - 1);
-    const Lines l = {.number = r->row[0].line};
+    const Lines l = {.path = t->l->path, .number = r->row[0].line};
     if (dt > 0 && dt < MOTION_STEP_MAX_S && (is_pair || in_two)) {
         drop_first(t, 2);
         take_number(t, &t->dt, dt, "step", &l);
@@ -416,8 +404,10 @@ static Status read_table(Plain *t, Err *err)
     take_count(t);
     if (t->names.from && !is_named(t))
         take_pairs(t, &t->names);
-    if (t->wrong_line)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: %s", t->l->path, t->wrong_line, t->wrong);
+    if (t->wrong.text[0]) {
+        *err = t->wrong;
+        return STATUS_BAD_DATA;
+    }
     if (t->n_rows < 2 && t->width < 3)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", t->l->path, t->n_rows,
                     t->n_rows == 1 ? "" : "s");
