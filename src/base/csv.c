@@ -260,13 +260,14 @@ static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
     Table *t = r->t;
     const size_t at = t->n_rows * t->n_cols + column, length = (size_t)(c.to - c.from);
     double x = 0;
-    const CellKind kind = cell_number(c, 1, &x);
-    if (!r->of_words && kind != NUMBER)
+    const int is_empty = !r->of_words && r->has_header && length == 0;
+    const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
+    if (!r->of_words && kind != NUMBER && !is_empty)
         return fail_number(t, r->l.number, column, c, kind, x, err);
     if (kind == NUMBER)
         TRY(lines_note_mark(&r->l, c, err));
     if (!r->of_words) {
-        t->values[at] = x;
+        t->values[at] = is_empty ? (double)NAN : x;
         return STATUS_OK;
     }
     memcpy(t->text + r->used, c.from, length);

@@ -80,14 +80,11 @@ static void explain_objectives(const Schema *schema, const char *objectives)
         puts(missing);
 }
 
-/* Likely errors as stored with the design; of the knee else as estimated at the end. */
-static void add_design(json_t *table, const Run *run, const StudySummary *summary, const char *label, size_t row)
+static void add_design(json_t *table, const Run *run, const char *label, size_t row)
 {
     const Schema *schema = &run->schema;
     double error[OBJECTIVES_MAX];
-    const int is_stored = run_likely(run, row, error);
-    for (size_t k = 0; !is_stored && summary->error_known && row == run_knee(run) && k < schema->n_obj; k++)
-        error[k] = summary->error[schema->order.of[k]];
+    run_likely(run, row, error);
     figures_design(table, label, run->table.row[row].id, schema, run_f(run, row), error, run->table.row[row].extra);
 }
 
@@ -113,9 +110,9 @@ static void print_front(const Run *run, const StudySummary *summary)
         printf("each number: %s\n", rule);
     for (size_t k = 0; k < schema->n_obj; k++) {
         snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
-        add_design(table, run, summary, label, run_best(run, k));
+        add_design(table, run, label, run_best(run, k));
     }
-    add_design(table, run, summary, "knee", knee);
+    add_design(table, run, "knee", knee);
     if (summary->has_baselines)
         add_baselines(table, schema, summary->baseline);
     figures_print(table);
@@ -225,6 +222,11 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     print_front(run, summary);
     if (summary->has_baselines)
         print_review(&run->schema, &summary->review);
+    char named[160];
+    const NamedCost cost = named_cost(run);
+    named_words(&cost, named);
+    if (named[0])
+        puts(named);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
                summary->n_polished, summary->n_tried_to_polish);

@@ -161,6 +161,12 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
     if (s->n_lost > 0)
         json_object_set_new(o, "lost", json_integer((json_int_t)s->n_lost));
+    const NamedCost named = named_cost(run);
+    if (named.n > 0) {
+        json_object_set_new(o, "named", json_integer((json_int_t)named.n));
+        json_object_set_new(o, "named_unpredictable", json_integer((json_int_t)named.n_unpredictable));
+        json_object_set_new(o, "named_time_share", json_number(named.share));
+    }
     return o;
 }
 

@@ -86,6 +86,7 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
     copy_numbers(to->array, from->array, width);
     EVALUATION_ARRAYS(X)
 #undef X
+    to->err = NULL;
 }
 
 static void point_row(EvaluationTable *t, size_t i)

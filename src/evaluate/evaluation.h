@@ -80,6 +80,8 @@ typedef struct {
     double seconds;     /* of all its simulations; NAN: not known */
     double violation;   /* of the limits, sum of max(0, g): 0 where they hold; INFINITY: failed; NAN: not known */
     double *x, *f, *sd, *extra;
+    double *err; /* (n_obj + n_extra) likely errors of f, then of extra; of no row of a table; NULL: not known */
+    long level;  /* times that the steps of the settings were doubled for it */
 } Evaluation;
 
 /* All numbers that `from` has (NULL arrays: none) into the arrays of `to`, of the same shapes. */

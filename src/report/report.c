@@ -9,6 +9,7 @@ static Status take_detail(Report *r, const DetailOptions *options, Err *err)
 {
     Settings s = *r->run->settings;
     TRY(record_paths_find(&s, r->run->provenance, &options->moved, err));
+    run_steps(r->run, r->chosen, &s.sim);
     return r->has_detail
                ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), options, &r->detail, err)
                : STATUS_OK;

@@ -167,6 +167,9 @@ static Status check_values(const Designs *d, const char *path, Err *err)
             const double value = d->x[i * (size_t)s->n_var + (size_t)j];
             const int walls_end = s->n_gaps + s->n_walls, is_log = j >= walls_end && j < walls_end + s->n_bumpers;
             design_variable_name(s, j, name);
+            if (isnan(value))
+                return fail(err, STATUS_BAD_DATA, "%s:%d: column %d of %d is missing", path, d->line[i], j + 1,
+                            s->n_var);
             if (j < s->n_gaps && value < 0)
                 return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a gap is not negative", path, d->line[i], name,
                             value);

@@ -23,20 +23,36 @@ typedef enum {
     PART_LIMITED,
     PART_EXTRA,
     PART_SD,
-    PART_ERRORS /* of the objectives, likely ones; none where the run stores none */
+    PART_ERRORS, /* of the objectives, likely ones; none where the run stores none */
+    PART_ERR,
+    PART_ERR_EXTRA
 } Part;
 
-static const Part PARTS[][6] = {
-    [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD},
-    [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA},
+static const Part PARTS[][8] = {
+    [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD, PART_ERR},
+    [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA, PART_ERR, PART_ERR_EXTRA},
     [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
     [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERRORS},
 };
 
-static void put_names(FILE *f, size_t n, const Column columns[], const char *end)
+static void put_names(FILE *f, const char *begin, size_t n, const Column columns[], const char *end)
 {
     for (size_t c = 0; c < n; c++)
-        fprintf(f, ",%s%s", columns[c].name, end);
+        fprintf(f, ",%s%s%s", begin, columns[c].name, end);
+}
+
+/* Of a tower alone: errors of others are not known. */
+static size_t n_errors(const Schema *s, Part part)
+{
+    return s->order.n_obj == 0 ? 0 : part == PART_ERR ? s->n_obj : s->n_extra;
+}
+
+static void put_errors(FILE *f, const Schema *s, const Evaluation *e, Part part)
+{
+    double unknown[N_MEASURES];
+    for (size_t k = 0; k < N_MEASURES; k++)
+        unknown[k] = NAN;
+    print_cells(f, n_errors(s, part), !e->err ? unknown : part == PART_ERR ? e->err : e->err + s->n_obj);
 }
 
 static void put_heads(FILE *f, const Schema *s, Part part)
@@ -52,22 +68,28 @@ static void put_heads(FILE *f, const Schema *s, Part part)
         fputs(",violation", f);
         break;
     case PART_X:
-        put_names(f, s->n_var, s->column, "");
+        put_names(f, "", s->n_var, s->column, "");
         break;
     case PART_F:
     case PART_MEANS:
-        put_names(f, s->n_obj, schema_objective(s, 0), "");
+        put_names(f, "", s->n_obj, schema_objective(s, 0), "");
         break;
     case PART_LIMITED:
         for (size_t k = 0; k < s->n_limited; k++)
-            put_names(f, 1, schema_extra(s, s->limited[k]), "");
+            put_names(f, "", 1, schema_extra(s, s->limited[k]), "");
         break;
     case PART_EXTRA:
-        put_names(f, s->n_extra, schema_extra(s, 0), "");
+        put_names(f, "", s->n_extra, schema_extra(s, 0), "");
         break;
     case PART_SD:
-        put_names(f, s->has_spread ? s->n_obj : 0, schema_objective(s, 0), "_sd");
+        put_names(f, "", s->has_spread ? s->n_obj : 0, schema_objective(s, 0), "_sd");
         fputs(s->has_spread ? ",replicates" : "", f);
+        break;
+    case PART_ERR:
+        put_names(f, "err_", n_errors(s, part), schema_objective(s, 0), "");
+        break;
+    case PART_ERR_EXTRA:
+        put_names(f, "err_", n_errors(s, part), schema_extra(s, 0), "");
         break;
     case PART_ERRORS: /* of the page, which has no heads */
     case PART_END:
@@ -115,6 +137,10 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
         if (run_likely(run, row, likely))
             print_cells(f, s->n_obj, likely);
         break;
+    case PART_ERR:
+    case PART_ERR_EXTRA:
+        put_errors(f, s, e, part);
+        break;
     case PART_END:
         break;
     }
@@ -157,6 +183,8 @@ static int put_object(FILE *f, const Run *run, size_t i)
         put_list(f, ",\"mean\":", s->n_obj, run_f(run, i));
     if (s->has_spread)
         fprintf(f, ",\"replicates\":%d", e->replicates);
+    if (e->err)
+        put_list(f, ",\"err\":", s->n_obj + s->n_extra, e->err);
     if (s->n_extra > 0) {
         fputs(",\"measures\":", f);
         print_list(f, s->n_extra, e->extra);

@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include "evaluate/problem.h"
+#include "evaluate/scenario.h"
 #include "moga/dominance.h"
+#include "moga/nd_tree.h"
 #include "settings/settings.h"
 #include "settings/options.h"
 
@@ -20,6 +22,7 @@ void run_free(Run *run)
     if (run->F != run->table.f)
         free(run->F);
     evaluation_table_free(&run->table);
+    evaluation_table_free(&run->finer);
     free(run->place);
     free(run->front);
     free(run->generation);
@@ -43,18 +46,18 @@ const double *run_f(const Run *run, size_t row)
 
 int run_likely(const Run *run, size_t row, double error[])
 {
-    const Schema *s = &run->schema;
-    int any = 0;
-    for (size_t k = 0; k < s->n_obj; k++) {
-        error[k] = NAN;
-        for (size_t e = 0; e < s->n_extra; e++) {
-            const char *name = schema_extra(s, e)->name;
-            if (strncmp(name, "err_", 4) == 0 && strcmp(name + 4, schema_objective(s, k)->name) == 0)
-                error[k] = run->table.row[row].extra[e];
-        }
-        any |= isfinite(error[k]);
-    }
-    return any;
+    const double *err = run->table.row[row].err;
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        error[k] = err ? err[k] : NAN;
+    return err != NULL;
+}
+
+void run_steps(const Run *run, size_t row, SimOptions *sim)
+{
+    const SimOptions *set = &run->settings->sim;
+    for (long i = 0; i < run->table.row[row].level; i++)
+        if (sim->accuracy == set->accuracy && sim->tolerance == set->tolerance)
+            estimate_options(sim, sim);
 }
 
 size_t run_find(const Run *run, long id)
@@ -109,6 +112,30 @@ static void admit_polished(Run *run)
         }
 }
 
+/* Where designs have other values than the search knew: of all that were ever on its front. */
+static Status form_again(Run *run, Err *err)
+{
+    NdTree *tree;
+    NdChange change;
+    double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
+    Status status = F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
+        RunPlace *p = &run->place[i];
+        p->on_front = 0;
+        if (!p->ok || p->entered == NEVER || run->table.row[i].violation > 0.0)
+            continue;
+        minimise(run, i, F + i * run->schema.n_obj);
+        status = nd_tree_insert(tree, F, i, &change, err);
+        p->on_front = change.is_in;
+        for (size_t k = 0; status == STATUS_OK && k < change.n_removed; k++)
+            run->place[change.removed[k]].on_front = 0;
+    }
+    if (F)
+        nd_tree_free(tree);
+    free(F);
+    return status;
+}
+
 static void list_front(Run *run)
 {
     run->n_front = 0;
@@ -122,6 +149,8 @@ Status run_settle_front(Run *run, Err *err)
     run->front = calloc(run->table.n + 1, sizeof *run->front);
     if (!run->front)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    if (run->finer.n > 0)
+        TRY(form_again(run, err));
     admit_polished(run);
     list_front(run);
     return STATUS_OK;

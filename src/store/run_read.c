@@ -196,12 +196,40 @@ static Status join_repeats(Run *run, Err *err)
     return status;
 }
 
+static Status take_finer(const Evaluation *e, void *run, Err *err)
+{
+    return evaluation_table_append(&((Run *)run)->finer, e, err);
+}
+
+static Status join_finer(Loading *l, Err *err)
+{
+    Run *run = l->run;
+    const Schema *s = &run->schema;
+    run->finer = evaluation_table(0, s->n_obj, s->n_extra + s->n_obj + s->n_extra);
+    TRY(rows_each(l->d, ROWS_FINER, s, "1", take_finer, run, err));
+    for (size_t i = 0; i < run->finer.n; i++) {
+        Evaluation *better = &run->finer.row[i];
+        const size_t row = run_find(run, better->id);
+        if (row == run->table.n)
+            return database_damaged(l->d, err, "evaluation %ld is missing", better->id);
+        Evaluation *e = &run->table.row[row];
+        better->err = e->err = better->extra + s->n_extra;
+        e->violation = better->violation;
+        e->level = better->level;
+        memcpy(e->f, better->f, s->n_obj * sizeof *e->f);
+        memcpy(e->sd, better->sd, s->n_obj * sizeof *e->sd);
+        memcpy(e->extra, better->extra, s->n_extra * sizeof *e->extra);
+        memcpy(run->F + row * s->n_obj, better->f, s->n_obj * sizeof *run->F);
+    }
+    return STATUS_OK;
+}
+
 static Status load_rows(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
     run->table = l->polished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
-    TRY(rows_each(l->d, s, "1", take_row, l, err));
+    TRY(rows_each(l->d, ROWS_EVALUATION, s, "1", take_row, l, err));
     if (run->table.n < run->n_finished)
         return database_damaged(l->d, err, "evaluation %zu is missing", run->table.n + l->polished.n + 1);
     for (size_t i = 0; i < l->polished.n; i++)
@@ -215,6 +243,7 @@ static Status load_rows(Loading *l, Err *err)
     TRY(make_places(l, err));
     if (s->is_noisy && n > 0)
         TRY(join_repeats(run, err));
+    TRY(join_finer(l, err));
     free(run->mark);
     run->mark = NULL;
     run->n_marks = 0;

@@ -142,7 +142,7 @@ static Status read_open_rows(RunStore *store, Err *err)
     store->unfinished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
     store->n_polished = 0;
     store->n_known = store->n_stored = run->n_finished;
-    TRY(rows_each(store->db, s, "kind IS NULL OR kind = 'polished'", take_open_row, store, err));
+    TRY(rows_each(store->db, ROWS_EVALUATION, s, "kind IS NULL OR kind = 'polished'", take_open_row, store, err));
     free(store->was_on_front);
     store->was_on_front = calloc(store->n_known + 1, 1);
     if (!store->was_on_front)
@@ -284,7 +284,7 @@ static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
     Evaluation row = *e;
     row.id = id_of(store, (size_t)e->id - 1);
-    return rows_insert(store->db, store->schema, &row, err);
+    return rows_insert(store->db, ROWS_EVALUATION, store->schema, &row, err);
 }
 
 /* Without what is_of_the_next has left out. */
@@ -359,7 +359,7 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
     RunStore *store = user;
     Each each = {.store = store, .take = take, .user = search};
     Status status =
-        rows_each(store->db, store->schema, "kind IS NOT NULL AND kind <> 'polished'", take_finished, &each, err);
+        rows_each(store->db, ROWS_EVALUATION, store->schema, "kind IS NOT NULL AND kind <> 'polished'", take_finished, &each, err);
     if (status == STATUS_OK && each.n != store->run.n_finished)
         status = missing(store, each.n, err);
     return folder_advise(store_folder(store), status, err);
@@ -499,6 +499,7 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
     TRY(store_rows(store, v, err));
     TRY(store_front_changes(store, v, err));
+    TRY(database_do(store->db, err, "DELETE FROM finer", "")); /* what the search named before is another front's */
     TRY(store_moment(store, v, seconds, err));
     TRY(put_session(store, err));
     return store_state(store, v, err);
@@ -643,7 +644,7 @@ static Status insert_polished(RunStore *store, const Evaluation *design, long *i
     *id = e.id = (long)last + 1;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;
-    return rows_insert(store->db, store->schema ? store->schema : &store->run.schema, &e, err);
+    return rows_insert(store->db, ROWS_EVALUATION, store->schema ? store->schema : &store->run.schema, &e, err);
 }
 
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id, Err *err)
@@ -653,5 +654,13 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
     if (status == STATUS_OK)
         status = database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", (long)n_tried,
                              (long)n_simulated);
+    return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
+}
+
+Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *err)
+{
+    Status status = begin(store, err);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        status = rows_insert(store->db, ROWS_FINER, store->schema, &better[i], err);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }

@@ -84,6 +84,10 @@ Status store_event(RunStore *store, json_t *event, Err *err);
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id,
                       Err *err);
 
+/* n designs that are there, by their ids, as they are with more steps, all of them or none: the run has these numbers
+ * until the search goes on, which keeps its own. */
+Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *err);
+
 /* store_read, and front.csv written from it. */
 Status store_write_front(RunStore *store, Run *run, Err *err);
 

@@ -41,6 +41,14 @@ static const Field EVALUATION[] = {
     FIELD(Evaluation, violation, "violation", "REAL", REAL),
 };
 
+static const Field FINER[] = {
+    FIELD(Evaluation, id, "id", "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(Evaluation, level, "level", "INTEGER NOT NULL", WHOLE),
+    FIELD(Evaluation, reason, "reason", "TEXT NOT NULL", REASON),
+    FIELD(Evaluation, seconds, "seconds", "REAL", REAL),
+    FIELD(Evaluation, violation, "violation", "REAL", REAL),
+};
+
 static const Field GENERATION[] = {
     FIELD(RunGeneration, number, "number", "INTEGER PRIMARY KEY", WHOLE),
     FIELD(RunGeneration, simulated, "simulated", "INTEGER NOT NULL", WHOLE),
@@ -88,7 +96,10 @@ typedef struct {
         name, has_digest, fields, sizeof fields / sizeof *fields, sizeof(record)                                       \
     }
 
-static const TableColumns ROWS = TABLE("evaluation", 1, EVALUATION, Evaluation);
+static const TableColumns ROWS[N_ROW_TABLES] = {
+    [ROWS_EVALUATION] = TABLE("evaluation", 1, EVALUATION, Evaluation),
+    [ROWS_FINER] = TABLE("finer", 1, FINER, Evaluation),
+};
 static const TableColumns RECORDS[N_RECORD_TABLES] = {
     [TABLE_GENERATION] = TABLE("generation", 1, GENERATION, RunGeneration),
     [TABLE_FRONT] = TABLE("front", 0, FRONT, RunMark),
@@ -102,24 +113,26 @@ static const char OTHERS[] =
     "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "
     "digest INTEGER NOT NULL);";
 
-enum { N_TABLES = N_RECORD_TABLES + 3 };
+enum { N_TABLES = N_RECORD_TABLES + N_ROW_TABLES + 2 };
 
 /* Numbers of an evaluation that follow its digest: n columns named after those of the schema from `first` on, and the
  * array of the record that has them. */
 typedef struct {
     size_t n, first, array;
-    const char *end; /* of their names */
+    const char *begin, *end; /* of their names */
 } Numbers;
 
-enum { N_NUMBERS = 4 };
+enum { N_NUMBERS = 5 };
 
-static void numbers_of(const Schema *s, Numbers list[N_NUMBERS])
+static void numbers_of(RowTable table, const Schema *s, Numbers list[N_NUMBERS])
 {
+    const int is_finer = table == ROWS_FINER;
     const Numbers all[] = {
-        {s->n_var, 0, offsetof(Evaluation, x), ""},
-        {s->n_obj, s->n_var, offsetof(Evaluation, f), ""},
-        {s->n_extra, s->n_var + s->n_obj, offsetof(Evaluation, extra), ""},
-        {s->has_spread ? s->n_obj : 0, s->n_var, offsetof(Evaluation, sd), "_sd"},
+        {is_finer ? 0 : s->n_var, 0, offsetof(Evaluation, x), "", ""},
+        {s->n_obj, s->n_var, offsetof(Evaluation, f), "", ""},
+        {s->n_extra, s->n_var + s->n_obj, offsetof(Evaluation, extra), "", ""},
+        {is_finer || s->has_spread ? s->n_obj : 0, s->n_var, offsetof(Evaluation, sd), "", "_sd"},
+        {is_finer ? s->n_obj + s->n_extra : 0, s->n_var, offsetof(Evaluation, err), "err_", ""},
     };
     memcpy(list, all, sizeof all);
 }
@@ -129,11 +142,11 @@ static double *array_of(const Evaluation *e, const Numbers *n)
     return *(double *const *)(const void *)((const char *)e + n->array);
 }
 
-static size_t n_columns(const Schema *s)
+static size_t n_columns(RowTable table, const Schema *s)
 {
     Numbers list[N_NUMBERS];
-    size_t n = ROWS.n + 1;
-    numbers_of(s, list);
+    size_t n = ROWS[table].n + 1;
+    numbers_of(table, s, list);
     for (size_t k = 0; k < N_NUMBERS; k++)
         n += list[k].n;
     return n;
@@ -142,7 +155,7 @@ static size_t n_columns(const Schema *s)
 Status tables_have_room(const Schema *s, Err *err)
 {
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
-    const size_t others = n_columns(s) - s->n_var;
+    const size_t others = n_columns(ROWS_EVALUATION, s) - s->n_var;
     return s->n_var + others <= COLUMNS_MAX ? STATUS_OK
                                             : fail(err, STATUS_BAD_DATA,
                                                    "problem.variables = %zu: a run has room for %zu variables beside "
@@ -153,9 +166,9 @@ Status tables_have_room(const Schema *s, Err *err)
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
 /* Names become identifiers of SQL: in double quotes, which are doubled inside. */
-static void put_column(FILE *f, const char *name, const char *end)
+static void put_column(FILE *f, const char *begin, const char *name, const char *end)
 {
-    fputs(", \"", f);
+    fprintf(f, ", \"%s", begin);
     for (; *name; name++)
         fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
     fprintf(f, "%s\" REAL", end);
@@ -183,12 +196,14 @@ static Status tables_text(const Schema *s, char **text, Err *err)
         put_table(f, &RECORDS[t]);
         fputs(");", f);
     }
-    put_table(f, &ROWS);
-    numbers_of(s, list);
-    for (size_t k = 0; k < N_NUMBERS; k++)
-        for (size_t c = 0; c < list[k].n; c++)
-            put_column(f, s->column[list[k].first + c].name, list[k].end);
-    fputs(");", f);
+    for (RowTable t = 0; t < N_ROW_TABLES; t++) {
+        put_table(f, &ROWS[t]);
+        numbers_of(t, s, list);
+        for (size_t k = 0; k < N_NUMBERS; k++)
+            for (size_t c = 0; c < list[k].n; c++)
+                put_column(f, list[k].begin, s->column[list[k].first + c].name, list[k].end);
+        fputs(");", f);
+    }
     return text_close(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
 }
 
@@ -500,19 +515,19 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 /* -- rows of evaluations ------------------------------------------------------------------------------------------- */
 
 /* Generation and kind are not in it (digest_kind). */
-static uint64_t digest_row(const Schema *s, const Evaluation *e)
+static uint64_t digest_row(RowTable table, const Schema *s, const Evaluation *e)
 {
     Numbers list[N_NUMBERS];
     Evaluation row = *e;
     row.generation = 0;
-    uint64_t hash = digest_record(&ROWS, &row);
-    numbers_of(s, list);
+    uint64_t hash = digest_record(&ROWS[table], &row);
+    numbers_of(table, s, list);
     for (size_t k = 0; k < N_NUMBERS; k++)
         hash = digest_numbers(list[k].n, array_of(e, &list[k]), hash);
     return hash;
 }
 
-Status rows_insert(Database *db, const Schema *schema, const Evaluation *e, Err *err)
+Status rows_insert(Database *db, RowTable table, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
     Numbers list[N_NUMBERS];
@@ -522,10 +537,10 @@ Status rows_insert(Database *db, const Schema *schema, const Evaluation *e, Err 
         none[k] = NAN;
     row.f = e->outcome == OUTCOME_OK ? e->f : none;
     row.sd = e->sd ? e->sd : none;
-    TRY(prepare_insert(db, &ROWS, n_columns(schema), &row, &s, err));
-    int at = (int)ROWS.n + 1;
-    sqlite3_bind_int64(s, at, (long)(digest_row(schema, &row) ^ digest_kind(e->kind, e->generation)));
-    numbers_of(schema, list);
+    TRY(prepare_insert(db, &ROWS[table], n_columns(table, schema), &row, &s, err));
+    int at = (int)ROWS[table].n + 1;
+    sqlite3_bind_int64(s, at, (long)(digest_row(table, schema, &row) ^ digest_kind(e->kind, e->generation)));
+    numbers_of(table, schema, list);
     for (size_t k = 0; k < N_NUMBERS; k++)
         for (size_t i = 0; i < list[k].n; i++)
             bind_number(s, ++at, array_of(&row, &list[k])[i]);
@@ -547,6 +562,7 @@ Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, 
 
 typedef struct {
     Database *db;
+    RowTable table;
     const Schema *schema;
     EvaluationTable room; /* of one row */
     EvaluationFn take;
@@ -558,28 +574,36 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
     Evaluation *e = r->room.row;
-    int at = (int)ROWS.n;
-    for (size_t i = 0; i < ROWS.n; i++)
-        take_field(row, (int)i, &EVALUATION[i], (char *)e);
+    int at = (int)ROWS[r->table].n;
+    for (size_t i = 0; i < ROWS[r->table].n; i++)
+        take_field(row, (int)i, &ROWS[r->table].field[i], (char *)e);
     const uint64_t digest = (uint64_t)sqlite3_column_int64(row, at);
     for (size_t k = 0; k < N_NUMBERS; k++)
         for (size_t i = 0; i < r->list[k].n; i++)
             array_of(e, &r->list[k])[i] = column_number(row, ++at);
-    if (digest != (digest_row(r->schema, e) ^ digest_kind(e->kind, e->generation)))
+    if (digest != (digest_row(r->table, r->schema, e) ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
     evaluation_set_outcome(e, e->outcome, e->reason);
     return r->take(e, r->user, err);
 }
 
-Status rows_each(Database *db, const Schema *s, const char *where, EvaluationFn take, void *user, Err *err)
+Status rows_each(Database *db, RowTable table, const Schema *s, const char *where, EvaluationFn take, void *user,
+                 Err *err)
 {
     char sql[200];
     Evaluation *row;
-    Reading r = {
-        .db = db, .schema = s, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra), .take = take, .user = user};
-    numbers_of(s, r.list);
-    snprintf(sql, sizeof sql, "SELECT * FROM evaluation WHERE %s ORDER BY id", where);
+    const size_t n_err = table == ROWS_FINER ? s->n_obj + s->n_extra : 0;
+    Reading r = {.db = db,
+                 .table = table,
+                 .schema = s,
+                 .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err),
+                 .take = take,
+                 .user = user};
+    numbers_of(table, s, r.list);
+    snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", ROWS[table].name, where);
     Status status = evaluation_table_add(&r.room, &row, err);
+    if (status == STATUS_OK && n_err > 0)
+        row->err = row->extra + s->n_extra;
     if (status == STATUS_OK)
         status = evaluation_table_give_room(row, err);
     if (status == STATUS_OK)

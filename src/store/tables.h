@@ -5,6 +5,9 @@
  *   evaluation   the fields of Evaluation (kind NULL: its generation is not finished), digest, and a REAL column, by its
  *                name, for every variable, objective and further measure; NAME_sd of every objective where designs are
  *                several simulations: standard deviation of a single one. NULL: not known
+ *   finer        designs that a study names, by their ids, simulated with more steps: how often these were doubled, and
+ *                the columns above without variables; NAME_sd of every objective where every gap is changed by 1 um,
+ *                err_NAME of every number: its likely error; reason: `unpredictable`, or empty. Until the search goes on
  *   generation   the fields of RunGeneration; digest
  *   front        the fields of RunMark: evaluation was on the front of the generations entered <= g < left
  *   session      the fields of RunSession
@@ -48,14 +51,17 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 
 /* -- rows of evaluations ------------------------------------------------------------------------------------------- */
 
+/* Finer rows have err, of n_obj + n_extra numbers, behind extra. */
+typedef enum { ROWS_EVALUATION, ROWS_FINER, N_ROW_TABLES } RowTable;
+
 /* A row with that id is replaced. */
-Status rows_insert(Database *db, const Schema *schema, const Evaluation *e, Err *err);
+Status rows_insert(Database *db, RowTable table, const Schema *schema, const Evaluation *e, Err *err);
 
 /* A row that had no kind yet gets it, and the generation that it belongs to. */
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 
 /* Every evaluation for which `where` holds, in the order of the ids. */
-Status rows_each(Database *db, const Schema *schema, const char *where, EvaluationFn take, void *user, Err *err);
+Status rows_each(Database *db, RowTable table, const Schema *schema, const char *where, EvaluationFn take, void *user, Err *err);
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
 

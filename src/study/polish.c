@@ -9,6 +9,9 @@
 /* In the unit cube: a design that is polished lies on a front, so that the first step is short. */
 static const double STEP = 0.05, STEP_MIN = 1e-4;
 
+/* Descents in a row that gain no more than is worth it, each with half the step of the one before: then it ends. */
+enum { IDLE_MAX = 2 };
+
 /* Of a design that fails, and the largest excess: finite, since NLopt fits models to them. */
 static const double WALL = 1e3;
 
@@ -142,6 +145,7 @@ static Status descend(Polish *p, double step)
     nlopt_set_upper_bounds1(p->opt, 1.0);
     nlopt_set_initial_step1(p->opt, step);
     nlopt_set_xtol_rel(p->opt, 1e-6);
+    nlopt_set_ftol_abs(p->opt, 0.1 * p->goal->gain_min); /* of one step, of which a descent has many */
     nlopt_set_maxeval(p->opt, (int)fmin((double)p->goal->max_evals, 1e9));
     nlopt_set_min_objective(p->opt, objective, p);
     if (n_bounds > 0)
@@ -158,10 +162,12 @@ Status polish_run(Queue *queue, const PolishGoal *goal, Polished *best, Err *err
     p.first = p.least = value_of(&p, best->f);
     p.store = carve_all(layout, &p);
     Status status = p.store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
-    for (double step = STEP, before = INFINITY; status == STATUS_OK && !is_spent(&p) && step > STEP_MIN;
-         step *= p.least < before ? 1.0 : 0.5) {
-        before = p.least;
+    int idle = 0;
+    for (double step = STEP; status == STATUS_OK && !is_spent(&p) && step > STEP_MIN && idle < IDLE_MAX;
+         step *= idle > 0 ? 0.5 : 1.0) {
+        const double before = p.least;
         status = descend(&p, step);
+        idle = before - p.least > goal->gain_min ? 0 : idle + 1;
     }
     free(p.store);
     return status;

@@ -4,7 +4,8 @@
  *              upper
  *
  * Method    in the unit cube of the box; COBYLA (Powell 1994: linear models of every function), where nothing is
- *           bounded BOBYQA (Powell 2009: a quadratic model). One that has converged begins again at its best design
+ *           bounded BOBYQA (Powell 2009: a quadratic model). One that has converged begins again at its best design,
+ *           until two in a row gain no more than gain_min
  * Guards    a failed simulation is a finite wall, never NaN; the answer is the best allowed design that was seen,
  *           whatever NLopt returns, the start at worst; simulations are counted here
  * Repeats   both methods are deterministic
@@ -18,6 +19,7 @@ typedef struct {
     const double *weight, *scale; /* (n_obj) */
     const double *bound;          /* (n_obj) INFINITY: free */
     size_t max_evals;
+    double gain_min; /* of the value: less is not worth a descent */
 } PolishGoal;
 
 typedef struct {

@@ -103,6 +103,30 @@ void effort_words(const Effort *e, char text[160])
         snprintf(text + n, 160 - (size_t)n, "; threads %.1f %% busy", 100.0 * e->busy);
 }
 
+NamedCost named_cost(const Run *run)
+{
+    NamedCost c = {.n = run->finer.n};
+    double search = 0.0, named = 0.0;
+    for (size_t i = 0; i < run->table.n; i++)
+        search += isfinite(run->table.row[i].seconds) ? run->table.row[i].seconds : 0.0;
+    for (size_t i = 0; i < c.n; i++) {
+        c.n_unpredictable += run->finer.row[i].reason[0] != 0;
+        named += run->finer.row[i].seconds;
+    }
+    c.share = named / search;
+    return c;
+}
+
+void named_words(const NamedCost *c, char text[160])
+{
+    text[0] = 0;
+    if (c->n > 0)
+        snprintf(text, 160,
+                 "%zu named designs simulated with more steps, %zu of them unpredictable; that took %.1f %% of the "
+                 "search's simulations",
+                 c->n, c->n_unpredictable, 100.0 * c->share);
+}
+
 /* As stored; of a session that was killed until its last generation at most, and at least what its simulations took. */
 static double session_seconds(const Run *run, size_t number)
 {

@@ -12,12 +12,12 @@
 #include "evaluate/cluster.h"
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
-#include "analysis/estimate.h"
 #include "store/provenance.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
 #include "study/initial_designs.h"
 #include "study/job_limit.h"
+#include "study/named.h"
 #include "study/study_log.h"
 
 typedef struct {
@@ -444,29 +444,20 @@ static Status polish(Study *study, Err *err)
     return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
 }
 
-/* The integration error of the knee. */
-static Status estimate_integration(Study *study, const double x[], Err *err)
+static Status know_named(Study *study, Err *err)
 {
-    const Tower *t = adapter_tower(study->adapter);
-    StudySummary *sum = study->summary;
-    SimResult result;
-    const SimTask task = {.kind = SCENE_IMPACT, .x = x};
-    sum->error_known =
-        study->used.sim.engine == ENGINE_FAST && tower_n_records(t) == 1 && study->used.sim.replicates <= 1;
-    if (!sum->error_known)
+    if (study->summary->stopped == STOP_ASKED)
         return STATUS_OK;
-    TRY(tower_simulate(adapter_problem(study->adapter), 1, &task, &result, err));
-    return estimate_designs(adapter_problem(study->adapter), 1, &task, &result, sum->error, NULL, err);
+    return note_stop(study, named_simulate(study->store, &study->used, may_go_on, study, err), err);
 }
 
-/* What the knee is compared with, its error, and what the front says about its gaps. */
+/* What the knee is compared with, and what the front says about its gaps. */
 static Status find_baselines(Study *study, Err *err)
 {
     const Run *run = study->options->run;
     if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
         return STATUS_OK;
     study->summary->has_baselines = 1;
-    TRY(estimate_integration(study, run_x(run, run_knee(run)), err));
     TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
     return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), BASELINE_LINKS,
                           study->summary->baseline, err);
@@ -489,6 +480,7 @@ static Status work(Study *study, Err *err)
     TRY(run_search(study, err));
     TRY(study->status);
     TRY(polish(study, err));
+    TRY(know_named(study, err));
     return finish(study, err);
 }
 

@@ -23,9 +23,7 @@ typedef struct {
     int has_left_screening;
     int has_baselines; /* of a tower whose front has a knee; of its core */
     Baseline baseline[N_BASELINES];
-    double error[N_MEASURES]; /* of the knee, likely ones (analysis/estimate.h), where error_known */
-    int error_known;          /* it is the result of one simulation, by the engine fast */
-    FrontReview review;       /* of the same */
+    FrontReview review; /* of the same */
 } StudySummary;
 
 #endif

@@ -1,0 +1,295 @@
+#include "study/named.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "evaluate/adapter.h"
+
+/* Times that the steps are doubled; copies of a design; designs looked at together, then the front is formed again; how
+ * often, so that names which move again and again come to an end. */
+enum { LEVELS = 4, COPIES = 2, TOGETHER = 4, ROUNDS = 32 };
+
+static const double CHANGE_M = 1e-6;
+
+/* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
+static const double PROMISE[N_MEASURES] = {[MEASURE_J1] = 1e-3,  [MEASURE_J2] = 3e-3,     [MEASURE_J3] = 1e-2,
+                                           [MEASURE_ED1] = 1e-2, [MEASURE_ED5_10] = 1e-2, [MEASURE_EDCS] = 1e-2};
+static const double SHARE_MIN = 0.1; /* [%] */
+
+/* Values in the order of the schema: objectives, then the others. */
+typedef struct {
+    size_t row; /* of the run */
+    double as_set[N_MEASURES], value[N_MEASURES], error[N_MEASURES], sd[N_MEASURES];
+    double violation, seconds;
+    size_t level; /* at which it was simulated last */
+    int is_known;
+} Named;
+
+typedef struct {
+    RunStore *store;
+    const Settings *used;
+    int (*go_on)(void *user);
+    void *user;
+    int is_first; /* round: something comes of every session, however short */
+    Run run;
+    SimOptions sim[LEVELS + 1]; /* of each level; 0: as the run is set */
+    size_t n;
+    Named named[TOGETHER], *asked[TOGETHER]; /* asked: whose designs are in X */
+    double *X;                               /* (COPIES n, n_var) */
+    EvaluationTable answers;
+} Work;
+
+int named_are_known(const Settings *s)
+{
+    SimOptions unused;
+    return s->problem.kind == PROBLEM_TOWER && s->sim.replicates <= 1 && !schema_is_noisy(s) &&
+           estimate_options(&s->sim, &unused);
+}
+
+/* -- which --------------------------------------------------------------------------------------------------------- */
+
+static void add(Work *w, size_t row)
+{
+    for (size_t i = 0; i < w->n; i++)
+        if (w->named[i].row == row)
+            return;
+    if (!w->run.table.row[row].err && w->n < TOGETHER)
+        w->named[w->n++] = (Named){.row = row};
+}
+
+/* The first ones whose error is not known yet. */
+static void find(Work *w)
+{
+    const Run *run = &w->run;
+    size_t rows[NAMED_SPREAD];
+    w->n = 0;
+    if (run->n_front == 0)
+        return;
+    add(w, run_knee(run));
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        add(w, run_best(run, k));
+    const size_t n = run_spread_out(run, NAMED_SPREAD, 1, rows);
+    for (size_t i = 0; i < n; i++)
+        add(w, rows[i]);
+}
+
+/* -- simulations --------------------------------------------------------------------------------------------------- */
+
+static Status ask_all(Work *w, Queue *q, size_t n, Err *err)
+{
+    Finished done;
+    for (size_t i = 0; i < n; i++)
+        TRY(queue_ask(q, &(Asked){.x = w->X + i * w->run.schema.n_var}, err));
+    for (w->answers.n = 0; w->answers.n < n;) {
+        TRY(queue_next(q, &done, err));
+        TRY(evaluation_table_append(&w->answers, done.evaluation, err));
+    }
+    return STATUS_OK;
+}
+
+static int may_go_on(void *work)
+{
+    Work *w = work;
+    return w->is_first || !w->go_on || w->go_on(w->user);
+}
+
+/* The first n designs in X. */
+static Status simulate(Work *w, size_t level, size_t n, Err *err)
+{
+    Settings s = *w->used;
+    Adapter *adapter;
+    Queue *q = NULL;
+    s.sim = w->sim[level];
+    TRY(adapter_open(&adapter, &s, err));
+    adapter_observe(adapter, &(Observer){.go_on = may_go_on, .user = w});
+    Status status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, 0, err);
+    if (status == STATUS_OK)
+        status = ask_all(w, q, n, err);
+    queue_close(q);
+    adapter_close(adapter);
+    return status;
+}
+
+static double answer(const Evaluation *e, const Schema *s, size_t k)
+{
+    return e->outcome != OUTCOME_OK ? (double)NAN : k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
+}
+
+/* Of the promised measures every one is within that part of its promise. What is not known is not promised either. */
+static int is_within(const Schema *s, double part, const double value[], const double error[])
+{
+    int within = 1;
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
+        const int id = s->order.of[k];
+        const double least = id == MEASURE_ED1 || id == MEASURE_ED5_10 || id == MEASURE_EDCS ? SHARE_MIN : 0.0;
+        within &= PROMISE[id] == 0.0 || !(error[k] > part * PROMISE[id] * fmax(fabs(value[k]), least));
+    }
+    return within;
+}
+
+/* A run that fails says nothing. */
+static void compare(const Schema *s, Named *d, const Evaluation *finer, size_t level)
+{
+    d->seconds += finer->seconds;
+    if (finer->outcome != OUTCOME_OK)
+        return;
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
+        d->error[k] = fabs(answer(finer, s, k) - d->value[k]);
+        d->value[k] = answer(finer, s, k);
+    }
+    d->violation = finer->violation;
+    d->level = level;
+    d->is_known = is_within(s, 1.0 / 3.0, d->value, d->error);
+}
+
+static Status climb(Work *w, Err *err)
+{
+    const Schema *s = &w->run.schema;
+    for (size_t level = 1; level <= LEVELS; level++) {
+        size_t n = 0;
+        for (size_t i = 0; i < w->n; i++)
+            if (!w->named[i].is_known) {
+                memcpy(w->X + n * s->n_var, run_x(&w->run, w->named[i].row), s->n_var * sizeof *w->X);
+                w->asked[n++] = &w->named[i];
+            }
+        if (n == 0)
+            break;
+        TRY(simulate(w, level, n, err));
+        for (size_t i = 0; i < n; i++)
+            compare(s, w->asked[i], &w->answers.row[i], level);
+    }
+    return STATUS_OK;
+}
+
+/* -- copies -------------------------------------------------------------------------------------------------------- */
+
+/* Signs as in the columns of a Hadamard matrix, so that no two copies move the gaps alike. */
+static void change_gaps(const Schema *s, size_t copy, double x[])
+{
+    for (size_t j = 0, gap = 1; j < s->n_var; j++)
+        if (strncmp(schema_variable(s, j)->name, "gap_", 4) == 0)
+            x[j] += __builtin_popcountl(gap++ & (copy + 1)) % 2 ? CHANGE_M : -CHANGE_M;
+}
+
+/* Of the design's own value and those of its copies. */
+static double deviation(const Evaluation copies[], double own, const Schema *s, size_t k)
+{
+    double mean = own / (COPIES + 1), square = 0.0;
+    for (size_t c = 0; c < COPIES; c++)
+        mean += answer(&copies[c], s, k) / (COPIES + 1);
+    for (size_t c = 0; c < COPIES; c++)
+        square += pow(answer(&copies[c], s, k) - mean, 2.0);
+    return sqrt((square + pow(own - mean, 2.0)) / COPIES);
+}
+
+/* Of the n designs in w->asked, by copies at that level. */
+static Status spread(Work *w, size_t level, size_t n, Err *err)
+{
+    const Schema *s = &w->run.schema;
+    for (size_t i = 0; i < n * COPIES; i++) {
+        memcpy(w->X + i * s->n_var, run_x(&w->run, w->asked[i / COPIES]->row), s->n_var * sizeof *w->X);
+        change_gaps(s, i % COPIES, w->X + i * s->n_var);
+    }
+    TRY(simulate(w, level, n * COPIES, err));
+    for (size_t i = 0; i < n; i++) {
+        Named *d = w->asked[i];
+        const Evaluation *copies = w->answers.row + i * COPIES;
+        for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
+            d->sd[k] = deviation(copies, level == 0 ? d->as_set[k] : d->value[k], s, k);
+        for (size_t c = 0; c < COPIES; c++)
+            d->seconds += copies[c].seconds;
+    }
+    return STATUS_OK;
+}
+
+static Status spread_all(Work *w, Err *err)
+{
+    for (size_t i = 0; i < w->n; i++)
+        w->asked[i] = &w->named[i];
+    TRY(spread(w, 0, w->n, err));
+    for (size_t level = 1; level <= LEVELS; level++) {
+        size_t n = 0;
+        for (size_t i = 0; i < w->n; i++)
+            if (w->named[i].level == level && !is_within(&w->run.schema, 1.0, w->named[i].value, w->named[i].sd))
+                w->asked[n++] = &w->named[i];
+        if (n > 0)
+            TRY(spread(w, level, n, err));
+    }
+    return STATUS_OK;
+}
+
+/* -- all of it ----------------------------------------------------------------------------------------------------- */
+
+static Evaluation record_of(const Work *w, Named *d)
+{
+    const Schema *s = &w->run.schema;
+    const int is_predictable = d->is_known && is_within(s, 1.0, d->value, d->sd);
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
+        d->error[k] = fmax(d->error[k], d->sd[k]);
+    return (Evaluation){.id = w->run.table.row[d->row].id,
+                        .kind = KIND_UNFINISHED,
+                        .level = (long)d->level,
+                        .reason = is_predictable ? "" : "unpredictable",
+                        .seconds = d->seconds,
+                        .violation = d->violation,
+                        .f = d->value,
+                        .sd = d->sd,
+                        .extra = d->value + s->n_obj,
+                        .err = d->error};
+}
+
+static Status know(Work *w, Err *err)
+{
+    const Schema *s = &w->run.schema;
+    w->answers = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    w->X = calloc(COPIES * w->n * s->n_var, sizeof *w->X);
+    if (!w->X)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", COPIES * w->n);
+    for (size_t i = 0; i < w->n; i++) {
+        const Evaluation *e = &w->run.table.row[w->named[i].row];
+        w->named[i].violation = e->violation;
+        for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
+            w->named[i].as_set[k] = w->named[i].value[k] = answer(e, s, k);
+            w->named[i].error[k] = NAN;
+        }
+    }
+    TRY(climb(w, err));
+    TRY(spread_all(w, err));
+    Evaluation better[TOGETHER];
+    for (size_t i = 0; i < w->n; i++)
+        better[i] = record_of(w, &w->named[i]);
+    return store_finer(w->store, w->n, better, err);
+}
+
+static Status round_of_names(Work *w, Err *err)
+{
+    TRY(store_read(w->store, &w->run, err));
+    find(w);
+    const Status status = w->n > 0 ? know(w, err) : STATUS_OK;
+    evaluation_table_free(&w->answers);
+    free(w->X);
+    w->X = NULL;
+    run_free(&w->run);
+    return status;
+}
+
+Status named_simulate(RunStore *store, const Settings *used, int (*go_on)(void *), void *user, Err *err)
+{
+    if (!named_are_known(used))
+        return STATUS_OK;
+    Work *w = calloc(1, sizeof *w);
+    if (!w)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the designs that the study names");
+    *w = (Work){.store = store, .used = used, .go_on = go_on, .user = user, .is_first = 1, .n = 1};
+    w->sim[0] = used->sim;
+    for (size_t level = 0; level < LEVELS; level++)
+        estimate_options(&w->sim[level], &w->sim[level + 1]);
+    Status status = STATUS_OK;
+    for (int round = 0; round < ROUNDS && status == STATUS_OK && w->n > 0; round++) {
+        status = round_of_names(w, err);
+        w->is_first = 0;
+    }
+    free(w);
+    return status;
+}
