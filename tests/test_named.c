@@ -2,7 +2,7 @@
 #include "runs.h"
 
 #define STUDY                                                                                                          \
-    "optimize configs/quick.ini --threads 2 --set search.initial=30 --set search.population=16 "        \
+    "optimize configs/quick.ini --threads 2 --set search.initial=30 --set search.population=16 "                       \
     "--set search.polish=0 --set sim.duration_s=30 --set design.gap_m=0.001,0.02 --out @/run --max-evals "
 
 static const double PROMISED[] = {1e-3, 3e-3, 1e-2}; /* of J1, J2, J3: docs/promise.md */

@@ -322,7 +322,7 @@ static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, con
     TRY(design_of_run(run, word, &row, &other, err));
     const int is_own = row < run->table.n;
     if (is_own)
-        run_steps(run, row, &s.sim);
+        run_steps(run, row, &s->sim);
     const Chosen c = {&run->schema, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
     const Status status = evaluate(args, s, &c, err);
     design_free(&other);

@@ -118,7 +118,8 @@ static Status form_again(Run *run, Err *err)
     NdTree *tree;
     NdChange change;
     double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
-    Status status = F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    Status status =
+        F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail(err, STATUS_NO_MEMORY, "no memory for the front");
     for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
         RunPlace *p = &run->place[i];
         p->on_front = 0;

@@ -67,8 +67,8 @@ typedef struct {
     size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
     size_t n_finished;     /* evaluations of the search whose generation is finished: the first rows */
     EvaluationTable table; /* f: of this very evaluation; sd, replicates: of the design */
-    EvaluationTable finer;  /* designs as they are with more steps: the rows of `table` have these numbers, and err */
-    double *F;               /* (table.n, n_obj) joined; without repeats table.f */
+    EvaluationTable finer; /* designs as they are with more steps: the rows of `table` have these numbers, and err */
+    double *F;             /* (table.n, n_obj) joined; without repeats table.f */
     RunPlace *place;       /* (table.n) */
     size_t *front;         /* (n_front) rows, ascending */
     size_t n_marks;

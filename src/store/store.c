@@ -358,8 +358,8 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
 {
     RunStore *store = user;
     Each each = {.store = store, .take = take, .user = search};
-    Status status =
-        rows_each(store->db, ROWS_EVALUATION, store->schema, "kind IS NOT NULL AND kind <> 'polished'", take_finished, &each, err);
+    Status status = rows_each(store->db, ROWS_EVALUATION, store->schema, "kind IS NOT NULL AND kind <> 'polished'",
+                              take_finished, &each, err);
     if (status == STATUS_OK && each.n != store->run.n_finished)
         status = missing(store, each.n, err);
     return folder_advise(store_folder(store), status, err);

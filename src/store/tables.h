@@ -61,7 +61,8 @@ Status rows_insert(Database *db, RowTable table, const Schema *schema, const Eva
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 
 /* Every evaluation for which `where` holds, in the order of the ids. */
-Status rows_each(Database *db, RowTable table, const Schema *schema, const char *where, EvaluationFn take, void *user, Err *err);
+Status rows_each(Database *db, RowTable table, const Schema *schema, const char *where, EvaluationFn take, void *user,
+                 Err *err);
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
 

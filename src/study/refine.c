@@ -123,7 +123,8 @@ static Status improve(Refine *r, double f[], Err *err)
     if (r->config->max_evals <= kept)
         return STATUS_OK;
     const size_t n = (r->config->max_evals - kept) / (size_t)r->replicates;
-    const Status status = polish_run(r->queue, &(PolishGoal){r->config->weight, r->box.span, r->bound, n, REFINE_GAIN_MIN}, &best, err);
+    const Status status =
+        polish_run(r->queue, &(PolishGoal){r->config->weight, r->box.span, r->bound, n, REFINE_GAIN_MIN}, &best, err);
     count(r, best.n_evaluated, best.n_failed, r->replicates);
     return status;
 }
