@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures bench promise pages paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -59,7 +59,9 @@ REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html doc
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)
-	@scripts/tables study
+	@scripts/tables study trust
+
+pages: promise study paper ## every page that names designs, of one study and one program
 
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
