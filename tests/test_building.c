@@ -714,6 +714,55 @@ TEST(p_delta_and_damping_reach_the_full_model)
     building_free(&b);
 }
 
+/* Three columns, each with a mass, that soft beams hold together: the middle one knows little of the others. */
+TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
+{
+    BuildingOptions o = folder_of("soft");
+    write_file(&o, "nodes.csv",
+               "node,x_m,z_m,fix_x,fix_z,fix_rot\nA,0,0,1,1,1\nB,6,0,1,1,1\nC,12,0,1,1,1\na,0,4,0,0,0\n"
+               "b,6,4,0,0,0\nc,12,4,0,0,0\n");
+    write_file(&o, "sections.csv",
+               "section,A_m2,I_m4,E_pa\ncolumn,0.05,1e-4,2e11\nstiff,0.05,3e-4,2e11\nbeam,1e-3,1e-4,2e11\n");
+    write_file(&o, "elements.csv",
+               "element,node_i,node_j,section\n1,A,a,column\n2,B,b,stiff\n3,C,c,column\n4,a,b,beam\n"
+               "5,b,c,beam\n");
+    write_file(&o, "masses.csv", "node,mass_kg\na,50000\nb,10000\nc,20000\n");
+    o.rigid_floors = SWITCH_OFF;
+    Building one = load(&o);
+    o.modes = ALL_MODES;
+    Building full = load(&o);
+    const double is = 2 * M_PI / one.model.omega[0], should = 2 * M_PI / full.model.omega[0];
+    assert_true(fabs(is / should - 1) > 0.01);
+    char wanted[128], command[256];
+    static const char *const COMMANDS[] = {"building @/soft", "check configs/quick.ini --set building.model=@/soft"};
+    for (size_t i = 0; i < 2; i++) {
+        Said s;
+        snprintf(command, sizeof command, "%s --set building.rigid_floors=off", COMMANDS[i]);
+        snprintf(wanted, sizeof wanted, "period 1 is %.4g s with one node for each floor, %.4g s in the full", is,
+                 should);
+        run(&s, "%s", command);
+        assert_true(strstr(s.err, wanted) || strstr(s.out, wanted));
+        forget(&s);
+        run(&s, "%s --set building.modes=100", command);
+        assert_false(strstr(s.err, "one node") || strstr(s.out, "one node"));
+        forget(&s);
+    }
+    char *text = output_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
+    json_t *all = json_loads(text, 0, NULL);
+    assert_close(number(json_array_get(json_object_get(all, "modes"), 0), "hz"), 1 / should, 1e-9);
+    json_decref(all);
+    free(text);
+    building_free(&one);
+    building_free(&full);
+}
+
+TEST(a_built_in_tower_refuses_other_heights)
+{
+    expect(65, "building.heights_m: guyan is a tower of storeys of 5.4864 and 3.9624 m",
+           "building guyan --set building.heights_m=4");
+    free(output_of("building appendix --set building.heights_m=5.4864,3.9624"));
+}
+
 TEST(only_a_frame_has_more_than_its_floors)
 {
     BuildingOptions o = scene_defaults().building;

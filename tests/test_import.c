@@ -178,6 +178,37 @@ TEST(loads_analysis_and_output_are_skipped_with_one_note)
     forget(&s);
 }
 
+/* OpenSees would have run on, with elements that would be missing here. */
+TEST(a_script_that_fails_after_its_analysis_is_refused_where_it_goes_on_building)
+{
+    static const char *const REST[][2] = {
+        {"puts \"element 9\"\n# element 9\nset mass 3\n", NULL},
+        {"if {1} {\n  element truss 9 1 2 1. 1\n}\n", "line 26 goes on"},
+        {"\nbrace 9\n", "line 26 goes on with the structure"},
+        {"for {set i 0} {$i < 2} {incr i} { fix 3 0 0 1 }\n", "line 25 goes on"},
+    };
+    for (size_t i = 0; i < sizeof REST / sizeof REST[0]; i++) {
+        char text[2048];
+        Said s;
+        snprintf(text, sizeof text,
+                 "%sproc brace {tag} {\n element truss $tag 1 2 1. 1\n}\nset l [eigen 1]\nset f [expr [lindex $l 7] * "
+                 "2]\n%s",
+                 PORTAL, REST[i][0]);
+        write_in_place("model.tcl", text);
+        run(&s, "building @/model.tcl --set building.units=kip_in");
+        if (s.code != (REST[i][1] ? 65 : 0))
+            fail_msg("%s\n exit %d, said: %s", REST[i][0], s.code, s.err);
+        if (!strstr(s.err, REST[i][1] ? REST[i][1] : "on,"))
+            fail_msg("%s\n said: %s", REST[i][0], s.err);
+        forget(&s);
+    }
+    write_in_place("later.tcl", "eigen 1\nexpr [nodeDisp 3 1] +\n");
+    char text[2048];
+    snprintf(text, sizeof text, "%ssource later.tcl\nmass 3 1 1 1\n", PORTAL);
+    write_in_place("model.tcl", text);
+    expect(65, "line 21 goes on", "building @/model.tcl --set building.units=kip_in");
+}
+
 TEST(whatever_is_not_read_is_refused_with_its_line)
 {
 #define NODES "model b -ndm 2 -ndf 3\nnode 1 0 0\nnode 2 0 1\ngeomTransf Linear 1\n"

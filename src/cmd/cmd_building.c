@@ -7,8 +7,8 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
+#include "cmd/warnings.h"
 #include "scene/building_svg.h"
-#include "scene/core_beam.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
@@ -219,6 +219,7 @@ static Status show(const Args *args, const Model *m, Err *err)
 {
     if (m->frame.note[0])
         fprintf(stderr, "note: %s: skipped:%s\n", m->s.building.model, m->frame.note);
+    TRY(condensation_warnings(&m->b, &m->s.building, warn_on_stderr, NULL, err));
     if (args_value(args, "--svg"))
         TRY(write_svg(m, args_value(args, "--svg"), err));
     if (args_has(args, "--json"))

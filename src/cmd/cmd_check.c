@@ -210,6 +210,8 @@ static int summarise(Check *c, CheckedScene *p)
         return 0;
     scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
     ask_about_plan(c, p);
+    if (!note(c, condensation_warnings(&p->building, &p->s->building, warn, c, &e), "building.model", &e))
+        return 0;
     if (p->motion.warning[0])
         warn("motion.record", p->motion.warning, c);
     if (p->s->sim.duration_s > duration(&p->motion)) {

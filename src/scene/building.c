@@ -12,11 +12,21 @@
 #include "base/units.h"
 #include "scene/building_read.h"
 #include "scene/reduction.h"
+#include "scene/sheets.h"
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
+/* [m] Of the tower that both built-in models are matrices of. */
+static const double BUILT_IN_FIRST_M = 5.4864, BUILT_IN_M = 3.9624;
+
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
+    for (int j = 0; j < b->n && model_is_built_in(o->model); j++)
+        if (list_at(&o->heights_m, j) != (j == 0 ? BUILT_IN_FIRST_M : BUILT_IN_M))
+            return fail(err, STATUS_BAD_DATA,
+                        "building.heights_m: %s is a tower of storeys of %g and %g m; others would change the core "
+                        "alone. Give another building its matrices in a folder",
+                        o->model, BUILT_IN_FIRST_M, BUILT_IN_M);
     if (o->heights_m.n > b->n && o->heights_m.n > 2 && !files->storey_m)
         return fail(err, STATUS_BAD_DATA, "building.heights_m: has %d heights; the building has %d storey%s",
                     o->heights_m.n, b->n, b->n == 1 ? "" : "s");

@@ -25,8 +25,9 @@ typedef struct {
     Frame *frame;
     Frame library; /* sections "section 7", "uniaxialMaterial 1", "geomTransf 1" of what has such a tag, in the units of
                     * the model; of the last two the modulus alone counts, or nothing */
-    int has_model, is_wiped, has_analysed, has_ended;
-    Err refused; /* of the first command that is not read; code STATUS_OK: none yet */
+    int has_model, is_wiped, has_analysed, has_failed, has_ended;
+    char said[200]; /* by Tcl, where it failed */
+    Err refused;    /* of the first command that is not read; code STATUS_OK: none yet */
 } Reader;
 
 typedef Tcl_Obj *const Words[];
@@ -364,8 +365,60 @@ static int take_unknown(Reader *r, int n, Words w)
     return refuse(r, "'%.60s' is not among the commands that are read (docs/building.md)", Tcl_GetString(w[n > 1]));
 }
 
-/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, the
- * model is complete and the script ends there. */
+/* The first command of a script that is part of a structure, or a procedure with one in it; NULL: there is none. depth:
+ * of procedures that call each other. */
+static const char *find_building(Reader *r, const char *text, int depth)
+{
+    static const char BUILDING[] = " model node fix mass equalDOF geomTransf section uniaxialMaterial element source ";
+    int begins = 1; /* a command */
+    for (const char *c = text; *c; c++) {
+        const size_t n = strcspn(c, " \t\r\n;{}[]\"");
+        char word[48];
+        if (begins && *c == '#') {
+            c += strcspn(c, "\n");
+            c -= !*c;
+        } else if (n == 0) {
+            begins = strchr("\n;{[", *c) || (begins && strchr(" \t\r", *c));
+        } else {
+            snprintf(word, sizeof word, " %.*s ", (int)n, c);
+            if (begins && strstr(BUILDING, word))
+                return c;
+            if (begins && depth > 0 && Tcl_VarEval(r->tcl, "info body ", word, NULL) == TCL_OK) {
+                Tcl_Obj *body = Tcl_GetObjResult(r->tcl);
+                Tcl_IncrRefCount(body);
+                const char *found = find_building(r, Tcl_GetString(body), depth - 1);
+                Tcl_DecrRefCount(body);
+                if (found)
+                    return c;
+            }
+            begins = 0;
+            c += n - 1;
+        }
+    }
+    return NULL;
+}
+
+/* The line, from that one on, where a file goes on with its structure; 0: none. */
+static int line_that_builds(Reader *r, const char *path, int line)
+{
+    enum { DEPTH = 4, LARGEST = 1 << 24 };
+    char *text;
+    size_t length;
+    int at = 1;
+    if (file_read(path, LARGEST, &text, &length, &(Err){0}) != STATUS_OK)
+        return line;
+    const char *from = text;
+    while (at < line && (from = strchr(from, '\n')) != NULL && ++at)
+        from++;
+    const char *found = from ? find_building(r, from, DEPTH) : NULL;
+    for (; found && from < found; from++)
+        at += *from == '\n';
+    free(text);
+    return found ? at : 0;
+}
+
+/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, and adds
+ * nothing to the model from there on, the model is complete and the script ends there. */
 static int run_file(Reader *r, const char *path)
 {
     Tcl_Obj *name = Tcl_NewStringObj(path, -1);
@@ -375,12 +428,22 @@ static int run_file(Reader *r, const char *path)
     const int line = Tcl_GetErrorLine(r->tcl);
     if (result == TCL_OK || r->refused.code != STATUS_OK || r->has_ended || Tcl_LimitExceeded(r->tcl))
         return result == TCL_OK;
+    if (!r->has_failed)
+        snprintf(r->said, sizeof r->said, "%s", Tcl_GetStringResult(r->tcl));
+    r->said[strcspn(r->said, "\n")] = 0;
     const size_t used = strlen(r->frame->note);
-    r->has_ended = r->has_analysed;
-    if (r->has_analysed)
+    const int builds = r->has_analysed ? line_that_builds(r, path, line + r->has_failed) : line;
+    if (builds > line)
+        fail(
+            &r->refused, STATUS_BAD_DATA,
+            "%s:%d: %s, after an analysis, whose results are not there; line %d goes on with the structure, which must "
+            "stand before",
+            path, line, r->said, builds);
+    else if (builds)
+        fail(&r->refused, STATUS_BAD_DATA, "%s:%d: %s", path, line, r->said);
+    else if (!r->has_failed)
         snprintf(r->frame->note + used, sizeof r->frame->note - used, " all from %.100s:%d on,", path, line);
-    else
-        fail(&r->refused, STATUS_BAD_DATA, "%s:%d: %.300s", path, line, Tcl_GetStringResult(r->tcl));
+    r->has_failed = 1;
     return 0;
 }
 

@@ -1,5 +1,6 @@
 #include "scene/summary.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -7,6 +8,7 @@
 
 #include "base/units.h"
 #include "motion/spectrum.h"
+#include "scene/frame.h"
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 
@@ -167,6 +169,36 @@ void building_warnings(const Building *b, WarnFn warn, void *user)
     SceneSummary s;
     summarise_building(&s, b);
     warn_of_building(&s, &(Warner){warn, user});
+}
+
+/* [s] Of the lowest mode that resembles mode i of the floors; 0: there is none. */
+static double period_like(const BuildingModel *m, int i)
+{
+    int k = 0;
+    while (k < m->n && m->like[k] != i)
+        k++;
+    return k < m->n ? 2 * M_PI / m->omega[k] : 0;
+}
+
+Status condensation_warnings(const Building *b, const BuildingOptions *o, WarnFn warn, void *user, Err *err)
+{
+    Building full;
+    BuildingOptions all = *o;
+    all.modes = LONG_MAX;
+    if (o->rigid_floors || o->modes > 0 || !frame_is(o->model))
+        return STATUS_OK;
+    TRY(building_load(&full, &all, err));
+    for (int i = 0; i < 3 && i < b->n; i++) {
+        const double is = period_like(&b->model, i), should = period_like(&full.model, i);
+        if (is > 0 && should > 0 && fabs(is / should - 1) > PERIOD_ERROR_MAX)
+            say(&(Warner){warn, user}, "building.rigid_floors",
+                "off: period %d is %.4g s with one node for each floor, %.4g s in the full model; set building.modes, "
+                "or "
+                "leave floors rigid",
+                i + 1, is, should);
+    }
+    building_free(&full);
+    return STATUS_OK;
 }
 
 void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,
