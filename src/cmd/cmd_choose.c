@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "cmd/pairs.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "store/export.h"
 #include "store/output.h"

@@ -4,7 +4,6 @@
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
-#include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "store/run_read.h"
 #include "store/store.h"

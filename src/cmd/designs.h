@@ -1,4 +1,4 @@
-/* cmd/designs.h -- designs on the command line, by the same words in every command that takes one.
+/* cmd/designs.h -- designs and results on the command line, by the same words in every command that takes them.
  *
  *   FILE          a design file (scene/design.h), all of its rows; or a table of designs of a run (front.csv, with a
  *                 column id), of which what is no variable is left out
@@ -34,5 +34,18 @@ void design_label(const Designs *d, const char *word, size_t i, char label[DESIG
  * same variables; where none has, elsewhere holds the design, for design_free, and row is run->table.n.
  * elsewhere NULL: such a design is refused. */
 Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err);
+
+/* ---- results by name: NAME=NUMBER, and lists of it ------------------------------------------------------------- */
+
+/* "NAME=NUMBER" of any result: *k counts on behind n_obj. */
+Status pair_take(const Schema *schema, const char *option, const char *text, size_t *k, double *value, Err *err);
+
+/* Into values (n_obj); those that are not named are left as they are. "NAME" alone is NAME=otherwise, and refused where
+ * that is NAN. */
+Status pairs_take(const Schema *schema, const char *option, const char *list, double otherwise, double values[],
+                  Err *err);
+
+/* None negative, and not all of them 0. */
+Status weights_check(const Schema *schema, const char *option, const double weights[], Err *err);
 
 #endif

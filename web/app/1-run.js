@@ -34,7 +34,7 @@ const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => 
 const objectives = results.slice(0, run.schema.objectives.length); // behind them what search.limits limits beside them
 const columns = [...results, ...variables];
 const ids = new Float64Array(n);
-const hasErrors = n > 0 && lines[0].split(",").length > 1 + columns.length; // likely ones, as stored with the designs
+let hasErrors = false; // likely ones, as stored with the designs, behind the columns
 for (const c of objectives) c.error = new Float64Array(n).fill(NaN);
 
 for (let i = 0; i < n; i++) {
@@ -44,7 +44,8 @@ for (let i = 0; i < n; i++) {
     c.raw[i] = +cells[c.place];
     c.value[i] = c.raw[i] * c.factor;
   }
-  if (hasErrors) objectives.forEach((c, k) => { if (cells[1 + columns.length + k]) c.error[i] = c.factor * cells[1 + columns.length + k]; });
+  objectives.forEach((c, k) => { if (cells[1 + columns.length + k]) c.error[i] = c.factor * cells[1 + columns.length + k]; });
+  hasErrors ||= cells.length > 1 + columns.length;
 }
 const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);
