@@ -162,7 +162,7 @@ static void show_table(const Run *run, const Picks *p)
         double error[OBJECTIVES_MAX];
         run_likely(run, row, error);
         figures_design(table, p->pick[i].name, run->table.row[row].id, &run->schema, run_f(run, row), error,
-                       run->table.row[row].extra);
+                       run->table.row[row].sd, run->table.row[row].extra);
     }
     figures_print(table);
     if (p->n > 0)

@@ -85,7 +85,8 @@ static void add_design(json_t *table, const Run *run, const char *label, size_t 
     const Schema *schema = &run->schema;
     double error[OBJECTIVES_MAX];
     run_likely(run, row, error);
-    figures_design(table, label, run->table.row[row].id, schema, run_f(run, row), error, run->table.row[row].extra);
+    figures_design(table, label, run->table.row[row].id, schema, run_f(run, row), error, run->table.row[row].sd,
+                   run->table.row[row].extra);
 }
 
 static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_BASELINES])
@@ -95,7 +96,7 @@ static void add_baselines(json_t *table, const Schema *schema, const Baseline ba
         double natural[OBJECTIVES_MAX], extra[N_MEASURES];
         for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
             *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
-        figures_design(table, baseline_words((BaselineKind)k), 0, schema, natural, NULL, extra);
+        figures_design(table, baseline_words((BaselineKind)k), 0, schema, natural, NULL, NULL, extra);
     }
 }
 
@@ -171,7 +172,7 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
     for (size_t i = 0; i < n; i++) {
         const Evaluation *e = &run->table.row[rows[i]];
         snprintf(label, sizeof label, "misses by %.3g", e->violation);
-        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->extra);
+        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
     }
     figures_print(table);
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");

@@ -144,16 +144,14 @@ static void show_table(const Work *w, long id)
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
     const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
-    const Settings *s = w->run->settings;
+    const SimOptions *s = &w->run->settings->sim;
     json_t *table = json_array();
-    char label[32];
-    snprintf(label, sizeof label, "sd %s", spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain));
-    figures_design(table, "before", w->run->table.row[w->row].id, schema, start->f, r->error, start->extra);
+    figures_design(table, "before", w->run->table.row[w->row].id, schema, start->f, r->error, start->sd, start->extra);
     if (r->has_changed)
-        figures_design(table, "polished", id, schema, end->f, r->error, end->extra);
-    if (isfinite(start->sd[0]))
-        figures_design(table, label, 0, schema, start->sd, NULL, NULL);
+        figures_design(table, "polished", id, schema, end->f, r->error, end->sd, end->extra);
     figures_print(table);
+    if (isfinite(start->sd[0]))
+        printf("sd: %s\n", spread_word(s->gap_tolerance_m, &s->uncertain));
 }
 
 static void show(const Work *w, long id)

@@ -462,13 +462,13 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
 }
 
 void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
-                    const double error[], const double extra[])
+                    const double error[], const double sd[], const double extra[])
 {
     json_t *row = figures_row(table);
     json_object_set_new(row, "", json_words(label));
     json_object_set_new(row, "design", id > 0 ? json_integer(id) : json_string("-"));
     for (size_t k = 0; k < schema->n_obj; k++)
-        figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, NAN);
+        figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
     for (size_t k = 0; k < schema->n_limited; k++)
         figures_put(row, schema_extra(schema, schema->limited[k])->name, extra ? extra[schema->limited[k]] : NAN, NAN,
                     NAN);

@@ -56,10 +56,10 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 /* A row of means and standard deviations of the objectives; without them where a replicate failed. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r);
 
-/* A design: label, number (0: none), objectives with their likely errors (n_obj) or NULL, and what is limited of the
- * further results (n_extra) or NULL. */
+/* A design: label, number (0: none), objectives with their likely errors and standard deviations (n_obj) or NULL, and
+ * what is limited of the further results (n_extra) or NULL. */
 void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
-                    const double error[], const double extra[]);
+                    const double error[], const double sd[], const double extra[]);
 
 /* "against viscous links (...): impacts win in ...; lose in ..." by more than a thousandth; natural values of a
  * design with impacts. */
