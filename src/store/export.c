@@ -23,7 +23,6 @@ typedef enum {
     PART_LIMITED,
     PART_EXTRA,
     PART_SD,
-    PART_ERRORS, /* of the objectives, likely ones; none where the run stores none */
     PART_ERR,
     PART_ERR_EXTRA
 } Part;
@@ -32,7 +31,7 @@ static const Part PARTS[][8] = {
     [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD, PART_ERR},
     [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA, PART_ERR, PART_ERR_EXTRA},
     [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
-    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERRORS},
+    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERR},
 };
 
 static void put_names(FILE *f, const char *begin, size_t n, const Column columns[], const char *end)
@@ -91,7 +90,6 @@ static void put_heads(FILE *f, const Schema *s, Part part)
     case PART_ERR_EXTRA:
         put_names(f, "err_", n_errors(s, part), schema_extra(s, 0), "");
         break;
-    case PART_ERRORS: /* of the page, which has no heads */
     case PART_END:
         break;
     }
@@ -101,7 +99,7 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 {
     const Schema *s = &run->schema;
     const Evaluation *e = &run->table.row[row];
-    double values[N_MEASURES], likely[OBJECTIVES_MAX];
+    double values[N_MEASURES];
     switch (part) {
     case PART_ID:
         fprintf(f, "%ld", e->id);
@@ -132,10 +130,6 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
         print_cells(f, s->has_spread ? s->n_obj : 0, e->sd);
         if (s->has_spread)
             print_cells(f, 1, &(double){e->replicates > 0 ? (double)e->replicates : (double)NAN});
-        break;
-    case PART_ERRORS:
-        if (run_likely(run, row, likely))
-            print_cells(f, s->n_obj, likely);
         break;
     case PART_ERR:
     case PART_ERR_EXTRA:
