@@ -133,7 +133,7 @@ TEST(an_unknown_name_is_refused_with_the_known_ones)
     Motion m;
     Err err;
     assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "builtin:kobe: there is no such motion; take kobe-like"));
+    assert_non_null(strstr(err.text, "builtin:kobe is no built-in motion; did you mean builtin:kobe-like?"));
     motion_free(&m);
 }
 

@@ -229,35 +229,25 @@ static const Model *find_model(const char *name)
     return NULL;
 }
 
-static Status fail_unknown(const char *name, Err *err)
-{
-    const char *names[sizeof MODELS / sizeof *MODELS];
-    for (size_t k = 0; k < sizeof MODELS / sizeof *MODELS; k++)
-        names[k] = MODELS[k].name;
-    const char *near = nearest_word(name, names, (int)(sizeof MODELS / sizeof *MODELS));
-    return near ? fail(err, STATUS_BAD_DATA, "builtin:%.60s: there is no such motion; did you mean builtin:%s?", name,
-                       near)
-                : fail(err, STATUS_BAD_DATA,
-                       "builtin:%.60s: there is no such motion; take kobe-like, elcentro-like or sylmar-like", name);
-}
-
 const char *builtin_name(const char *source)
 {
     static const char PREFIX[] = "builtin:";
     return strncmp(source, PREFIX, sizeof PREFIX - 1) == 0 ? source + sizeof PREFIX - 1 : NULL;
 }
 
-Status builtin_motion(Motion *m, const char *name, Err *err)
+Status builtin_motion(Motion *m, const char *source, Err *err)
 {
-    const Model *model = find_model(name);
+    static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
+    const Model *model = find_model(builtin_name(source));
     memset(m, 0, sizeof *m);
     if (!model)
-        return fail_unknown(name, err);
+        return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES,
+                            sizeof NAMES / sizeof NAMES[0]);
     m->n = (size_t)lround(model->duration_s / DT_S) + 1;
     m->dt_s = DT_S;
     m->accel = malloc(m->n * sizeof *m->accel);
     if (!m->accel)
-        return fail(err, STATUS_NO_MEMORY, "builtin:%s: no memory for %zu samples", name, m->n);
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", source, m->n);
     generate(model, m->n, m->accel);
     normalize(model->pga_m_s2, m->n, m->accel);
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);

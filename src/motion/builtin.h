@@ -14,6 +14,7 @@
 /* What follows "builtin:"; NULL: the source is a file. */
 const char *builtin_name(const char *source);
 
-Status builtin_motion(Motion *m, const char *name, Err *err);
+/* source: with "builtin:". */
+Status builtin_motion(Motion *m, const char *source, Err *err);
 
 #endif

@@ -324,7 +324,7 @@ static Status load(Motion *m, const char *source, const MotionHow *how, Err *err
 {
     static const char *const MOTIONS[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     if (builtin_name(source))
-        return builtin_motion(m, builtin_name(source), err); /* in m/s2, one channel, whatever is said of files */
+        return builtin_motion(m, source, err); /* in m/s2, one channel, whatever is said of files */
     const Status status = motion_read(m, source, how, err);
     const char *near =
         status == STATUS_MISSING ? nearest_word(source, MOTIONS, sizeof MOTIONS / sizeof MOTIONS[0]) : NULL;

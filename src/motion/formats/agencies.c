@@ -75,16 +75,23 @@ static int recognise(const Format *f, Lines l)
 
 static const Format *format_at(Lines l);
 
+/* The value behind the word of the line; 0: there is none. */
+static int take_behind(Header *h, Field field, const Lines *l, const char *word)
+{
+    const char *p = find_word(l->from, l->to, word);
+    h->at[field] = *l;
+    h->at[field].from = p ? p + strlen(word) : NULL;
+    return p != NULL;
+}
+
 static void take_words(const Format *f, const Lines *l, Header *h)
 {
     for (const HeaderWord *w = f->words; w->line; w++) {
-        const char *p = line_begins(l, w->line) ? find_word(l->from + strlen(w->line), l->to, w->behind) : NULL;
-        if (*w->line == '=')
-            p = l->to - l->from == 1 && strchr(w->line + 1, *l->from) ? l->from : NULL;
-        if (!p || h->at[w->field].from)
-            continue;
-        h->at[w->field] = *l;
-        h->at[w->field].from = p + strlen(w->behind);
+        Lines rest = *l;
+        const int is_letter = *w->line == '=' && l->to - l->from == 1 && strchr(w->line + 1, *l->from);
+        rest.from += is_letter ? 0 : strlen(w->line);
+        if (!h->at[w->field].from && (is_letter || line_begins(l, w->line)))
+            take_behind(h, w->field, &rest, w->behind);
     }
 }
 
@@ -410,13 +417,10 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
     h->at[COUNT] = h->at[TYPE] = *l;
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
         h->dt = text_is(HOLDS, l->from, l->to, "pts/s|points/s|samples/s") ? 1 / x : x;
-    static const char *const BEFORE_UNIT[] = {" in units of ", " in units ", " in "};
-    const char *unit = NULL;
-    for (int i = 0; i < 3 && !unit; i++)
-        if ((unit = find_word(l->from, l->to, BEFORE_UNIT[i]))) {
-            h->at[UNIT] = *l;
-            h->at[UNIT].from = unit + strlen(BEFORE_UNIT[i]);
-        }
+    const Lines above = h->at[UNIT];
+    if (!take_behind(h, UNIT, l, " in units of ") && !take_behind(h, UNIT, l, " in units ") &&
+        !take_behind(h, UNIT, l, " in "))
+        h->at[UNIT] = above;
     return STATUS_OK;
 }
 
@@ -468,13 +472,9 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     } while (line_begins(l, "|") || line_has(l, "comment line"));
     h->dt = reals[STEP_AT] * 1e-3;
     h->width = format_width(l);
-    h->at[COUNT] = h->at[DURATION] = h->at[UNIT] = *l;
-    h->at[DURATION].from = find_word(l->from, l->to, "approx");
-    h->at[UNIT].from = find_word(l->from, l->to, "units=");
-    if (h->at[DURATION].from)
-        h->at[DURATION].from += strlen("approx");
-    if (h->at[UNIT].from)
-        h->at[UNIT].from += strlen("units=");
+    h->at[COUNT] = *l;
+    take_behind(h, DURATION, l, "approx");
+    take_behind(h, UNIT, l, "units=");
     return check_code(&h->at[UNIT], err);
 }
 
@@ -557,7 +557,7 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
  * borehole, 4 to 6 the same at the surface. */
 static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
 {
-    static const char *const DIRECTIONS[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2", "N-S", "E-W", "U-D"};
+    static const char DIRECTIONS[][4] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
     const Lines *factor = &h->at[FACTOR];
     double gal = NAN, counts = NAN;
     const char *slash = factor->from ? memchr(factor->from, '/', (size_t)(factor->to - factor->from)) : NULL;
@@ -567,16 +567,12 @@ static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
                     factor->from ? factor->number : l->number);
     c->scale = gal / counts;
     c->subtract_mean = 1;
-    int k = 6;
     if (c->name[0] >= '1' && c->name[0] <= '6' && !c->name[1])
-        k = c->name[0] - '1';
-    while (k >= 6 && k < 9 && strcmp(c->name, DIRECTIONS[k]) != 0)
-        k++;
-    if (k == 9)
+        memcpy(c->name, DIRECTIONS[c->name[0] - '1'], sizeof DIRECTIONS[0]);
+    else if (!text_is(EQUALS, c->name, c->name + strlen(c->name), "N-S|E-W|U-D"))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: the direction '%s' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)", l->path,
                     h->at[NAME].from ? h->at[NAME].number : l->number, c->name);
-    channel_name(c, DIRECTIONS[k], DIRECTIONS[k] + 3);
     return STATUS_OK;
 }
 
