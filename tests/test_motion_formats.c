@@ -941,6 +941,11 @@ TEST(what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said)
         {2056 + 138 + 16 + 11, 3, "60 are expected"},
         {2056 + 4 + 3, 1, "holds 0 frames"},
     };
+    Text two = repeated(read_specimen("three.evt"), 2);
+    Err doubled = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "a.evt", two.text, two.length, &FIRST, &doubled), STATUS_BAD_DATA);
+    assert_non_null(strstr(doubled.text, "a second record begins at byte "));
+    free(two.text);
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         Text t = read_specimen("three.evt");
         Motion m;

@@ -32,7 +32,7 @@ typedef struct {
     int odd_line, is_one;          /* odd_line 0: none; is_one: one column, no comma parts anything */
     double dt, count;              /* [s], of samples; 0: not stated */
     Channel all;                   /* unit, or stated, of every column that has none in its name */
-    int is_counted;                /* the first column counts rows */
+    int is_counted, is_timed;      /* the first column counts rows; a column of times is named so */
     int restated_line;             /* of a step, a count or a unit below the first row; 0: none */
     Err wrong;                     /* what is contradicted or not understood; empty: nothing */
 } Plain;
@@ -246,11 +246,11 @@ static void unit_in_name(Cell name, Channel *c)
 /* Times are seconds: a name that says otherwise is refused before it shakes a tower a thousand times too slowly, and
  * periods, frequencies or whatever else the first column is said to be are no times. A title of two words above two
  * columns is no name. */
-static Status check_times(const Plain *t, Cell name, int known, Err *err)
+static Status check_times(const Plain *t, Cell name, Err *err)
 {
     const Lines *l = &t->names;
     const int is_title = !has_marks(l) && !text_is(HOLDS, l->from, l->to, "[|(|_");
-    if (!known && name.from < name.to && !is_title)
+    if (!t->is_timed && name.from < name.to && !is_title)
         return fail(
             err, STATUS_BAD_DATA,
             "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
@@ -478,7 +478,7 @@ static Status name_channels(const Plain *t, size_t skipped, int timed, double st
         TRY(record_channel(t->r, t->l, &c, err));
         *c = (Channel){.scale = 1,
                        .other_dt = timed ? stated_dt : 0,
-                       .is_timed = timed && is_named(t),
+                       .is_timed = timed && t->is_timed,
                        .dt = timed ? 0 : t->dt,
                        .first = k,
                        .stride = t->width,
@@ -526,11 +526,10 @@ static Status fail_unnamed(const Plain *t, Err *err)
 }
 
 /* The column that is named as times, or the first, where none is. */
-static size_t column_of_times(const Plain *t, int *known)
+static size_t column_of_times(Plain *t)
 {
-    *known = 0;
     for (size_t k = 0; is_named(t) && k < t->width; k++)
-        if ((*known = names_times(name_at(t, k))))
+        if ((t->is_timed = names_times(name_at(t, k))))
             return k;
     return 0;
 }
@@ -538,15 +537,14 @@ static size_t column_of_times(const Plain *t, int *known)
 static Status read_columns(Plain *t, Err *err)
 {
     const Record *r = t->r;
-    int known;
     TRY(read_table(t, err));
     const double stated_dt = t->dt;
     t->dt = stated_dt > 0 ? stated_dt : t->hints->dt_s;
-    const size_t times = column_of_times(t, &known);
-    if (is_named(t) && !known && text_is(HOLDS, name_at(t, 0).from, name_at(t, 0).to, "period|freq|[hz|(hz|_hz"))
+    const size_t times = column_of_times(t);
+    if (is_named(t) && !t->is_timed && text_is(HOLDS, name_at(t, 0).from, name_at(t, 0).to, "period|freq|[hz|(hz|_hz"))
         return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' heads a spectrum; a motion is a function of time", t->l->path,
                     t->names.number, line_shown(&t->names), t->names.from);
-    int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !known);
+    int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !t->is_timed);
     if (t->width == 1 && !(t->dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
@@ -566,7 +564,7 @@ static Status read_columns(Plain *t, Err *err)
         return fail(err, STATUS_BAD_DATA, "%s: announces %g samples, but has %zu rows", t->l->path, t->count,
                     t->n_rows);
     t->is_counted = counts_samples(t);
-    const int numbered = !known && t->is_counted;
+    const int numbered = !t->is_timed && t->is_counted;
     if (numbered && !(t->dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
@@ -574,7 +572,7 @@ static Status read_columns(Plain *t, Err *err)
                     t->l->path, r->row[0].line, r->row[0].a, r->row[t->width].a);
     timed = timed && !numbered;
     if (timed && is_named(t))
-        TRY(check_times(t, name_at(t, times), known, err));
+        TRY(check_times(t, name_at(t, times), err));
     if (timed)
         record_set_times(t->r, 0, t->width, times);
     return name_channels(t, timed ? times : t->width, timed, stated_dt, err);

@@ -44,22 +44,20 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
                     place->l->path, place->name, n, place->count);
     TRY(record_channel(place->r, place->l, &c, err));
-    snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
-    channel_name(c, name, name + strlen(name));
-    memcpy(name, c->name, sizeof name);
     const size_t first = c->first;
     *c = place->shape;
-    memcpy(c->name, name, sizeof name);
     c->first = first;
     c->dt = dt;
+    c->n = n;
+    snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
+    channel_name(c, name, name + strlen(name));
     if (place->count + 1 == (double)n && !c->warning)
         c->warning = "its numSteps is one less than its samples";
-    c->n = n;
     for (size_t i = 0; i < n; i++) {
         const json_t *x = json_array_get(list, i);
         if (!json_is_number(x) || !isfinite(json_number_value(x)))
             return fail(err, STATUS_BAD_DATA, "%s: SimCenter: sample %zu of '%s' is no number", place->l->path, i,
-                        name);
+                        c->name);
         TRY(record_add(place->r, place->l, (Row){.a = json_number_value(x), .line = 1}, err));
     }
     return STATUS_OK;
