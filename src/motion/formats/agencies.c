@@ -6,7 +6,7 @@
  * give
  *
  *   COUNT, or RATE times DURATION     number of samples         STEP, or 1 / RATE, or DURATION / COUNT    [s]
- *   UNIT, PEAK, NAME, TYPE            of the motion; what is twice in a header counts where it stands first
+ *   UNIT, PEAK, NAME, PLACE, TYPE     of the motion; what is twice in a header counts where it stands first
  *
  * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES
  * are in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
@@ -23,8 +23,7 @@ typedef enum { NAME, PLACE, COUNT, STEP, RATE, DURATION, UNIT, PEAK, FACTOR, TYP
 
 typedef struct {
     Lines at[N_FIELDS]; /* the line, from its value on; from == NULL: none */
-    Lines last;         /* the last line that is not blank */
-    const char *from;   /* where the header begins */
+    Lines first, last;  /* the last that is not blank */
     double count, dt;   /* NAN: not known yet */
     int width;
     size_t lines_behind; /* the samples, of velocities and displacements */
@@ -113,7 +112,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
     double n_lines = f->text_lines;
     int ended = !f->ends;
     Lines ahead = {0};
-    *h = (Header){.count = NAN, .dt = NAN, .width = f->width, .from = l->from};
+    *h = (Header){.count = NAN, .dt = NAN, .width = f->width, .first = *l};
     if (f->text_lines < 0 && !(number_behind(l->from, l->to, "with", &n_lines) && n_lines > 0 && n_lines <= 1000))
         return fail_at(err, l, "no usable number of text lines in '%.*s'", line_shown(l), l->from);
     for (int i = 1;; i++) {
@@ -240,11 +239,13 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
 
 static Status check_type(const Lines *type, Err *err)
 {
-    const Lines whole = {.from = type->raw, .to = type->to};
+    Lines whole = *type;
+    whole.from = whole.raw;
     if (!type->from || line_has(&whole, "accel") || !text_is(HOLDS, whole.from, whole.to, "veloc|displ"))
         return STATUS_OK;
-    return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s:%d: not an acceleration: '%.*s'", type->path, type->number,
-                    line_shown(&whole), whole.from);
+    fail_at(err, type, "not an acceleration: '%.*s'", line_shown(&whole), whole.from);
+    err->sub = SUB_NO_RECORD;
+    return STATUS_BAD_DATA;
 }
 
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
@@ -254,7 +255,7 @@ static void take_named_peak(const Format *f, const Header *h, Channel *c, const 
 {
     char word[CHANNEL_NAME_MAX + 32];
     snprintf(word, sizeof word, f->peak_of, c->name);
-    const char *at = find_word(h->from, end, word), *stop = at ? memchr(at, '\n', (size_t)(end - at)) : NULL;
+    const char *at = find_word(h->first.from, end, word), *stop = at ? memchr(at, '\n', (size_t)(end - at)) : NULL;
     if (!at)
         return;
     stop = stop ? stop : end;
@@ -328,12 +329,9 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
     return STATUS_OK;
 }
 
-/* The line at `from`. */
-static int is_corrected(const char *from, const char *end)
+static int says_corrected(const Lines *l)
 {
-    const size_t n = strcspn(from, "\r\n");
-    end = n < (size_t)(end - from) ? from + n : end;
-    return text_is(HOLDS, from, end, "corrected acc") && !text_is(HOLDS, from, end, "uncorrected");
+    return l->from && text_is(HOLDS, l->raw, l->to, "corrected acc") && !text_is(HOLDS, l->raw, l->to, "uncorrected");
 }
 
 /* "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof": with the location, which tells the channels of a
@@ -381,7 +379,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     else
         TRY(settle_steps(f, l, &h, 0, err));
     settle_channel(f, &h, c, 0);
-    c->is_corrected = is_corrected(h.from, l->end) || (h.at[TYPE].from && is_corrected(h.at[TYPE].raw, l->end));
+    c->is_corrected = says_corrected(&h.first) || says_corrected(&h.at[TYPE]);
     return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
 }
 
@@ -398,7 +396,7 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum { REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
     double x;
-    const int is_v2 = strncasecmp(h->from, "corrected", 9) == 0;
+    const int is_v2 = line_begins(&h->first, "corrected");
     for (int i = 0; i < REAL_LINES_MAX; i++) {
         const Lines ahead = lines_ahead(l);
         if (!ahead.from)
@@ -524,10 +522,8 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
         SMALLEST = 31
     };
     double integers[N_INTEGERS], reals[N_REALS];
-    Lines first = {.path = l->path, .next = h->from, .end = l->to, .mark = l->mark};
-    lines_next(&first);
-    h->at[TYPE] = first;
-    if (line_has(&first, "UNKNOWN"))
+    h->at[TYPE] = h->first;
+    if (line_has(&h->first, "UNKNOWN"))
         c->warning = "its first line, UNKNOWN, does not say what it holds; taken as an acceleration";
     TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
     TRY(header_numbers(l, 15, N_REALS, reals, err));
@@ -582,7 +578,7 @@ static Status geonet_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     double x[100], in_words = 0;
     TRY(header_numbers(l, 8, 100, x, err));
-    const int is_v2 = strncasecmp(h->from, "corrected", 9) == 0;
+    const int is_v2 = line_begins(&h->first, "corrected");
     h->count = x[is_v2 ? 33 : 30];
     h->dt = x[65];
     for (int k = 34; k <= 35 && is_v2; k++)
@@ -591,8 +587,8 @@ static Status geonet_more(Lines *l, Header *h, Channel *c, Err *err)
         c->unit = UNIT_CM_S2;
         c->scale = 0.1;
     }
-    const int said = number_behind(h->from, h->last.to, "intervals of", &in_words) ||
-                     number_behind(h->from, h->last.to, "data at", &in_words);
+    const int said = number_behind(h->first.from, h->last.to, "intervals of", &in_words) ||
+                     number_behind(h->first.from, h->last.to, "data at", &in_words);
     if (said && fabs(in_words - h->dt) > 0.0006) /* three decimals */
         return fail_at(err, l, "a step of %g s in the numbers of the header, %g s in its words", h->dt, in_words);
     return STATUS_OK;
@@ -619,7 +615,8 @@ static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
     (void)l, (void)c, (void)err;
     if (!npts->from)
         return STATUS_OK;
-    const Lines whole = {.path = l->path, .number = npts->number, .raw = npts->raw, .from = npts->raw, .to = npts->to};
+    Lines whole = *npts;
+    whole.from = whole.raw;
     if (!memchr(whole.from, '=', (size_t)(whole.to - whole.from)) &&
         line_numbers(&whole, 0, 2, x, &n, &(Err){0}) == STATUS_OK && n == 2) {
         h->count = x[0];
