@@ -66,7 +66,7 @@ static void set_rigid_modes(LinearSystem *s, const Building *b, const CoreBeam *
     for (int k = 0; k < m; k++) {
         for (int j = 0; j < s->n; j++)
             s->psi[k * s->n + j] = psi[j * m + k];
-        for (int i = 0; i < s->n_loss; i++)
+        for (int i = 0; i < s->n_building + s->n_core; i++) /* behind them stand the losses of both together */
             s->gamma[k] += s->P[k * s->n_loss + i] * (i < m ? b->model.gamma[i] : core->gamma[i - m]);
     }
 }
