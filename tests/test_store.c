@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sqlite3.h>
 
+#include "base/linalg.h"
 #include "moga/hypervolume.h"
 #include "store/tables.h"
 #include "wfg.h"
@@ -543,5 +544,6 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
 
 int main(void)
 {
+    linalg_use(KERNELS_PINNED); /* as the program, whose runs are compared with those of this process */
     return RUN_TESTS(prepare, clear_place);
 }

@@ -62,7 +62,7 @@ void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason)
 
 EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)
 {
-    return (EvaluationTable){.n_var = n_var, .n_obj = n_obj, .n_extra = n_extra};
+    return (EvaluationTable){.n_var = n_var, .n_obj = n_obj, .n_extra = n_extra, .n_sd = n_obj};
 }
 
 static void copy_numbers(double to[], const double from[], size_t n)
@@ -74,6 +74,7 @@ static void copy_numbers(double to[], const double from[], size_t n)
 void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra)
 {
     const Evaluation own = *to;
+    const size_t n_sd = own.sd ? n_obj : 0;
     *to = *from;
     to->room = own.room;
     to->reason = "";
@@ -91,7 +92,7 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 
 static void point_row(EvaluationTable *t, size_t i)
 {
-#define X(array, width) t->row[i].array = t->array + i * t->width;
+#define X(array, width) t->row[i].array = t->width > 0 ? t->array + i * t->width : NULL;
     EVALUATION_ARRAYS(X)
 #undef X
 }
@@ -130,6 +131,7 @@ static void set_unknown(double v[], size_t n)
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
     const Evaluation own = *e;
+    const size_t n_sd = own.sd ? n_obj : 0;
     *e = (Evaluation){
         .kind = KIND_UNFINISHED, .reason = "", .room = own.room, .seconds = NAN, .violation = NAN, .x = own.x};
 #define X(array, width)                                                                                                \
@@ -178,5 +180,5 @@ void evaluation_table_free(EvaluationTable *t)
 #define X(array, width) free(t->array);
     EVALUATION_ARRAYS(X)
 #undef X
-    *t = evaluation_table(t->n_var, t->n_obj, t->n_extra);
+    *t = (EvaluationTable){.n_var = t->n_var, .n_obj = t->n_obj, .n_extra = t->n_extra, .n_sd = t->n_sd};
 }

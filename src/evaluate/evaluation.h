@@ -3,7 +3,8 @@
  *
  *   x      (n_var)    design variables
  *   f      (n_obj)    objectives in natural signs and units, means over the replicates; NAN where the design failed
- *   sd     (n_obj)    standard deviation of a single simulation; NAN: not known (one replicate)
+ *   sd     (n_obj)    standard deviation of a single simulation; NAN: not known (one replicate); NULL in a table
+ *                     without (n_sd = 0)
  *   extra  (n_extra)  what else is written down; NAN: not known
  *
  * Shapes     of one table, all rows have the same; in its memory rows follow each other: table.x is X (n, n_var)
@@ -67,7 +68,7 @@ EvaluationKind kind_of_word(const char *word); /* KIND_UNFINISHED: no other kind
 enum { REASON_MAX = 160 };
 
 /* The arrays of numbers of an evaluation: x, and what its simulations answer. */
-#define RESULT_ARRAYS(X)     X(f, n_obj) X(sd, n_obj) X(extra, n_extra)
+#define RESULT_ARRAYS(X)     X(f, n_obj) X(sd, n_sd) X(extra, n_extra)
 #define EVALUATION_ARRAYS(X) X(x, n_var) RESULT_ARRAYS(X)
 
 typedef struct {
@@ -97,12 +98,13 @@ void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 typedef Status (*EvaluationFn)(const Evaluation *e, void *user, Err *err); /* the row holds until it returns */
 
 typedef struct {
-    size_t n, n_max, n_used, n_var, n_obj, n_extra; /* n_used: rows that have had content */
-    Evaluation *row;                                /* (n) */
-    double *x, *f, *sd, *extra;                     /* (n, n_var) (n, n_obj) (n, n_obj) (n, n_extra) */
+    size_t n, n_max, n_used;            /* n_used: rows that have had content */
+    size_t n_var, n_obj, n_extra, n_sd; /* n_sd: n_obj, or 0 */
+    Evaluation *row;                    /* (n) */
+    double *x, *f, *sd, *extra;         /* (n, n_var) (n, n_obj) (n, n_sd) (n, n_extra) */
 } EvaluationTable;
 
-/* Empty; needs no memory. */
+/* Empty; needs no memory. n_sd is n_obj, and may be set to 0. */
 EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra);
 
 /* One more row behind the last: x of zeros, every other number not known, OUTCOME_OK, KIND_UNFINISHED. */

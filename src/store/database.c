@@ -296,7 +296,7 @@ static Status check_tables(Database *d, Err *err)
 }
 
 /* Ours, of a format that is known, and whole. */
-static Status check(Database *d, DatabaseMode mode, Err *err)
+static Status check(Database *d, Err *err)
 {
     double application, format;
     char word[200] = "";
@@ -310,8 +310,7 @@ static Status check(Database *d, DatabaseMode mode, Err *err)
                     "front.csv and settings.ini can be read by anyone",
                     d->path, format, DATABASE_FORMAT, format > DATABASE_FORMAT ? "a newer" : "an older");
     TRY(check_tables(d, err));
-    TRY(database_each(d, mode == DATABASE_WRITE ? "PRAGMA integrity_check(1)" : "PRAGMA quick_check(1)", take_word,
-                      word, err));
+    TRY(database_each(d, "PRAGMA quick_check(1)", take_word, word, err));
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
 }
 
@@ -345,7 +344,7 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
         d->file = there.st_ino;
     }
     TRY(database_number(d, "PRAGMA data_version", 0, &d->version, err));
-    return check(d, mode, err);
+    return check(d, err);
 }
 
 static Status copy_file(const char *from, const char *to, Err *err)
@@ -396,7 +395,7 @@ static Status open_copy(Database **out, const char *path, Err *err)
         status = open_file(out, path, to, SQLITE_OPEN_READWRITE, err);
     if (status == STATUS_OK) {
         bound_rows(*out);
-        status = check(*out, DATABASE_READ, err);
+        status = check(*out, err);
     }
     remove_copy(folder);
     return status;

@@ -143,10 +143,10 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 static void put_list(FILE *f, const char *key, size_t n, const double values[])
 {
     size_t k = 0;
-    while (k < n && !isfinite(values[k]))
+    while (values && k < n && !isfinite(values[k]))
         k++;
     fputs(key, f);
-    if (k < n)
+    if (values && k < n)
         print_list(f, n, values);
     else
         fputs("null", f);

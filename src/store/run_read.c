@@ -228,7 +228,9 @@ static Status load_rows(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
-    run->table = l->polished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    run->table.n_sd = s->has_spread ? s->n_obj : 0;
+    l->polished = run->table;
     TRY(rows_each(l->d, ROWS_EVALUATION, s, "1", take_row, l, err));
     if (run->table.n < run->n_finished)
         return database_damaged(l->d, err, "evaluation %zu is missing", run->table.n + l->polished.n + 1);

@@ -71,7 +71,7 @@ static void set_goal(Refine *r, const Evaluation *start, const double f[])
     r->box = run_box(r->run);
     r->replicates = 1;
     for (size_t k = 0; k < r->run->schema.n_obj; k++) {
-        const double sd = isfinite(start->sd[k]) ? start->sd[k] : 0.0;
+        const double sd = start->sd && isfinite(start->sd[k]) ? start->sd[k] : 0.0;
         r->slack[k] = r->config->slack[k] < 0.0       ? sd
                       : isfinite(r->config->slack[k]) ? r->config->slack[k] * fabs(f[k])
                                                       : INFINITY;
