@@ -217,7 +217,8 @@ static Status join_finer(Loading *l, Err *err)
         e->violation = better->violation;
         e->level = better->level;
         memcpy(e->f, better->f, s->n_obj * sizeof *e->f);
-        memcpy(e->sd, better->sd, s->n_obj * sizeof *e->sd);
+        if (e->sd)
+            memcpy(e->sd, better->sd, s->n_obj * sizeof *e->sd);
         memcpy(e->extra, better->extra, s->n_extra * sizeof *e->extra);
         memcpy(run->F + row * s->n_obj, better->f, s->n_obj * sizeof *run->F);
     }
