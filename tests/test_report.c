@@ -15,9 +15,7 @@
 #include "base/random.h"
 #include "store/run_read.h"
 #include "report/importance.h"
-#include "report/thin.h"
 #include "report/report.h"
-#include "report/wavelet.h"
 #include "settings/options.h"
 
 static char folder[64]; /* of this test program's files */

@@ -22,7 +22,7 @@ typedef struct {
     int has_detail;
     Detail detail;
     Importance importance;  /* report_page finds it; elsewhere empty */
-    size_t n_shown, *shown; /* rows of the designs of the front that the page has (report/thin.h); as the importance */
+    size_t n_shown, *shown; /* rows of the designs of the front that the page has (thin_front); as the importance */
 } Report;
 
 /* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */
@@ -42,5 +42,14 @@ Status report_live(const Run *run, char **text, Err *err);
 /* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */
 Status report_pictures(const Report *r, const char *folder, Err *err);
 void report_close(Report *r);
+
+/* Which designs of a very large front a page shows.
+ *
+ * All of a front that has no more than `most`. Else those with the lowest and the highest value of every objective and
+ * variable, the designs that are to be kept, polished ones, and the others evenly in the order of their evaluation:
+ * ranges stay as they are, and where the front is dense there is more of it. */
+/* Rows of the run, ascending, into rows (n_front); returns how many: `most`, and what has to be kept beyond that.
+ * kept: rows of the run, on its front or not. */
+size_t thin_front(const Run *run, size_t most, size_t n_kept, const size_t kept[], size_t rows[]);
 
 #endif
