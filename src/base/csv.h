@@ -71,7 +71,8 @@ typedef struct {
     size_t *cell;                  /* (n_rows, n_cols) where each begins in text */
 } Table, Sheet;
 
-/* Numbers, every one finite; below a header an empty cell is NAN. Below a header there may be no row at all; without one that is refused. */
+/* Numbers, every one finite; below a header an empty cell is NAN. Below a header there may be no row at all; without
+ * one that is refused. */
 Status table_read(Table *t, const char *path, int has_header, Err *err);
 
 /* The same from text in memory; `path` only names it in messages. */

@@ -12,9 +12,9 @@
  *       probes      designs of the front with one variable elsewhere, where objectives have waves
  *       variation   children of the population; the only offspring where the surrogate is not used
  *   4 Infill selection of a batch (infill_select.c)
- *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is that
- *                   of lower confidence bounds, prediction minus OPTIMISM times its error in every objective: where the
- *                   surrogate errs more there is more to find
+ *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is
+ *                   that of lower confidence bounds, prediction minus OPTIMISM times its error in every objective:
+ *                   where the surrogate errs more there is more to find
  *       variation   as many children of variation as infill loses to failures, those with the greatest predicted gain
  *       probes      times the share of objectives with waves a share that grows while probes are better than predicted
  *                   and falls where they are not (control.h). What a surrogate knows of one valley says nothing of the

@@ -9,8 +9,8 @@
  *             repeats of the run (moga/noise.h); one with a simulation that failed keeps its first
  * Values      natural signs and units, as in front.csv; NAN where there is none (failed, or deviation not known)
  * Front       feasible, ok and nondominated, polished designs included; entered <= g < left are the generations of the
- *             search in which a design was on the search's own front. Where designs were simulated finer at the end of a study
- *             the front is formed again, of all that were ever on it
+ *             search in which a design was on the search's own front. Where designs were simulated finer at the end
+ *             of a study the front is formed again, of all that were ever on it
  * Scaled      an objective between its best (0) and its worst value (1) on the front, minimised
  * Knee        the design of the front nearest to the ideal point, all objectives scaled (Euclid)
  * Ownership   run_free releases all of it (an empty Run is fine)
@@ -88,8 +88,8 @@ void run_free(Run *run);
 const double *run_x(const Run *run, size_t row); /* (n_var) */
 const double *run_f(const Run *run, size_t row); /* (n_obj) */
 
-/* Likely errors (n_obj) of the integration that are stored with the design; NAN where there is none. Returns whether any
- * is there. */
+/* Likely errors (n_obj) of the integration that are stored with the design; NAN where there is none. Returns whether
+ * any is there. */
 int run_likely(const Run *run, size_t row, double error[]);
 
 /* The steps by which the run knows that design, where sim has the accuracy of its settings. */

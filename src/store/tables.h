@@ -2,12 +2,13 @@
  * written and read.
  *
  *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at, digest
- *   evaluation   the fields of Evaluation (kind NULL: its generation is not finished), digest, and a REAL column, by its
- *                name, for every variable, objective and further measure; NAME_sd of every objective where designs are
- *                several simulations: standard deviation of a single one. NULL: not known
+ *   evaluation   the fields of Evaluation (kind NULL: its generation is not finished), digest, and a REAL column, by
+ *                its name, for every variable, objective and further measure; NAME_sd of every objective where
+ *                designs are several simulations: standard deviation of a single one. NULL: not known
  *   finer        designs that a study names, by their ids, simulated with more steps: how often these were doubled, and
  *                the columns above without variables; NAME_sd of every objective where every gap is changed by 1 um,
- *                err_NAME of every number: its likely error; reason: `unpredictable`, or empty. Until the search goes on
+ *                err_NAME of every number: its likely error; reason: `unpredictable`, or empty. Until the search
+ *                goes on
  *   generation   the fields of RunGeneration; digest
  *   front        the fields of RunMark: evaluation was on the front of the generations entered <= g < left
  *   session      the fields of RunSession

@@ -7,15 +7,16 @@
  *   1 the design at 2, 4, 8, ... times the steps per contact (estimate_options) until two runs in a row differ by less
  *     than a third of the promise in every promised measure. The last one is what is known of the design, and that
  *     difference its likely error
- *   2 two copies of it, every gap changed by 1 um, in patterns of signs: the standard deviation of it and its copies, at
- *     the steps of the run, and where that is more than the promise at the steps of 1
+ *   2 two copies of it, every gap changed by 1 um, in patterns of signs: the standard deviation of it and its copies,
+ *     at the steps of the run, and where that is more than the promise at the steps of 1
  *   3 the larger one of both is its error; where the one or the other stays above, the design is called unpredictable
- *   4 the front is formed again with the better values; names move on, and what is named then is looked at as well. A few
- *     designs are looked at together and stored together, so that a run which is stopped goes on behind them
+ *   4 the front is formed again with the better values; names move on, and what is named then is looked at as well. A
+ *     few designs are looked at together and stored together, so that a run which is stopped goes on behind them
  *
  * Of a tower with the engine fast, one replicate for a design; others know no error.
  *
- * Deterministic  at any number of threads and stops; nothing of it reaches the search, and it ends with the next generation
+ * Deterministic  at any number of threads and stops; nothing of it reaches the search, and it ends with the next
+ *                generation
  * Errors         STATUS_STOPPED: go_on said so, but not before the first few are stored */
 #ifndef IMTET_STUDY_NAMED_H
 #define IMTET_STUDY_NAMED_H

@@ -49,7 +49,8 @@ Effort effort_of(const Run *run, size_t session);
 void effort_words(const Effort *e, char text[160]);
 
 /* Designs that the end of the study named and simulated with more steps (study/named.h), those of them that cannot be
- * predicted so far, and what that cost, as a share of the search's simulations. As a sentence; empty: there are none. */
+ * predicted so far, and what that cost, as a share of the search's simulations. As a sentence; empty: there
+ * are none. */
 typedef struct {
     size_t n, n_unpredictable;
     double share;
