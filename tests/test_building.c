@@ -425,7 +425,7 @@ TEST(rayleigh_damping_goes_through_its_two_modes)
     BuildingOptions o = scene_defaults().building;
     o.damping_model = DAMPING_RAYLEIGH;
     o.damping = LIST_OF(0.02);
-    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 4");
+    o.rayleigh_modes = LIST_OF(1, 4);
     Building b = load(&o);
     assert_close(b.zeta[0], 0.02, 1e-12);
     assert_close(b.zeta[3], 0.02, 1e-12);
@@ -433,12 +433,12 @@ TEST(rayleigh_damping_goes_through_its_two_modes)
     for (int i = 0; i < 20; i++)
         assert_close(b.zeta[i], 0.02 * (w1 * w4 / b.omega[i] + b.omega[i]) / (w1 + w4), 1e-12);
     building_free(&b);
-    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "2, 2");
-    expect_refusal_of(&o, "are not two modes");
-    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 21");
+    o.rayleigh_modes = LIST_OF(1, 21);
     expect_refusal_of(&o, "21 is none of the 20 modes");
-    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 2, 3");
-    expect_refusal_of(&o, "'1, 2, 3' has 3 modes; Rayleigh damping takes two");
+    o.rayleigh_modes = LIST_OF(1, 2.5);
+    expect_refusal_of(&o, "2.5 is none of the 20 modes");
+    expect(65, "'2, 2' is not two numbers, the first below the second",
+           "building guyan --set 'building.rayleigh_modes=2, 2'");
 }
 
 TEST(a_list_of_damping_gives_each_mode_its_ratio)

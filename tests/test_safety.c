@@ -5,7 +5,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include "base/cell.h"
+#include "base/visible.h"
 #include "store/output.h"
 #include "study/output_place.h"
 

@@ -312,11 +312,11 @@ static Status read_rows(Reading *r, size_t length, Err *err)
     return fail(err, STATUS_BAD_DATA, "%s: holds no %s", t->path, r->of_words ? "rows" : "numbers");
 }
 
-static Status parse(Table *t, const char *path, const char *text, size_t length, Reading r, Err *err)
+Status table_parse(Table *t, const char *path, const char *text, size_t length, TableForm form, Err *err)
 {
+    Reading r = {.t = t, .has_header = form != TABLE_PLAIN, .of_words = form == TABLE_WORDS};
     memset(t, 0, sizeof *t);
     snprintf(t->path, sizeof t->path, "%s", path);
-    r.t = t;
     Status status = lines_open(&r.l, t->path, text, length, err);
     if (status == STATUS_OK)
         status = read_rows(&r, length, err);
@@ -325,35 +325,15 @@ static Status parse(Table *t, const char *path, const char *text, size_t length,
     return status;
 }
 
-static Status read_file(Table *t, const char *path, Reading r, Err *err)
+Status table_read(Table *t, const char *path, TableForm form, Err *err)
 {
     char *text;
     size_t length;
     memset(t, 0, sizeof *t);
     TRY(file_read(path, FILE_LARGEST, &text, &length, err));
-    const Status status = parse(t, path, text, length, r, err);
+    const Status status = table_parse(t, path, text, length, form, err);
     free(text);
     return status;
-}
-
-Status table_parse(Table *t, const char *path, const char *text, size_t length, int has_header, Err *err)
-{
-    return parse(t, path, text, length, (Reading){.has_header = has_header}, err);
-}
-
-Status table_read(Table *t, const char *path, int has_header, Err *err)
-{
-    return read_file(t, path, (Reading){.has_header = has_header}, err);
-}
-
-Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err)
-{
-    return parse(s, path, text, length, (Reading){.has_header = 1, .of_words = 1}, err);
-}
-
-Status sheet_read(Sheet *s, const char *path, Err *err)
-{
-    return read_file(s, path, (Reading){.has_header = 1, .of_words = 1}, err);
 }
 
 void table_free(Table *t)
@@ -376,38 +356,13 @@ int table_column(const Table *t, const char *name)
     return -1;
 }
 
-/* Is the word one of those in the list, which are separated by blanks? */
-static int is_listed(const char *list, const char *word)
-{
-    const size_t n = strlen(word);
-    for (const char *p = list; (p = strstr(p, word)); p += n)
-        if ((p == list || p[-1] == ' ') && (p[n] == ' ' || !p[n]))
-            return 1;
-    return 0;
-}
-
-Status sheet_expect(const Sheet *s, const char *required, const char *optional, Err *err)
-{
-    char list[256], *rest = list;
-    snprintf(list, sizeof list, "%s", required);
-    for (const char *word; (word = strsep(&rest, " "));)
-        if (*word && table_column(s, word) < 0)
-            return fail(err, STATUS_BAD_DATA, "%s: has no column %s; it needs %s, and may have %s", s->path, word,
-                        required, optional);
-    for (size_t j = 0; j < s->n_cols; j++)
-        if (!is_listed(required, s->names[j]) && !is_listed(optional, s->names[j]))
-            return fail(err, STATUS_BAD_DATA, "%s: column '%s' is not known; there are %s %s", s->path, s->names[j],
-                        required, optional);
-    return STATUS_OK;
-}
-
-const char *sheet_text(const Sheet *s, size_t row, const char *column)
+const char *sheet_text(const Table *s, size_t row, const char *column)
 {
     const int j = table_column(s, column);
     return j < 0 ? "" : s->text + s->cell[row * s->n_cols + (size_t)j];
 }
 
-Status sheet_number(const Sheet *s, size_t row, const char *column, double otherwise, double *value, Err *err)
+Status sheet_number(const Table *s, size_t row, const char *column, double otherwise, double *value, Err *err)
 {
     const char *text = sheet_text(s, row, column);
     const Cell c = {.from = text, .to = text + strlen(text)};

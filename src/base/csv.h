@@ -7,7 +7,7 @@
  *   tables    rows of equally many cells; lines that are blank, of empty cells, or begin with # are passed over.
  *             Cells are parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
  *
- * Ownership  Lines borrow path and text; table_read and sheet_read allocate, table_free releases (an empty one is fine)
+ * Ownership  Lines borrow path and text; table_read allocates, table_free releases (an empty one is fine)
  * Threads    no state.   Errors  "PATH:LINE: what was found" */
 #ifndef IMTET_BASE_CSV_H
 #define IMTET_BASE_CSV_H
@@ -69,30 +69,24 @@ typedef struct {
     double *values;                /* (n_rows, n_cols) row-major; NULL: cells of words and numbers */
     char *text;                    /* such cells, each closed by a zero */
     size_t *cell;                  /* (n_rows, n_cols) where each begins in text */
-} Table, Sheet;
+} Table;
 
-/* Numbers, every one finite; below a header an empty cell is NAN. Below a header there may be no row at all; without
- * one that is refused. */
-Status table_read(Table *t, const char *path, int has_header, Err *err);
+/* Numbers, every one finite, without names of columns; below them, where an empty cell is NAN and there may be no row at
+ * all; words and numbers below names. Without a row the others are refused. */
+typedef enum { TABLE_PLAIN, TABLE_HEADED, TABLE_WORDS } TableForm;
+Status table_read(Table *t, const char *path, TableForm form, Err *err);
 
 /* The same from text in memory; `path` only names it in messages. */
-Status table_parse(Table *t, const char *path, const char *text, size_t length, int has_header, Err *err);
+Status table_parse(Table *t, const char *path, const char *text, size_t length, TableForm form, Err *err);
 
 /* Column of that name, or -1. */
 int table_column(const Table *t, const char *name);
 void table_free(Table *t);
 
-/* Words and numbers below a header, at least one row. */
-Status sheet_read(Sheet *s, const char *path, Err *err);
-Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err);
-
-/* Columns by name, separated by blanks: all of `required` must be there, and no other than those of `optional`. */
-Status sheet_expect(const Sheet *s, const char *required, const char *optional, Err *err);
-
-/* The text of a cell; empty where there is no such column. */
-const char *sheet_text(const Sheet *s, size_t row, const char *column);
+/* Of words: the text of a cell; empty where there is no such column. */
+const char *sheet_text(const Table *s, size_t row, const char *column);
 
 /* The number of a cell; `otherwise` where column or content are missing. NAN as `otherwise`: it must be there. */
-Status sheet_number(const Sheet *s, size_t row, const char *column, double otherwise, double *value, Err *err);
+Status sheet_number(const Table *s, size_t row, const char *column, double otherwise, double *value, Err *err);
 
 #endif

@@ -1,8 +1,6 @@
 #include "base/list.h"
 
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 int list_item(const char *list, size_t i, char item[], size_t size)
@@ -46,15 +44,4 @@ void list_change(char list[LIST_MAX], ListItemFn change, void *user)
 int list_is_given(const char *list)
 {
     return strcmp(list, "none") != 0;
-}
-
-Status list_positive(const char *list, size_t i, const char *key, double *value, Err *err)
-{
-    char item[64], *end;
-    if (!list_item(list, i, item, sizeof item))
-        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' has no number %zu", key, list, i + 1);
-    *value = strtod(item, &end);
-    if (end == item || *end || !(*value > 0) || !isfinite(*value))
-        return fail(err, STATUS_BAD_DATA, "%s: '%s' is no number above 0", key, item);
-    return STATUS_OK;
 }

@@ -88,3 +88,34 @@ int visible_text(char out[], size_t size, const char *text)
     out[n] = 0;
     return 1;
 }
+
+/* Some spreadsheets read the full-width = + - @ (U+FF1D ...) like the narrow ones. */
+static int is_formula_sign(uint32_t code)
+{
+    const uint32_t narrow = code > 0xff00 && code < 0xff5f ? code - 0xfee0 : code;
+    return narrow > 0 && narrow < 0x80 && strchr("=+-@", (int)narrow) != NULL;
+}
+
+void cell_text(char cell[], size_t size, const char *text)
+{
+    size_t n = 0, length;
+    int begins = 1; /* a spreadsheet may take what follows for a cell's beginning */
+    for (; *text; text += length) {
+        uint32_t code;
+        length = decode(text, &code);
+        if (length == 0)
+            code = (unsigned char)*text;
+        const size_t apostrophe = begins && length && is_formula_sign(code);
+        length += !length;
+        if (n + apostrophe + length >= size)
+            break;
+        if (apostrophe)
+            cell[n++] = '\'';
+        memcpy(cell + n, text, length);
+        if (code == ',' || code == '"' || code < ' ')
+            cell[n] = code == ',' ? ';' : ' ';
+        begins = cell[n] == ';' || (begins && (cell[n] == ' ' || is_invisible(code)));
+        n += length;
+    }
+    cell[n] = 0;
+}

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/cell.h"
+#include "base/visible.h"
 #include "base/json.h"
 #include "base/units.h"
 #include "cmd/commands.h"

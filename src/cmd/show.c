@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "analysis/estimate.h"
-#include "base/cell.h"
+#include "base/visible.h"
 #include "base/figure.h"
 #include "base/units.h"
 #include "moga/hypervolume.h"

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/cell.h"
 #include "base/visible.h"
 
 static const char *const OUTCOME_WORDS[] = {

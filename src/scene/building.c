@@ -8,7 +8,6 @@
 #include "base/carve.h"
 #include "base/hash.h"
 #include "base/linalg.h"
-#include "base/list.h"
 #include "base/units.h"
 #include "scene/building_read.h"
 #include "scene/reduction.h"
@@ -126,18 +125,11 @@ static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
 /* a / w + b w = 2 zeta at two frequencies, those of the floors alone. */
 static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
 {
-    double mode[2];
-    if (list_count(o->rayleigh_modes) > 2)
-        return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: '%s' has %zu modes; Rayleigh damping takes two",
-                    o->rayleigh_modes, list_count(o->rayleigh_modes));
-    for (size_t i = 0; i < 2; i++) {
-        TRY(list_positive(o->rayleigh_modes, i, "building.rayleigh_modes", &mode[i], err));
+    const double *mode = o->rayleigh_modes.at;
+    for (int i = 0; i < 2; i++)
         if (mode[i] != floor(mode[i]) || mode[i] > b->n)
             return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
-    }
     const double w1 = b->omega[(int)mode[0] - 1], w2 = b->omega[(int)mode[1] - 1];
-    if (!(w1 != w2))
-        return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: '%s' are not two modes", o->rayleigh_modes);
     const double mass = 2 * o->damping.at[0] * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping.at[0] / (w1 + w2);
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);

@@ -149,8 +149,8 @@ static Status take_matrices(BuildingFiles *b, const BuildingOptions *o, const Ta
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     Table K, M = {0};
-    TRY(model_table(&K, o->model, "K.csv", err));
-    Status status = model_table(&M, o->model, "M.csv", err);
+    TRY(model_table(&K, o->model, "K.csv", TABLE_PLAIN, err));
+    Status status = model_table(&M, o->model, "M.csv", TABLE_PLAIN, err);
     if (status == STATUS_OK)
         status = take_matrices(b, o, &K, &M, err);
     table_free(&K);

@@ -203,7 +203,7 @@ Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *
 {
     Table t;
     memset(d, 0, sizeof *d);
-    TRY(table_read(&t, path, 1, err));
+    TRY(table_read(&t, path, TABLE_HEADED, err));
     const Status status = design_of_table(d, &t, path, space, err);
     table_free(&t);
     return status;

@@ -28,11 +28,11 @@ typedef struct {
     char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder (scene/building.h has its forms) */
     BuildingUnits units;
     DampingModel damping_model;
-    NumberList damping;                   /* [-] mode by mode, the last for the rest; rayleigh: of two modes */
-    char rayleigh_modes[OPTION_TEXT_MAX]; /* two of them, from 1 */
-    NumberList heights_m;                 /* storey by storey, the last for the rest; of matrices */
-    Switch rigid_floors;                  /* of a frame */
-    long modes;                           /* fixed-interface modes beside the floors; 0: condensed */
+    NumberList damping;        /* [-] mode by mode, the last for the rest; rayleigh: of two modes */
+    NumberList rayleigh_modes; /* two of them, from 1, ascending */
+    NumberList heights_m;      /* storey by storey, the last for the rest; of matrices */
+    Switch rigid_floors;       /* of a frame */
+    long modes;                /* fixed-interface modes beside the floors; 0: condensed */
     Switch p_delta;
 } BuildingOptions;
 

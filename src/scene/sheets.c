@@ -59,21 +59,13 @@ int model_has(const char *model, const char *file)
     return model_is_built_in(model) ? built_in(model, file) != NULL : access(path, F_OK) == 0;
 }
 
-Status model_table(Table *t, const char *model, const char *file, Err *err)
+Status model_table(Table *t, const char *model, const char *file, TableForm form, Err *err)
 {
     char path[PATH_SIZE];
     const BuiltIn *own = built_in(model, file);
     path_of(path, model, file);
-    return own ? table_parse(t, path, own->start, (size_t)(own->end - own->start), 0, err)
-               : table_read(t, path, 0, err);
-}
-
-Status model_sheet(Sheet *s, const char *model, const char *file, Err *err)
-{
-    char path[PATH_SIZE];
-    const BuiltIn *own = built_in(model, file);
-    path_of(path, model, file);
-    return own ? sheet_parse(s, path, own->start, (size_t)(own->end - own->start), err) : sheet_read(s, path, err);
+    return own ? table_parse(t, path, own->start, (size_t)(own->end - own->start), form, err)
+               : table_read(t, path, form, err);
 }
 
 /* ---- columns -------------------------------------------------------------------------------------------------- */
@@ -87,7 +79,7 @@ static void list_columns(const SheetForm *form, int required, char list[200])
             snprintf(list + strlen(list), 200 - strlen(list), "%s%s", *list ? " " : "", c->name);
 }
 
-static Status check_columns(const SheetForm *form, const Sheet *s, Err *err)
+static Status check_columns(const SheetForm *form, const Table *s, Err *err)
 {
     char required[200], optional[200];
     list_columns(form, 1, required);
@@ -110,7 +102,7 @@ static Status check_columns(const SheetForm *form, const Sheet *s, Err *err)
     return STATUS_OK;
 }
 
-static Status take_cell(const Column *c, const Sheet *s, size_t row, const char **word, double *x, Err *err)
+static Status take_cell(const Column *c, const Table *s, size_t row, const char **word, double *x, Err *err)
 {
     *word = sheet_text(s, row, c->name);
     if (c->kind == COLUMN_NAME)
@@ -127,7 +119,7 @@ static Status take_cell(const Column *c, const Sheet *s, size_t row, const char 
                 : STATUS_OK;
 }
 
-static Status take_row(const SheetForm *form, const Sheet *s, size_t row, void *user, Err *err)
+static Status take_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
 {
     SheetRow r = {.n_rows = s->n_rows, .row = row};
     Err wrong = {0};
@@ -139,8 +131,8 @@ static Status take_row(const SheetForm *form, const Sheet *s, size_t row, void *
 
 Status sheet_take(const SheetForm *form, const char *model, void *user, Err *err)
 {
-    Sheet s;
-    TRY(model_sheet(&s, model, form->file, err));
+    Table s;
+    TRY(model_table(&s, model, form->file, TABLE_WORDS, err));
     Status status = check_columns(form, &s, err);
     for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
         status = take_row(form, &s, i, user, err);

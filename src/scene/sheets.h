@@ -14,9 +14,7 @@ int model_is_built_in(const char *model);
 /* file: "nodes.csv" */
 int model_has(const char *model, const char *file);
 
-/* A square table of numbers without a header, or a sheet. */
-Status model_table(Table *t, const char *model, const char *file, Err *err);
-Status model_sheet(Sheet *s, const char *model, const char *file, Err *err);
+Status model_table(Table *t, const char *model, const char *file, TableForm form, Err *err);
 
 typedef enum { COLUMN_NAME, COLUMN_NUMBER, COLUMN_ABOVE_0, COLUMN_LEAST_0, COLUMN_SWITCH } ColumnKind;
 

@@ -80,7 +80,7 @@ static const Option OPTIONS[] = {
            "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
     LIST(building.damping, "-", "0.03", 0, 10,
          "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
-    TEXT(building.rayleigh_modes, "1, 3", "rayleigh: the two modes that have building.damping"),
+    BOUNDS(building.rayleigh_modes, "-", "1, 3", 1, 128, "rayleigh: the two modes that have building.damping"),
     LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
          "heights of the storeys from the bottom where the files have none; the last for all further storeys",
          .flags = SETTING_BASIC),

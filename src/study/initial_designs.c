@@ -8,7 +8,7 @@
 #include "base/csv.h"
 #include "store/run_read.h"
 
-static Status copy_columns(const Sheet *t, const char *path, const Schema *schema, double *X, Err *err)
+static Status copy_columns(const Table *t, const char *path, const Schema *schema, double *X, Err *err)
 {
     for (size_t j = 0; j < schema->n_var; j++) {
         const char *name = schema_variable(schema, j)->name;
@@ -23,8 +23,8 @@ static Status copy_columns(const Sheet *t, const char *path, const Schema *schem
 /* Columns beside the variables may hold anything, as of exported evaluations. */
 static Status read_table(const char *path, const Schema *schema, double **X, size_t *n, Err *err)
 {
-    Sheet t = {0};
-    TRY(sheet_read(&t, path, err));
+    Table t = {0};
+    TRY(table_read(&t, path, TABLE_WORDS, err));
     *X = calloc(t.n_rows * schema->n_var + 1, sizeof **X);
     *n = t.n_rows;
     const Status status = *X ? copy_columns(&t, path, schema, *X, err)
