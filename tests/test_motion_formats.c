@@ -1363,7 +1363,8 @@ TEST(a_spectrum_is_no_motion_with_any_option)
                                           "frequency_hz,amplitude [g]",
                                           "f [Hz],a_g",
                                           "T,psa_g",
-                                          "freq,Fourier amplitude [g]"};
+                                          "freq,Fourier amplitude [g]",
+                                          "\xe5\x91\xa8\xe6\x9c\x9f,acc_g"};
     static const MotionHow HOWS[] = {{0}, {.dt_s = 0.02}, {.dt_s = 0.02, .channel = "2"}, {.channel = "1"}};
     for (size_t i = 0; i < sizeof SPECTRA / sizeof SPECTRA[0]; i++)
         for (size_t k = 0; k < sizeof HOWS / sizeof HOWS[0]; k++)
@@ -1372,7 +1373,13 @@ TEST(a_spectrum_is_no_motion_with_any_option)
     expect("T [s],PSa [m/s^2]", &HOWS[3], "its channel 'PSa [m/s^2]' is not an acceleration");
     expect("lag,a_g", &HOWS[0],
            "there:1: the first column is 'lag', which is no time: name the one of the times time_s");
-    static const char *const TIMES[] = {"T [s],a_g", "Zeit;a_g", "elapsed time,a_g", "x [s],a_g", ",a_g", "TIEMPO,a_g"};
+    static const char *const TIMES[] = {"T [s],a_g",
+                                        "Zeit;a_g",
+                                        "elapsed time,a_g",
+                                        "x [s],a_g",
+                                        ",a_g",
+                                        "TIEMPO,a_g",
+                                        "\xe6\x99\x82\xe5\x88\xbb,acc_g"};
     for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
         expect(TIMES[i], &HOWS[0], NULL);
     expect("Kobe record", &(MotionHow){.unit = UNIT_G}, NULL); /* a title, as many words as columns */
@@ -1500,6 +1507,7 @@ TEST(what_other_programs_write_is_read)
         const char *file, *from, *to, *channel, *warning;
         double factor;
     } CASES[] = {
+        {"three.slist", "XX_SYN_00_HNN_D", "XX_SA_00_HNN_D", "XX_SA", "", 1},
         {"one.smc", "2 CORRECTED ACCELEROGRAM", "0 UNKNOWN", "1", "UNKNOWN, does not say what it holds", 1},
         {"simcenter.json", ": 43", ": 42", "1", "its numSteps is one less than its samples", 1},
         {"simcenter.json", "\"dT\"", "\"factor\": 2.5, \"dT\"", "1", "multiplied by the factor", 2.5},

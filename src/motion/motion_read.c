@@ -76,7 +76,11 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
 static int is_acceleration(const Channel *c)
 {
     const char *p = c->name, *end = p + strlen(p);
-    if (text_is(BEGINS, p, end, "vel|dis|period|freq") || text_is(HOLDS, p, end, "spectr|fourier"))
+    if (text_is(BEGINS, p, end, "vel|dis"))
+        return 0;
+    if (strcmp(c->format, "csv") != 0) /* SA may be a station elsewhere */
+        return 1;
+    if (text_is(BEGINS, p, end, "period|freq") || text_is(HOLDS, p, end, "spectr|fourier"))
         return 0;
     for (; p < end; p += p < end) { /* "Sa(g)", "NS PSA" */
         const char *word = p;

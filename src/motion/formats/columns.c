@@ -53,10 +53,16 @@ static int names_seconds(Cell c)
     return text_is(EQUALS, c.from, c.to, "s|sec|secs|second|seconds");
 }
 
+/* Or a period; the last two are the first letters of both in Japanese and Chinese. */
+static int names_frequency(Cell c)
+{
+    return text_is(HOLDS, c.from, c.to, "period|freq|frec|[hz|(hz|_hz|\xe5\x91\xa8|\xe9\xa2\x91");
+}
+
 /* "time", "t [s]", "Zeit", or anything in seconds but a period. */
 static int names_times(Cell c)
 {
-    if (text_is(HOLDS, c.from, c.to, "period|freq"))
+    if (names_frequency(c))
         return 0;
     if (text_is(HOLDS, c.from, c.to, "time") || text_is(BEGINS, c.from, c.to, "sec|zeit|tiempo|temps|tempo|zaman|czas"))
         return 1;
@@ -150,7 +156,7 @@ static int is_words(const Lines *l)
 {
     double x;
     const char *p = l->from;
-    if (!isalpha((unsigned char)*p) && !strchr("\"'[(,", *p))
+    if (!isalpha((unsigned char)*p) && (unsigned char)*p < 128 && !strchr("\"'[(,", *p))
         return 0;
     const Cell c = cell_next(&p, l->to, " ,;");
     return cell_number(c, c.is_quoted, &x) == NO_NUMBER && !number_behind(c.from, c.to, "", &x);
@@ -249,21 +255,20 @@ static void unit_in_name(Cell name, Channel *c)
 static Status check_times(const Plain *t, Cell name, Err *err)
 {
     const Lines *l = &t->names;
-    const int is_title = !has_marks(l) && !text_is(HOLDS, l->from, l->to, "[|(|_");
+    int is_title = !has_marks(l) && !text_is(HOLDS, l->from, l->to, "[|(|_");
+    for (const char *p = name.from; p < name.to; p++)
+        is_title |= (unsigned char)*p > 127; /* in another script, perhaps of time */
     if (!t->is_timed && name.from < name.to && !is_title)
         return fail(
             err, STATUS_BAD_DATA,
             "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
             "step of the samples (--set motion.dt_s=0.01)",
             t->l->path, l->number, (int)(name.to - name.from), name.from);
-    static const char *const OTHERS[] = {"ms", "msec", "us", "min", "minutes", "h", "hours"};
     for (const char *p = name.from; p <= name.to;) {
         const Cell word = cell_next(&p, name.to, "_ ()[],");
-        for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
-            if (word.from > name.from && (size_t)(word.to - word.from) == strlen(OTHERS[i]) &&
-                find_word(word.from, word.to, OTHERS[i]))
-                return fail(err, STATUS_BAD_DATA, "%s: the column of times is '%.*s'; times must be in seconds",
-                            t->l->path, (int)(name.to - name.from), name.from);
+        if (word.from > name.from && text_is(EQUALS, word.from, word.to, "ms|msec|us|min|minutes|h|hours"))
+            return fail(err, STATUS_BAD_DATA, "%s: the column of times is '%.*s'; times must be in seconds", t->l->path,
+                        (int)(name.to - name.from), name.from);
     }
     return STATUS_OK;
 }
@@ -541,7 +546,7 @@ static Status read_columns(Plain *t, Err *err)
     const double stated_dt = t->dt;
     t->dt = stated_dt > 0 ? stated_dt : t->hints->dt_s;
     const size_t times = column_of_times(t);
-    if (is_named(t) && !t->is_timed && text_is(HOLDS, name_at(t, 0).from, name_at(t, 0).to, "period|freq|[hz|(hz|_hz"))
+    if (is_named(t) && !t->is_timed && names_frequency(name_at(t, 0)))
         return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' heads a spectrum; a motion is a function of time", t->l->path,
                     t->names.number, line_shown(&t->names), t->names.from);
     int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !t->is_timed);
