@@ -338,7 +338,7 @@ static int says_corrected(const Lines *l)
  * building apart. */
 static void take_name(const Header *h, Channel *c)
 {
-    char text[2 * CHANNEL_NAME_MAX];
+    char own[sizeof c->name];
     const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
     const char *from = name->from, *to = from;
     if (!from)
@@ -350,10 +350,10 @@ static void take_name(const Header *h, Channel *c)
     channel_name(c, from, to);
     for (from = place->from; from && from < place->to && strchr(" :=", *from);)
         from++;
-    if (from)
-        channel_name(c, text,
-                     text + snprintf(text, sizeof text, "%s, %.*s", c->name,
-                                     (int)fmin((double)(place->to - from), CHANNEL_NAME_MAX), from));
+    if (from) {
+        memcpy(own, c->name, sizeof own);
+        channel_named(c, "%s, %.*s", own, (int)(place->to - from), from);
+    }
 }
 
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)

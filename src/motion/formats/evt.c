@@ -11,7 +11,6 @@
  *
  *   a [g] = counts / 2^23 full scale / sensitivity       (samples of 3 or 4 bytes, 24 bits) */
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "motion/formats/record.h"
@@ -72,13 +71,11 @@ static Status add_channels(Record *r, const Lines *l, const unsigned char *heade
     for (int k = 0; k < CHANNELS; k++) {
         const unsigned char *about = header + 0x2c8 + 76 * k;
         const double full_scale = f32(about + 32), sensitivity = f32(about + 36);
-        char name[32];
         Channel *c;
         if (!(f->channels >> k & 1u))
             continue;
         TRY(record_channel(r, l, &c, err));
-        snprintf(name, sizeof name, "%d %.5s", k + 1, (const char *)about);
-        channel_name(c, name, name + strlen(name));
+        channel_named(c, "%d %.5s", k + 1, (const char *)about);
         c->first = place++;
         c->stride = stride;
         c->dt = 1.0 / f->rate;

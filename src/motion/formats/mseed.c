@@ -1,7 +1,6 @@
 /* miniSEED 2 by libmseed (FDSN, SEED Reference Manual 2.4): every continuous trace is a channel NET.STA.LOC.CHA; a
  * gap makes two. Samples are counts, or numbers whose unit the file does not say. */
 #include <libmseed.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "motion/formats/record.h"
@@ -31,14 +30,12 @@ static double sample_of(const MSTrace *t, int64_t i)
 static Status take_trace(Record *r, const Lines *l, const MSTrace *t, Err *err)
 {
     Channel *c;
-    char name[CHANNEL_NAME_MAX];
     if (!t->datasamples || !strchr("ifd", t->sampletype) || t->numsamples < 2)
         return STATUS_OK; /* a log, or nothing */
     if (!(t->samprate >= 1 / MOTION_STEP_MAX_S && t->samprate <= 1e5))
         return STATUS_OK; /* state of health */
     TRY(record_channel(r, l, &c, err));
-    snprintf(name, sizeof name, "%s.%s.%s.%s", t->network, t->station, t->location, t->channel);
-    channel_name(c, name, name + strlen(name));
+    channel_named(c, "%s.%s.%s.%s", t->network, t->station, t->location, t->channel);
     c->counts = 1;
     c->dt = 1 / t->samprate;
     c->n = (size_t)t->numsamples;

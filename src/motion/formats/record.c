@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,7 +93,7 @@ Status record_append(Record *r, const Record *from, const char *path, const char
         TRY(record_add(r, &l, from->row[i], err));
     for (size_t k = 0; k < from->n_channels; k++) {
         Channel *c = NULL;
-        char name[2 * CHANNEL_NAME_MAX], own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
+        char own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
         const char *slash = strrchr(member, '/');
         TRY(record_channel(r, &l, &c, err));
         *c = from->channel[k];
@@ -100,8 +101,7 @@ Status record_append(Record *r, const Record *from, const char *path, const char
         name_shorten(own, sizeof own - 1, c->name);
         for (int with_folder = 1; with_folder >= 0; with_folder--) {
             name_shorten(of, sizeof of - 4 - strlen(own), with_folder || !slash ? member : slash + 1);
-            snprintf(name, sizeof name, "%s%s%s", own, own[0] ? ", " : "", of);
-            channel_name(c, name, name + strlen(name));
+            channel_named(c, "%s%s%s", own, own[0] ? ", " : "", of);
             if (with_folder)
                 memcpy(c->full, c->name, sizeof c->full);
         }
@@ -137,6 +137,16 @@ void channel_name(Channel *c, const char *from, const char *to)
     while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
         to--;
     copy_plain(c->name, sizeof c->name, from, to);
+}
+
+void channel_named(Channel *c, const char *format, ...)
+{
+    char name[4 * CHANNEL_NAME_MAX];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(name, sizeof name, format, list);
+    va_end(list);
+    channel_name(c, name, name + strlen(name));
 }
 
 void channel_unit(Channel *c, const char *from, const char *to)

@@ -96,6 +96,7 @@ void record_set_times(Record *r, size_t first, size_t width, size_t k);
 /* A channel without a name that begins with the next row. */
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
 void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
+__attribute__((format(printf, 2, 3))) void channel_named(Channel *c, const char *format, ...);
 
 /* The name in `room` bytes and a NUL: what is too long loses its middle, for beginning and end tell names apart. */
 void name_shorten(char *out, size_t room, const char *name);

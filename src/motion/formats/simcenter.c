@@ -4,7 +4,6 @@
  * SimCenter's IntensityMeasureComputer and in the series that it hands to OpenSees. */
 #include <jansson.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "motion/formats/record.h"
@@ -36,7 +35,6 @@ static int recognise(const unsigned char bytes[], size_t n)
 static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
 {
     Channel *c;
-    char name[CHANNEL_NAME_MAX];
     const size_t n = json_array_size(list);
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
@@ -49,8 +47,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     c->first = first;
     c->dt = dt;
     c->n = n;
-    snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
-    channel_name(c, name, name + strlen(name));
+    channel_named(c, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
     if (place->count + 1 == (double)n && !c->warning)
         c->warning = "its numSteps is one less than its samples";
     for (size_t i = 0; i < n; i++) {
