@@ -90,31 +90,34 @@ typedef struct {
     const MeasureOrder *order;
 } Picture;
 
-/* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. Columns: intensity, objectives. */
-static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder *order)
+/* Intensity and objectives, of record r (fractile < 0) or of a fractile of a case. */
+static void write_block(FILE *script, const Picture *p, size_t r, int which, int fractile)
 {
-    for (size_t r = 0; r < e->n_records; r++) {
-        if (e->record[r].readable != STATUS_OK)
-            continue;
-        fprintf(script, "$R%zu << EOD\n", r);
-        for (size_t l = 0; l < e->n_levels; l++) {
-            fprintf(script, "%.6g ", e->level[l]);
-            for (int k = 0; k < n_shown(order); k++)
-                gnuplot_number(script, ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
-            fputc('\n', script);
-        }
-        fputs("EOD\n", script);
+    const Evaluations *e = p->e;
+    for (size_t l = 0; l < e->n_levels; l++) {
+        fprintf(script, "%.6g ", e->level[l]);
+        for (int k = 0; k < n_shown(p->order); k++)
+            gnuplot_number(script,
+                           fractile < 0
+                               ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
+                               : ida_fractile(e, l, (EvaluatedCase)which, p->order->of[k], IDA_FRACTILE[fractile]));
+        fputc('\n', script);
     }
+    fputs("EOD\n", script);
+}
+
+/* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. */
+static void write_blocks(FILE *script, const Picture *p)
+{
+    for (size_t r = 0; r < p->e->n_records; r++)
+        if (p->e->record[r].readable == STATUS_OK) {
+            fprintf(script, "$R%zu << EOD\n", r);
+            write_block(script, p, r, 0, -1);
+        }
     for (int c = 0; c < N_EVALUATED; c++)
         for (int i = 0; i < IDA_FRACTILES; i++) {
             fprintf(script, "$F%d%d << EOD\n", c, i);
-            for (size_t l = 0; l < e->n_levels; l++) {
-                fprintf(script, "%.6g ", e->level[l]);
-                for (int k = 0; k < n_shown(order); k++)
-                    gnuplot_number(script, ida_fractile(e, l, (EvaluatedCase)c, order->of[k], IDA_FRACTILE[i]));
-                fputc('\n', script);
-            }
-            fputs("EOD\n", script);
+            write_block(script, p, 0, c, i);
         }
 }
 
@@ -142,7 +145,7 @@ static void write_panel(FILE *script, const Picture *p, int k)
 static void write_script(FILE *script, const void *user)
 {
     const Picture *p = user;
-    write_blocks(script, p->e, p->order);
+    write_blocks(script, p);
     fprintf(script,
             "set terminal svg size 1300,520 font 'sans,13' noenhanced background '#ffffff'\n"
             "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:*]\nset yrange [0:*]\n"

@@ -16,31 +16,6 @@
 
 enum { ROWS_MAX = 12 };
 
-/* Failed simulations by outcome, with the words of the first of each. */
-typedef struct {
-    size_t n_outcomes, count[OUTCOME_COUNT];
-    const Evaluation *first[OUTCOME_COUNT];
-} Failures;
-
-static Failures failures_of(const Run *run)
-{
-    Failures f = {0};
-    for (size_t i = 0; i < run->table.n; i++) {
-        const Evaluation *e = &run->table.row[i];
-        size_t k = 0;
-        if (run->place[i].ok)
-            continue;
-        while (k < f.n_outcomes && f.first[k]->outcome != e->outcome)
-            k++;
-        if (k == OUTCOME_COUNT)
-            continue;
-        if (k == f.n_outcomes)
-            f.first[f.n_outcomes++] = e;
-        f.count[k]++;
-    }
-    return f;
-}
-
 /* -- one run ------------------------------------------------------------------------------------------------------- */
 
 static json_t *json_generations(const Run *run)
@@ -66,9 +41,10 @@ static void print_generations(const Run *run, double expected)
     const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
     json_t *all = json_generations(run), *table = json_array();
     for (size_t r = 0; r < rows; r++) {
-        json_t *row = json_array_get(all, rows > 1 ? r * (n - 1) / (rows - 1) : 0);
-        figures_put(row, "hypervolume", json_number_value(json_object_get(row, "hypervolume")),
-                    json_number_value(json_object_get(row, "hypervolume_error")), NAN);
+        const size_t g = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
+        const double hypervolume = run->generation[g].hypervolume;
+        json_t *row = json_array_get(all, g);
+        figures_put(row, "hypervolume", hypervolume, hypervolume_error(hypervolume), NAN);
         for (size_t i = 0; i < sizeof UNSHOWN / sizeof UNSHOWN[0]; i++)
             json_object_del(row, UNSHOWN[i]);
         json_array_append(table, row);
@@ -102,12 +78,20 @@ static json_t *json_sessions(const Run *run)
     return list;
 }
 
-static json_t *json_failures(const Failures *f)
+/* By outcome: how many, with the words of the first. */
+static json_t *json_failures(const Run *run)
 {
     json_t *o = json_object();
-    for (size_t k = 0; k < f->n_outcomes; k++)
-        json_object_set_new(o, outcome_word(f->first[k]->outcome),
-                            json_pack("{s:I, s:s}", "count", (json_int_t)f->count[k], "first", f->first[k]->reason));
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *e = &run->table.row[i];
+        const char *word = outcome_word(e->outcome);
+        if (run->place[i].ok)
+            continue;
+        if (!json_object_get(o, word))
+            json_object_set_new(o, word, json_pack("{s:i, s:s}", "count", 0, "first", e->reason));
+        json_t *count = json_object_get(json_object_get(o, word), "count");
+        json_integer_set(count, json_integer_value(count) + 1);
+    }
     return o;
 }
 
@@ -147,7 +131,7 @@ static json_t *json_review(const FrontReview *r)
                      "gaps_on_largest", largest);
 }
 
-static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f)
+static json_t *describe(const char *folder, const Run *run, const Standing *s)
 {
     json_t *o = json_pack(
         "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
@@ -155,7 +139,7 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
         "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
         "repeats", (json_int_t)run->n_repeats, "hypervolume", json_number(s->hypervolume), "simulations_per_second",
         json_number(progress_rate(&s->progress)), "seconds", json_number(s->seconds), "seconds_left",
-        json_number(s->left_s), "failures", json_failures(f));
+        json_number(s->left_s), "failures", json_failures(run));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
@@ -285,10 +269,9 @@ static Status run(const Args *args, Err *err)
         return show_folder(args, folder, err);
     TRY(run_read(&run, folder, err));
     standing_of(&standing, folder, &run);
-    const Failures failures = failures_of(&run);
     double expected = NAN;
     Status status = improvement_expected(&run, &expected, err);
-    json_t *o = describe(folder, &run, &standing, &failures);
+    json_t *o = describe(folder, &run, &standing);
     if (status == STATUS_OK && args_has(args, "--json")) {
         describe_more(o, &run, &standing);
         json_object_set_new(o, "expected_gain", json_number(expected));
