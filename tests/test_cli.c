@@ -95,7 +95,7 @@ TEST(a_misunderstood_command_line_ends_with_2_and_a_suggestion)
     expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
     expect(2, "--set nonsense: write --set section.key=value", "building configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
-    expect(2, "choose one", "export results --all --select 5 --csv -");
+    expect(2, "--all and --select do not go together", "export results --all --select 5 --csv -");
     expect(66, "holds no run", "choose results");
 }
 
@@ -187,7 +187,7 @@ TEST(standard_output_and_every_setting_belong_to_one)
     expect(2, "--csv and --history both want standard output", ONE "--csv - --history -");
     expect(2, "--history and --json both want standard output", "spectrum builtin:kobe-like --history - --json");
     expect(2, "--every is the spacing of --history", ONE "--every 0.1");
-    expect(2, "--contacts is of one", ONE "--sensitivity --contacts @/contacts.csv");
+    expect(2, "--sensitivity and --contacts do not go together", ONE "--sensitivity --contacts @/contacts.csv");
     char *text = output_of(ONE "--history -"), *last = strrchr(text, '\n');
     assert_true(last && last[1] == 0);
     for (char *line = text, *end; (end = strchr(line, '\n')); line = end + 1) /* no table among the rows */

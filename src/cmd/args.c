@@ -230,6 +230,16 @@ Status args_whole(const Args *args, const char *name, long least, long most, lon
                : fail(err, STATUS_USAGE, "%s: '%.40s' is no whole number from %ld to %ld", name, text, least, most);
 }
 
+Status args_alone(const Args *args, const char *name, const char *others, Err *err)
+{
+    char other[64];
+    int n;
+    for (; args_has(args, name) && sscanf(others, " %63s%n", other, &n) == 1; others += n)
+        if (args_has(args, other))
+            return fail(err, STATUS_USAGE, "%s and %s do not go together; leave one of them out", name, other);
+    return STATUS_OK;
+}
+
 int args_gives(const Args *args, const char *key)
 {
     const size_t length = strlen(key);

@@ -27,6 +27,9 @@ const char *args_next(const Args *args, const char *name, int *i);
 Status args_number(const Args *args, const char *name, double least, double most, double otherwise, double *value,
                    Err *err);
 Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err);
+
+/* Refused where one of `others`, parted by blanks, was given beside `name`. */
+Status args_alone(const Args *args, const char *name, const char *others, Err *err);
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 

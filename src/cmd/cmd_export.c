@@ -34,8 +34,7 @@ static Status run(const Args *args, Err *err)
     Run run;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
-    if (args_has(args, "--all") && args_has(args, "--select"))
-        return fail(err, STATUS_USAGE, "--all and --select: every design, or some of the front; choose one");
+    TRY(args_alone(args, "--all", "--select", err));
     TRY(run_read(&run, args->operand, err));
     Status status = args_has(args, "--json") ? export_json(stdout, &run, err) : STATUS_OK;
     if (status == STATUS_OK && args_has(args, "--csv"))

@@ -71,8 +71,7 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
 {
     const char *page = args_value(args, "--out"), *folder = args_value(args, "--pictures");
     const char *given = page ? page : folder;
-    if (page && folder)
-        return fail(err, STATUS_USAGE, "--out is where the page goes; with --pictures there is none");
+    TRY(args_alone(args, "--out", "--pictures", err));
     if (snprintf(path, PATH_MAX, "%s%s", given ? given : args->operand, given ? "" : "/report.html") >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (!given)

@@ -201,27 +201,19 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
     return spectra ? write_floor_spectra(&times, spectra, err) : STATUS_OK;
 }
 
-static const char *const TIMES[] = {"--history", "--contacts", "--floor-spectra"};
-
 /* Options that are wrong or would be left aside. */
 static Status check_times(const Args *args, const Job *job, Err *err)
 {
+    static const char *const WITH_GAPS[] = {"--contacts", "--horizon"};
     double every_s;
     TRY(every_of(args, &every_s, err));
-    if (args_has(args, "--contacts") && job->kind != SCENE_IMPACT)
-        return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
+    for (int i = 0; i < 2; i++)
+        if (args_has(args, WITH_GAPS[i]) && job->kind != SCENE_IMPACT)
+            return fail(err, STATUS_USAGE, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
     if (args_has(args, "--every") && !args_has(args, "--history"))
         return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
-    if (args_has(args, "--horizon") && job->kind != SCENE_IMPACT)
-        return fail(err, STATUS_USAGE, "--horizon needs a design with gaps, not none or --rigid");
-    if (args_has(args, "--horizon") && (args_has(args, "--csv") || args_has(args, "--sensitivity")))
-        return fail(err, STATUS_USAGE, "--horizon gives a table or --json; leave --csv and --sensitivity out");
-    const char *many = args_has(args, "--horizon") ? "--horizon" : "--sensitivity";
-    for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
-        if (args_has(args, many) && args_has(args, TIMES[i]))
-            return fail(err, STATUS_USAGE, "%s makes many simulations; %s is of one: leave one of them out", many,
-                        TIMES[i]);
-    return STATUS_OK;
+    TRY(args_alone(args, "--horizon", "--csv --sensitivity --history --contacts --floor-spectra", err));
+    return args_alone(args, "--sensitivity", "--history --contacts --floor-spectra", err);
 }
 
 /* Rows of a history that are a mistake: some 20 GB for 20 floors. */
@@ -392,6 +384,22 @@ static Status show_sensitivities(const Args *args, const Settings *s, size_t n_r
 
 /* ------------------------------------------------------------------------------------------------------------------ */
 
+static Status answer(const Args *args, const Settings *s, const Problem *p, Job *job, Err *err)
+{
+    const Scenario *w = tower_record(tower_of(p), 0);
+    warn_of_settings(s, warn_on_stderr, NULL);
+    building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
+    TRY(lay_out_job(args, job, scene_design(w->scene), err));
+    TRY(check_history(args, job, w, err));
+    TRY(simulate(p, job, err));
+    TRY(estimate(p, s, job, err));
+    TRY(print(args, job, s, tower_of(p), err));
+    TRY(write_times(args, job, w, err));
+    return job->n > 1 || job->results[0].outcome == RUN_OK
+               ? STATUS_OK
+               : fail(err, STATUS_INTERNAL, "the simulation failed: %s", job->results[0].reason);
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -412,22 +420,7 @@ static Status run(const Args *args, Err *err)
         s.sim.forces = FORCES_YES;
     TRY(choose_parts(args, &s, &job, err));
     TRY(tower_open(&p, &s, job.has_parts ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err));
-    const Scenario *w = tower_record(tower_of(&p), 0);
-    warn_of_settings(&s, warn_on_stderr, NULL);
-    building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
-    Status status = lay_out_job(args, &job, scene_design(w->scene), err);
-    if (status == STATUS_OK)
-        status = check_history(args, &job, w, err);
-    if (status == STATUS_OK)
-        status = simulate(&p, &job, err);
-    if (status == STATUS_OK)
-        status = estimate(&p, &s, &job, err);
-    if (status == STATUS_OK)
-        status = print(args, &job, &s, tower_of(&p), err);
-    if (status == STATUS_OK)
-        status = write_times(args, &job, w, err);
-    if (status == STATUS_OK && job.n == 1 && job.results[0].outcome != RUN_OK)
-        status = fail(err, STATUS_INTERNAL, "the simulation failed: %s", job.results[0].reason);
+    const Status status = answer(args, &s, &p, &job, err);
     free(job.tasks);
     free(job.results);
     free(job.error);

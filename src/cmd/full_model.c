@@ -188,11 +188,8 @@ static Status take_designs(const Args *args, const char *folder, Job *job, Err *
 
 static Status check_wishes(const Args *args, Settings *s, const char *folder, Err *err)
 {
-    static const char *const OTHERS[] = {"--records", "--csv", "--svg", "--replicates"};
     const char *pga = args_value(args, "--pga");
-    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
-        if (args_has(args, OTHERS[i]))
-            return fail(err, STATUS_USAGE, "--full-model: leave %s out", OTHERS[i]);
+    TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
     if (!frame_is(s->building.model))
         return fail(err, STATUS_BAD_DATA,
                     "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
