@@ -453,6 +453,11 @@ static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
     return status;
 }
 
+static Status is_no_tower(Err *err)
+{
+    return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower but another problem: no ground motion applies");
+}
+
 /* word: of the run's designs, or one from elsewhere. */
 static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, const char *word, Err *err)
 {
@@ -463,7 +468,7 @@ static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, con
     if (is_own)
         run_steps(run, row, &s->sim);
     const Chosen c = {&run->schema, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
-    const Status status = evaluate(args, s, &c, err);
+    const Status status = s->problem.kind == PROBLEM_TOWER ? evaluate(args, s, &c, err) : is_no_tower(err);
     design_free(&other);
     return status;
 }
@@ -489,9 +494,8 @@ static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *
 {
     const char *word = args_value(args, "--design");
     TRY(run ? args_apply(args, s, NULL, NULL, err) : args_settings(args, s, NULL, NULL, err));
-    if (s->problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA,
-                    "problem.kind: is no tower but another problem: no ground motion applies, nor a full model");
+    if (s->problem.kind != PROBLEM_TOWER && !run)
+        return is_no_tower(err);
     if (args_has(args, "--full-model"))
         return show_full_model(args, s, run ? args->operand : NULL, err);
     return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
