@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include "evaluate/scenario.h"
+#include "motion/motion_scale.h"
 #include "scene/building.h"
 #include "bench/paper.h"
 
@@ -19,6 +21,16 @@ static inline SceneOptions paper_scene(void)
     Settings s;
     paper_defaults(&s);
     return settings_scene(&s);
+}
+
+/* With the record read. */
+static inline Status scenario_of(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err)
+{
+    Motion read;
+    TRY(motion_open(&read, record, err));
+    const Status status = scenario_open(w, o, record, &read, err);
+    motion_free(&read);
+    return status;
 }
 
 static inline Status load_model(Building *b, const char *model, Err *err)

@@ -15,7 +15,7 @@ static void open_scenario(Scenario *w, double x[22], double gap_m)
     snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 16;
     const SceneOptions options = settings_scene(&s);
-    CHECK_OK(scenario_open(w, &options, &s.motion, &err), &err);
+    CHECK_OK(scenario_of(w, &options, &s.motion, &err), &err);
     for (int j = 0; j < 20; j++)
         x[j] = gap_m * (j + 1);
     x[20] = 0.012;

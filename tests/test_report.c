@@ -16,6 +16,7 @@
 #include "store/run_read.h"
 #include "report/importance.h"
 #include "report/report.h"
+#include "scene_options.h"
 #include "settings/options.h"
 
 static char folder[64]; /* of this test program's files */
@@ -170,7 +171,7 @@ TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
     Err err = {0};
     History h;
     const SceneOptions options = settings_scene(tower.settings);
-    CHECK_OK(scenario_open(&w, &options, &tower.settings->motion, &err), &err);
+    CHECK_OK(scenario_of(&w, &options, &tower.settings->motion, &err), &err);
     for (int s = 0; s < 2; s++) {
         const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
         const SimResult *result = &report.detail.result[kind];

@@ -28,22 +28,13 @@ Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *r
     return status;
 }
 
-Status scenario_open_read(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read, Err *err)
+Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read, Err *err)
 {
     memset(w, 0, sizeof *w);
     w->options = *o;
     w->record = *record;
     TRY(motion_scale_copy(&w->motion, read, record, err));
     return build(w, err);
-}
-
-Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err)
-{
-    Motion read;
-    TRY(motion_open(&read, record, err));
-    const Status status = scenario_open_read(w, o, record, &read, err);
-    motion_free(&read);
-    return status;
 }
 
 void scenario_close(Scenario *w)

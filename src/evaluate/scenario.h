@@ -16,11 +16,8 @@ typedef struct {
     Scene *scene;
 } Scenario;
 
-Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err);
-
-/* The same with a copy of the record as motion_open read it. */
-Status scenario_open_read(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read,
-                          Err *err);
+/* With a copy of the record as motion_open read it. */
+Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read, Err *err);
 
 /* motion_scale of a copy. */
 Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err);

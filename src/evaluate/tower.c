@@ -107,7 +107,7 @@ static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
         status = read_record(r, &s->motion, err);
     if (status == STATUS_OK) {
         const SceneOptions options = settings_scene(s);
-        status = scenario_open_read(w, &options, &s->motion, &r->motion, err);
+        status = scenario_open(w, &options, &s->motion, &r->motion, err);
     }
     free(s);
     return status;
