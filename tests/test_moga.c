@@ -263,7 +263,8 @@ TEST(normalisation_finds_the_intercepts_of_a_plane)
     const double F[] = {12, 100, -5, 10, 104, -5, 10, 100, 5, 10.5, 101, 0};
     const size_t list[] = {0, 1, 2, 3};
     double ideal[3], width[3], plane[12];
-    Normalisation frame = {.n_obj = 3, .ideal = ideal, .width = width, .plane = plane};
+    int pivot[3];
+    Normalisation frame = {.n_obj = 3, .ideal = ideal, .width = width, .plane = plane, .pivot = pivot};
     normalisation_fit(&frame, 4, list, F);
     assert_close(width[0], 2, 1e-9);
     assert_close(width[1], 4, 1e-9);

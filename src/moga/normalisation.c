@@ -1,6 +1,7 @@
 #include "moga/normalisation.h"
 
 #include <float.h>
+#include <lapacke.h>
 #include <math.h>
 
 /* Best and worst of each objective; width = worst - best, 1 where all are equal. */
@@ -37,48 +38,22 @@ static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const si
     return found;
 }
 
-/* Gaussian elimination with row pivots of A (m, m + 1) in place; 0 if singular. Solution in the last column. */
-static int solve(size_t m, double A[])
-{
-    const size_t w = m + 1;
-    for (size_t c = 0; c < m; c++) {
-        size_t pivot = c;
-        for (size_t i = c + 1; i < m; i++)
-            if (fabs(A[i * w + c]) > fabs(A[pivot * w + c]))
-                pivot = i;
-        if (!(fabs(A[pivot * w + c]) > 1e-10))
-            return 0;
-        for (size_t j = 0; j < w; j++) {
-            const double kept = A[c * w + j];
-            A[c * w + j] = A[pivot * w + j];
-            A[pivot * w + j] = kept;
-        }
-        for (size_t i = 0; i < m; i++) {
-            const double share = i == c ? 0.0 : A[i * w + c] / A[c * w + c];
-            for (size_t j = c; share != 0.0 && j < w; j++)
-                A[i * w + j] -= share * A[c * w + j];
-        }
-    }
-    for (size_t c = 0; c < m; c++)
-        A[c * w + m] /= A[c * w + c];
-    return 1;
-}
-
 void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const double F[])
 {
-    const size_t m = q->n_obj, w = m + 1;
+    const size_t m = q->n_obj;
+    double *b = q->plane + m * m;
     normalisation_fit_range(q, n, list, F);
     for (size_t k = 0; k < m; k++) {
         const size_t i = extreme_point(q, k, n, list, F);
         for (size_t j = 0; j < m; j++)
-            q->plane[k * w + j] = normalised(q, j, F[i * m + j]);
-        q->plane[k * w + m] = 1.0;
+            q->plane[j * m + k] = normalised(q, j, F[i * m + j]);
+        b[k] = 1.0;
     }
-    if (!solve(m, q->plane))
+    if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, (int)m, 1, q->plane, (int)m, q->pivot, b, (int)m) != 0)
         return;
     for (size_t k = 0; k < m; k++) /* the plane sum_k z_k b_k = 1 cuts axis k at 1 / b_k, in units of the box */
-        if (!(q->plane[k * w + m] < 1e6 && q->plane[k * w + m] > 0.0))
+        if (!(b[k] < 1e6 && b[k] > 0.0))
             return;
     for (size_t k = 0; k < m; k++)
-        q->width[k] *= fmin(1.0 / q->plane[k * w + m], 1.0);
+        q->width[k] *= fmin(1.0 / b[k], 1.0);
 }

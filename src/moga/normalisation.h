@@ -14,7 +14,8 @@
 typedef struct {
     size_t n_obj;
     double *ideal, *width; /* (n_obj), the caller's */
-    double *plane;         /* (n_obj, n_obj + 1) scratch of normalisation_fit */
+    double *plane;         /* (n_obj + 1, n_obj) scratch of normalisation_fit */
+    int *pivot;            /* (n_obj) likewise */
 } Normalisation;
 
 /* From the rows list[0..n) of F (., n_obj), n >= 1. */

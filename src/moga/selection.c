@@ -32,6 +32,7 @@ static void layout(void *selection, Carve *c)
     s->normalisation.ideal = carve(c, m, sizeof(double));
     s->normalisation.width = carve(c, m, sizeof(double));
     s->normalisation.plane = carve(c, m * (m + 1), sizeof(double));
+    s->normalisation.pivot = carve(c, m, sizeof(int));
     s->rank = carve(c, n, sizeof(size_t));
     s->scratch = carve(c, 3 * n, sizeof(size_t));
     s->list = carve(c, n, sizeof(size_t));

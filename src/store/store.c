@@ -306,7 +306,7 @@ Status store_resume(RunStore *store, const Schema *schema, const Settings *used,
     if (status == STATUS_OK)
         status = tables_set_settings(store->db, used, &store->run, err);
     if (status == STATUS_OK && goes_on)
-        status = database_do(store->db, err, "UPDATE session SET is_final = 0 WHERE is_final", "");
+        status = database_do(store->db, err, "UPDATE session SET is_final = 0 WHERE is_final; DELETE FROM finer", "");
     TRY(commit(store, status, err));
     return make_ready(store, used, store->run.provenance, err);
 }

@@ -451,6 +451,19 @@ static Status know_named(Study *study, Err *err)
     return note_stop(study, named_simulate(study->store, &study->used, may_go_on, study, err), err);
 }
 
+/* Of a search that is cut short, where it takes a moment: who asked for the end does not wait for more. */
+static Status know_named_so_far(Study *study, Err *err)
+{
+    static const double SIMULATIONS = 150.0, MOMENT_S = 5.0; /* some ten for each of fifteen designs */
+    const StudySummary *sum = study->summary;
+    const double each = sum->busy_s / (double)(sum->n_simulated - sum->n_before);
+    size_t n_ranks;
+    if (study->failing || cluster_executor(&n_ranks) ||
+        !(each * SIMULATIONS <= MOMENT_S * adapter_threads(study->adapter)))
+        return STATUS_OK;
+    return named_simulate(study->store, &study->used, NULL, NULL, err);
+}
+
 /* What the knee is compared with, and what the front says about its gaps. */
 static Status find_baselines(Study *study, Err *err)
 {
@@ -479,6 +492,8 @@ static Status work(Study *study, Err *err)
     TRY(study_log_start(study->store, study->adapter, &study->used.search, study->summary->n_before, err));
     TRY(run_search(study, err));
     TRY(study->status);
+    if (study->summary->stopped == STOP_ASKED)
+        TRY(know_named_so_far(study, err));
     TRY(polish(study, err));
     TRY(know_named(study, err));
     return finish(study, err);

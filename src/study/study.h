@@ -15,7 +15,8 @@
  * Stops         when `stop` says so or after search.max_hours of this session (auto: study/job_limit.h), both asked
  *               between simulations: what is under way is finished, or dropped where an external worker takes seconds,
  *               and everything is stored
- * Names     the designs that it names in the end are simulated until their error is known (study/named.h)
+ * Names     the designs that it names in the end are simulated until their error is known (study/named.h), also of a
+ *           search that is interrupted, where that takes a moment
  * Polishes      search.polish spread-out designs of a finished run (study/final_polish.h), with a tenth of its
  *               simulations; not where that is too little to be of use
  * Reproducible  front.csv and the exports are the same bytes at any thread count; times stand elsewhere. */
