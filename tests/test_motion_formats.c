@@ -1434,7 +1434,7 @@ TEST(numbers_below_other_words_are_not_dropped_in_silence)
 {
     Motion m;
     Err err = {0};
-    Text t = joined(read_specimen("equals.at2"), (Text){strdup("Some words\n 1.0 2.0\n"), 21});
+    Text t = joined(read_specimen("equals.at2"), (Text){strdup("Some words\n 1.0 2.0\n"), 20});
     assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, "more numbers, below words, than the header announces"))
         fail_msg("%s", err.text);

@@ -169,9 +169,10 @@ typedef struct {
 
 #define MAGNITUDE(x) ((v4)((m4)(x)&INT64_MAX)) /* all but the sign */
 
-/* Raises the largest |u| to what is in the interval from `begin` to y, where |u| may be larger than it was so far and is
- * at both ends: where |u''| <= c, u lies less than dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j there, is
- * a free vibration: c^2 = r^2 + (j / w)^2. A good bound for periods much longer than dt; `bounded` by the other one. */
+/* Raises the largest |u| to what is in the interval from `begin` to y, where |u| may be larger than it was so far and
+ * is at both ends: where |u''| <= c, u lies less than dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j
+ * there, is a free vibration: c^2 = r^2 + (j / w)^2. A good bound for periods much longer than dt; `bounded` by the
+ * other one. */
 static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const Flow4 *g, const State4 *begin,
                                                   State4 *y, double a, double slope, const m4 *bounded)
 {
@@ -222,19 +223,17 @@ CLONED_AVX static void largest_displacements(const Motion *m, const Oscillator o
 
 void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], double psa[])
 {
-    const size_t groups = (n + LANES - 1) / LANES;
 #pragma omp parallel for schedule(dynamic)
-    for (size_t i = 0; i < groups; i++) {
+    for (size_t first = 0; first < n; first += LANES) {
         Oscillator o[LANES];
         double largest[LANES];
-        const size_t here = n - i * LANES < LANES ? n - i * LANES : LANES;
         for (size_t k = 0; k < LANES; k++) { /* idle lanes repeat the last one */
-            const double period = T[i * LANES + (k < here ? k : here - 1)], w = 2 * M_PI / (period > 0 ? period : 1);
+            const double period = T[first + k < n ? first + k : n - 1], w = 2 * M_PI / (period > 0 ? period : 1);
             o[k] = (Oscillator){.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
         }
         largest_displacements(m, o, largest);
-        for (size_t k = 0; k < here; k++) /* a rigid one moves with the ground */
-            psa[i * LANES + k] = T[i * LANES + k] > 0 ? o[k].w * o[k].w * largest[k] : motion_peak(m);
+        for (size_t k = 0; k < LANES && first + k < n; k++) /* a rigid one moves with the ground */
+            psa[first + k] = T[first + k] > 0 ? o[k].w * o[k].w * largest[k] : motion_peak(m);
     }
 }
 

@@ -338,7 +338,6 @@ static int says_corrected(const Lines *l)
  * building apart. */
 static void take_name(const Header *h, Channel *c)
 {
-    char own[sizeof c->name];
     const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
     const char *from = name->from, *to = from;
     if (!from)
@@ -351,6 +350,7 @@ static void take_name(const Header *h, Channel *c)
     for (from = place->from; from && from < place->to && strchr(" :=", *from);)
         from++;
     if (from) {
+        char own[sizeof c->name];
         memcpy(own, c->name, sizeof own);
         channel_named(c, "%s, %.*s", own, (int)(place->to - from), from);
     }

@@ -162,8 +162,7 @@ void channel_unit(Channel *c, const char *from, const char *to)
         const char **end = i ? &all : &word;
         while (*end > from && strchr(" .", (*end)[-1]))
             --*end;
-        const size_t n = (size_t)(*end - from);
-        const int tenths = n == 4 && find_word(from, *end, "g/10"), mm = n == 6 && find_word(from, *end, "mm/s/s");
+        const int tenths = text_is(EQUALS, from, *end, "g/10"), mm = text_is(EQUALS, from, *end, "mm/s/s");
         c->unit = tenths ? UNIT_G : mm ? UNIT_CM_S2 : unit_of(from, *end);
         if (tenths || mm)
             c->scale *= 0.1;
