@@ -38,6 +38,19 @@ static void write_designs(const char *name, int n, const double gap[], const dou
 
 /* ---------------------------------------------------------------------------------------------- help and usage --- */
 
+/* It is there, but leads nowhere: its own name is no help. */
+TEST(a_name_that_is_there_is_not_suggested)
+{
+    Said said;
+    char command[256];
+    snprintf(command, sizeof command, "ln -s loop2 '%s/loop1' && ln -s loop1 '%s/loop2'", place.folder, place.folder);
+    assert_int_equal(system(command), 0);
+    run(&said, "spectrum @/loop1");
+    if (said.code != 66 || strstr(said.err, "did you mean"))
+        fail_msg("%d: %s", said.code, said.err);
+    forget(&said);
+}
+
 TEST(every_command_explains_itself_with_an_example_first)
 {
     static const char *const COMMANDS[] = {"",         "optimize", "simulate", "evaluate", "export",

@@ -96,6 +96,15 @@ static void draw_together(Hypervolume *h)
     join_levels(h);
 }
 
+void hypervolume_box(size_t n_obj, double lower[], double reference[])
+{
+    for (size_t k = 0; k < n_obj; k++) {
+        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1.0;
+        lower[k] -= 0.2 * range;
+        reference[k] = fmax(reference[k], lower[k] + range);
+    }
+}
+
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
                           uint32_t seed, Err *err)
 {

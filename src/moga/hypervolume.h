@@ -19,6 +19,9 @@ enum { HYPERVOLUME_SAMPLES = 20000 };
 
 typedef struct Hypervolume Hypervolume;
 
+/* The least and the largest values of some designs become a box about them: from a fifth of their range below. */
+void hypervolume_box(size_t n_obj, double lower[], double reference[]);
+
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
                           uint32_t seed, Err *err);
 void hypervolume_add(Hypervolume *h, const double f[]);          /* (n_obj) minimised */

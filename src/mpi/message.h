@@ -21,6 +21,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <time.h>
 
 #include "evaluate/cluster.h"
 
@@ -79,6 +80,10 @@ static inline double longer_pause(double pause, double longest)
     return pause * 1.5 < longest ? pause * 1.5 : longest;
 }
 static const double PAUSE_MIN_S = 2e-5;
+static inline void pause_s(double seconds)
+{
+    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);
+}
 
 extern const Executor EXECUTOR_RANKS; /* ranks.c */
 

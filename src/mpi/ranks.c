@@ -5,7 +5,6 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "base/clock.h"
 #include "evaluate/tasks.h"
@@ -57,11 +56,6 @@ typedef struct {
     int is_running;
     pthread_t thread;
 } Ranks;
-
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);
-}
 
 /* -- receiving ----------------------------------------------------------------------------------------------------- */
 
@@ -276,7 +270,7 @@ static void *exchange(void *user)
         look_after(r);
         pause = moved > 0 ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
         if (moved == 0)
-            rest(pause);
+            pause_s(pause);
     }
     return NULL;
 }
@@ -309,7 +303,7 @@ static Status receive_opened(Ranks *r, double until, int n_open, int *from, int 
         if (clock_seconds() > until)
             return fail(err, STATUS_INTERNAL, "only %d of %d ranks have opened the problem within %g s", n_open, r->n,
                         OPEN_S);
-        rest(PAUSE_MAX_S);
+        pause_s(PAUSE_MAX_S);
     }
     return *tag != TAG_OPENED || n == sizeof(OpenedMessage)
                ? STATUS_OK

@@ -2,7 +2,6 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "base/clock.h"
 #include "mpi/message.h"
@@ -268,11 +267,6 @@ static size_t n_busy(Service *s)
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);
-}
-
 static Status exchange(Service *s, Err *err)
 {
     double pause = PAUSE_MIN_S;
@@ -289,7 +283,7 @@ static Status exchange(Service *s, Err *err)
         if (is_busy && clock_seconds() > s->sent_s + ALIVE_S)
             say(s, TAG_ALIVE, NULL, 0);
         pause = longer_pause(pause, is_busy ? PAUSE_BUSY_S : PAUSE_IDLE_S);
-        rest(pause);
+        pause_s(pause);
     }
     return STATUS_OK;
 }
@@ -300,7 +294,7 @@ static int all_end(Service *s)
     const double until = clock_seconds() + FAREWELL_S;
     s->stopped = 1;
     while (n_busy(s) > 0 && clock_seconds() < until)
-        rest(1e-3);
+        pause_s(1e-3);
     return n_busy(s) == 0;
 }
 

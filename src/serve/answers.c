@@ -57,12 +57,6 @@ json_t *answer_front(const Look *look)
 
 /* -- two runs ------------------------------------------------------------------------------------------------------ */
 
-static void minimised(const Run *run, size_t row, double f[])
-{
-    for (size_t k = 0; k < run->schema.n_obj; k++)
-        f[k] = schema_objective(&run->schema, k)->sense * run_f(run, row)[k];
-}
-
 /* Of both fronts: from a fifth of their range below the best to the worst. */
 static void box_of(const Look *const look[2], double lower[], double reference[])
 {
@@ -74,17 +68,13 @@ static void box_of(const Look *const look[2], double lower[], double reference[]
     }
     for (int r = 0; r < 2; r++)
         for (size_t i = 0; i < look[r]->run.n_front; i++) {
-            minimised(&look[r]->run, look[r]->run.front[i], f);
+            run_minimise(&look[r]->run, look[r]->run.front[i], f);
             for (size_t k = 0; k < m; k++) {
                 lower[k] = fmin(lower[k], f[k]);
                 reference[k] = fmax(reference[k], f[k]);
             }
         }
-    for (size_t k = 0; k < m; k++) {
-        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1;
-        lower[k] -= 0.2 * range;
-        reference[k] = fmax(reference[k], lower[k] + range);
-    }
+    hypervolume_box(m, lower, reference);
 }
 
 /* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each row.
@@ -116,7 +106,7 @@ static Status growth_in(const Run *run, const double lower[], const double refer
     size_t *first = rows_by_generation(run, n);
     for (size_t g = 0; g < run->n_generations && first; g++) {
         for (size_t i = first[run->generation[g].number]; i < run->table.n; i = first[n + i]) {
-            minimised(run, i, f);
+            run_minimise(run, i, f);
             hypervolume_add(h, f);
         }
         simulated = json_append(simulated, json_integer(run->generation[g].simulated));

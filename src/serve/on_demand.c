@@ -344,8 +344,7 @@ static void set_place(const Run *run, const double natural[], json_t *answer)
     for (size_t k = 0; k < m; k++)
         f[k] = schema_objective(&run->schema, k)->sense * natural[k];
     for (size_t i = 0; i < run->n_front; i++) {
-        for (size_t k = 0; k < m; k++)
-            other[k] = schema_objective(&run->schema, k)->sense * run_f(run, run->front[i])[k];
+        run_minimise(run, run->front[i], other);
         by += dominates(m, other, f) != 0;
         of += dominates(m, f, other) != 0;
     }

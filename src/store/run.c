@@ -83,7 +83,7 @@ static double minimised(const Run *run, size_t row, size_t k)
 
 /* -- which designs are on the front -------------------------------------------------------------------------------- */
 
-static void minimise(const Run *run, size_t row, double f[])
+void run_minimise(const Run *run, size_t row, double f[])
 {
     for (size_t k = 0; k < run->schema.n_obj; k++)
         f[k] = minimised(run, row, k);
@@ -103,8 +103,8 @@ static void admit_polished(Run *run)
         for (size_t j = 0; j < run->table.n && place[i].on_front; j++) {
             if (j == i || !place[j].on_front)
                 continue;
-            minimise(run, i, a);
-            minimise(run, j, b);
+            run_minimise(run, i, a);
+            run_minimise(run, j, b);
             if (dominates(m, a, b))
                 place[j].on_front = 0;
             else if (dominates(m, b, a))
@@ -125,7 +125,7 @@ static Status form_again(Run *run, Err *err)
         p->on_front = 0;
         if (!p->ok || p->entered == NEVER || run->table.row[i].violation > 0.0)
             continue;
-        minimise(run, i, F + i * run->schema.n_obj);
+        run_minimise(run, i, F + i * run->schema.n_obj);
         status = nd_tree_insert(tree, F, i, &change, err);
         p->on_front = change.is_in;
         for (size_t k = 0; status == STATUS_OK && k < change.n_removed; k++)

@@ -85,8 +85,9 @@ typedef struct {
 
 void run_free(Run *run);
 
-const double *run_x(const Run *run, size_t row); /* (n_var) */
-const double *run_f(const Run *run, size_t row); /* (n_obj) */
+const double *run_x(const Run *run, size_t row);           /* (n_var) */
+const double *run_f(const Run *run, size_t row);           /* (n_obj) */
+void run_minimise(const Run *run, size_t row, double f[]); /* the same, minimised */
 
 /* Likely errors (n_obj) of the integration that are stored with the design; NAN where there is none. Returns whether
  * any is there. */

@@ -394,10 +394,8 @@ static Status create_cover(RunStore *store, const SearchView *v, Err *err)
                 lower[k] = fmin(lower[k], v->Y[i * v->n_obj + k]);
                 reference[k] = fmax(reference[k], v->Y[i * v->n_obj + k]);
             }
-        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1.0;
-        lower[k] -= 0.2 * range;
-        reference[k] = fmax(reference[k], lower[k] + range);
     }
+    hypervolume_box(v->n_obj, lower, reference);
     return hypervolume_create(&store->hypervolume, v->n_obj, lower, reference, 1, err);
 }
 
