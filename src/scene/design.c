@@ -86,29 +86,39 @@ static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *
         snprintf(name, TABLE_NAME_MAX, "%s_%02d_%s", stem, i + 1, unit);
 }
 
+/* The variables in their order. */
+typedef enum { GAP, WALL, BUMPER, SIDE } Group;
+
+/* Of variable j, which becomes its number in the group. */
+static Group group_of(const DesignSpace *s, int *j)
+{
+    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers};
+    Group group = GAP;
+    for (; group < SIDE && *j >= n[group]; group++)
+        *j -= n[group];
+    return group;
+}
+
 void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX])
 {
-    if (j < s->n_gaps)
+    const Group group = group_of(s, &j);
+    if (group == GAP)
         zoned_name(name, "gap", "m", s->gap_zones, j);
-    else if (j < s->n_gaps + s->n_walls)
-        snprintf(name, TABLE_NAME_MAX, "%s", j == s->n_gaps ? "t_base_m" : "t_top_m");
-    else if (j < s->n_gaps + s->n_walls + s->n_bumpers)
-        zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j - s->n_gaps - s->n_walls);
+    else if (group == BUMPER)
+        zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j);
     else
-        snprintf(name, TABLE_NAME_MAX, "side_m");
+        snprintf(name, TABLE_NAME_MAX, "%s", group == SIDE ? "side_m" : j == 0 ? "t_base_m" : "t_top_m");
 }
 
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
 {
-    const int wall = s->n_gaps, bumper = wall + s->n_walls, side = bumper + s->n_bumpers;
+    const NumberList *const lists[] = {&o->gap_m, &o->thickness_m, &o->bumper_n_m, &o->width_m};
     for (int j = 0; j < s->n_var; j++) {
-        const NumberList *l = j < wall     ? &o->gap_m
-                              : j < bumper ? &o->thickness_m
-                              : j < side   ? &o->bumper_n_m
-                                           : &o->width_m;
-        const int is_log = j >= bumper && j < side;
-        lower[j] = is_log ? log10(l->at[0]) : l->at[0];
-        upper[j] = is_log ? log10(l->at[1]) : l->at[1];
+        int i = j;
+        const Group group = group_of(s, &i);
+        const double *l = lists[group]->at;
+        lower[j] = group == BUMPER ? log10(l[0]) : l[0];
+        upper[j] = group == BUMPER ? log10(l[1]) : l[1];
     }
 }
 
@@ -160,27 +170,26 @@ static Status check_names(const Table *t, const char *path, const DesignSpace *s
 
 static Status check_values(const Designs *d, const char *path, Err *err)
 {
-    char name[TABLE_NAME_MAX];
-    const DesignSpace *s = &d->space;
-    for (size_t i = 0; i < d->n; i++)
-        for (int j = 0; j < s->n_var; j++) {
-            const double value = d->x[i * (size_t)s->n_var + (size_t)j];
-            const int walls_end = s->n_gaps + s->n_walls, is_log = j >= walls_end && j < walls_end + s->n_bumpers;
-            design_variable_name(s, j, name);
-            if (isnan(value))
-                return fail(err, STATUS_BAD_DATA, "%s:%d: column %d of %d is missing", path, d->line[i], j + 1,
-                            s->n_var);
-            if (j < s->n_gaps && value < 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a gap is not negative", path, d->line[i], name,
-                            value);
-            if (is_log && !(value > 0 && value < 15))
-                return fail(err, STATUS_BAD_DATA,
-                            "%s:%d: %s is %g; it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m", path,
-                            d->line[i], name, value);
-            if (j >= s->n_gaps && value <= 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s must be above 0", path, d->line[i], name, value,
-                            j < walls_end ? "a thickness" : "it");
-        }
+    static const char *const MUST[] = {
+        [GAP] = "a gap is not negative",
+        [WALL] = "a thickness must be above 0",
+        [BUMPER] = "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m",
+        [SIDE] = "it must be above 0",
+    };
+    const size_t n_var = (size_t)d->space.n_var;
+    for (size_t i = 0; i < d->n * n_var; i++) {
+        char name[TABLE_NAME_MAX];
+        const double value = d->x[i];
+        int j = (int)(i % n_var);
+        if (isnan(value))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: column %d of %zu is missing", path, d->line[i / n_var], j + 1,
+                        n_var);
+        design_variable_name(&d->space, j, name);
+        const Group group = group_of(&d->space, &j);
+        if (group == GAP ? value < 0 : !(value > 0 && (group != BUMPER || value < 15)))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s", path, d->line[i / n_var], name, value,
+                        MUST[group]);
+    }
     return STATUS_OK;
 }
 
