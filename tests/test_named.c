@@ -147,6 +147,21 @@ TEST(a_run_that_goes_on_names_anew)
     free(after);
 }
 
+TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
+{
+    free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --evals 60"));
+    Run run = run_here();
+    size_t rows[OBJECTIVES_MAX + 1];
+    const size_t n = named_of(&run, rows);
+    int has_joined = 0;
+    for (size_t i = 0; i < run.table.n; i++)
+        has_joined |= run.table.row[i].kind == KIND_POLISHED && run.place[i].on_front;
+    for (size_t i = 0; i < n && has_joined; i++)
+        assert_non_null(run.table.row[rows[i]].err);
+    assert_true(has_joined);
+    run_free(&run);
+}
+
 static int stop_after(void *user)
 {
     int left;

@@ -7,6 +7,7 @@
 #include "cmd/show.h"
 #include "store/run_read.h"
 #include "store/store.h"
+#include "study/named.h"
 #include "study/refine.h"
 #include "settings/options.h"
 
@@ -175,6 +176,8 @@ static Status store_better(Work *w, long *id, long *knee, Err *err)
     Run now;
     TRY(store_polished(w->store, &w->result.designs.row[1], (size_t)w->run->tried_to_polish,
                        (size_t)w->run->polished_at, id, err));
+    if (w->run->n_sessions > 0 && w->run->session[w->run->n_sessions - 1].is_final) /* else its search goes on */
+        TRY(named_simulate(w->store, w->run->settings, NULL, NULL, err));
     TRY(store_write_front(w->store, &now, err));
     *knee = now.table.row[run_knee(&now)].id;
     run_free(&now);

@@ -659,6 +659,7 @@ Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *er
 {
     Status status = begin(store, err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = rows_insert(store->db, ROWS_FINER, store->schema, &better[i], err);
+        status =
+            rows_insert(store->db, ROWS_FINER, store->schema ? store->schema : &store->run.schema, &better[i], err);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }

@@ -398,6 +398,8 @@ static Status finish(Study *study, Err *err)
     RunStore *store = study->store;
     study->store = NULL;
     TRY(store_close(store, why, is_final, session, is_final ? study->options->run : NULL, err));
+    if (is_final && study->options->run) /* which was formed again */
+        sum->n_front = study->options->run->n_front;
     if (sum->stopped == STOP_FAILURES)
         return fail(
             err, STATUS_INTERNAL,
