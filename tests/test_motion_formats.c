@@ -1489,6 +1489,13 @@ TEST(a_stated_foreign_quantity_is_not_overruled_by_an_option)
         STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "the unit 'M/S' of its acceleration is not known"));
     free(t.text);
+    const MotionHow gain = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 100};
+    Motion m;
+    t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, ADC", 1);
+    CHECK_OK(motion_parse(&m, "there", t.text, t.length, &gain, &err), &err);
+    assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-6);
+    motion_free(&m);
+    free(t.text);
 }
 
 TEST(two_units_in_one_file_are_refused)

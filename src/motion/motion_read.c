@@ -55,7 +55,8 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
             "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
             "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
             path);
-    if (c->stated[0] && !c->counts)
+    const int is_gain_of_words = how->unit == UNIT_COUNTS && !is_quantity(c->stated, c->stated + strlen(c->stated));
+    if (c->stated[0] && !c->counts && !is_gain_of_words) /* "adc" may be counts, kN may not */
         return fail(err, STATUS_BAD_DATA,
                     "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and write that "
                     "unit in its place",
