@@ -244,7 +244,7 @@ static const struct {
     {"three.csmip.v2", "of accel data", "of veloc data", ":46: not an acceleration"},
     {"film.csmip.v1", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
     {"film.csmip.v1", "  0.150 -1", "  0.950 -1", "does not come after 0.95 s"},
-    {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "digitized from film in steps of 0.002 to 0.018 s"},
+    {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "digitized from film, where its trace bends; have it resampled"},
     {"film.csmip.v1", "SEC AND G/10", "SEC AND INCHES", "the unit 'INCHES' of its acceleration is not known"},
     {"three.csmip.v1", "in units of g .      ", "in units of mg .     ",
      "the unit 'mg' of its acceleration is not known"},

@@ -46,7 +46,6 @@ typedef struct {
 } Noise;
 
 typedef struct {
-    const char *name;
     double duration_s, pga_m_s2;
     uint32_t key; /* of the random stream */
     Noise noise;
@@ -55,9 +54,9 @@ typedef struct {
 } Model;
 
 /* clang-format off */
+enum { BUILTIN_MOTION_LIST(CHOICE_NAME) };
 static const Model MODELS[] = {
-    {.name = "kobe-like",
-     .duration_s = 32,
+    [KOBE] = {.duration_s = 32,
      .pga_m_s2 = 8.18,
      .key = 186,
      /* white m/s2; begin, rise, plateau, decay s; layer Hz, -; high pass Hz, - */
@@ -83,8 +82,7 @@ static const Model MODELS[] = {
          { 0.2801,  14.150,  2.3165,   0.120,  4.719},
          { 0.1538,  18.139,  0.9091,  -2.264,  1.593},
      }},
-    {.name = "elcentro-like",
-     .duration_s = 40,
+    [ELCENTRO] = {.duration_s = 40,
      .pga_m_s2 = 3.42,
      .key = 15,
      /* white m/s2; begin, rise, plateau, decay s; layer Hz, -; high pass Hz, - */
@@ -110,8 +108,7 @@ static const Model MODELS[] = {
          { 0.0807,  25.414,  2.0557,   2.615,  6.728},
          { 0.0962,  26.357,  0.9141,   1.414,  1.602},
      }},
-    {.name = "sylmar-like",
-     .duration_s = 24,
+    [SYLMAR] = {.duration_s = 24,
      .pga_m_s2 = 8.27,
      .key = 33,
      /* white m/s2; begin, rise, plateau, decay s; layer Hz, -; high pass Hz, - */
@@ -221,14 +218,6 @@ static void normalize(double pga, size_t n, double accel[])
         accel[i] = rint(accel[i] * (pga / peak) * 1e6) / 1e6;
 }
 
-static const Model *find_model(const char *name)
-{
-    for (size_t k = 0; k < sizeof MODELS / sizeof *MODELS; k++)
-        if (strcmp(name, MODELS[k].name) == 0)
-            return &MODELS[k];
-    return NULL;
-}
-
 const char *builtin_name(const char *source)
 {
     static const char PREFIX[] = "builtin:";
@@ -238,11 +227,14 @@ const char *builtin_name(const char *source)
 Status builtin_motion(Motion *m, const char *source, Err *err)
 {
     static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
-    const Model *model = find_model(builtin_name(source));
+    enum { N = sizeof NAMES / sizeof NAMES[0] };
+    int k = 0;
+    while (k < N && strcmp(source, NAMES[k]) != 0)
+        k++;
     memset(m, 0, sizeof *m);
-    if (!model)
-        return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES,
-                            sizeof NAMES / sizeof NAMES[0]);
+    if (k == N)
+        return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, N);
+    const Model *model = &MODELS[k];
     m->n = (size_t)lround(model->duration_s / DT_S) + 1;
     m->dt_s = DT_S;
     m->accel = malloc(m->n * sizeof *m->accel);
@@ -251,7 +243,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
     generate(model, m->n, m->accel);
     normalize(model->pga_m_s2, m->n, m->accel);
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);
-    snprintf(m->name, sizeof m->name, "builtin:%s", model->name);
+    snprintf(m->name, sizeof m->name, "%s", source);
     snprintf(m->format, sizeof m->format, "builtin");
     return STATUS_OK;
 }

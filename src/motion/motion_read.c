@@ -243,20 +243,6 @@ static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err 
         s->is_timed ? "" : "name the column of its times time_s and ");
 }
 
-/* Film is digitized where its trace bends. */
-static Status fail_digitized(const Series *s, Err *err)
-{
-    double shortest = HUGE_VAL, longest = 0;
-    for (size_t i = 1; i < s->n; i++) {
-        shortest = fmin(shortest, step_before(s, i));
-        longest = fmax(longest, step_before(s, i));
-    }
-    return fail(err, STATUS_BAD_DATA,
-                "%s:%d: digitized from film in steps of %.3g to %.3g s; have it resampled by straight lines: --set "
-                "motion.dt_s=0.005",
-                s->path, row_at(s, 0)->line, shortest, longest);
-}
-
 /* Times on film may coincide in the digits that are printed. */
 static Status times_increase(const Series *s, int digitized, Err *err)
 {
@@ -399,7 +385,11 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     if (c->other_dt > 0 && fabs(dt - c->other_dt) * (double)c->n < 0.1 * dt) /* printed times have fewer digits */
         dt = c->other_dt;
     if (status != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
-        return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
+        return c->digitized ? fail(err, status,
+                                   "%s:%d: digitized from film, where its trace bends; have it resampled by straight "
+                                   "lines: --set motion.dt_s=0.005",
+                                   path, row_at(&s, 0)->line)
+                            : fail(err, status, "%s", uneven.text);
     TRY(settle_unit(path, c, how, &unit, &to_m_s2, err));
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     const double offset = offset_of(c, &s);
