@@ -369,6 +369,10 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
     assert_string_equal(streamed, csv);
     free(streamed);
     assert_int_equal(json_array_size(list), 2);
+    char *table = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv");
+    assert_non_null(strstr(table, "\ntwo.csv:2  "));
+    assert_null(strstr(table, "e+0"));
+    free(table);
     char *names = strdup(strsep(&rest, "\n"));
     assert_int_equal(strncmp(names, "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,", 72),
                      0);

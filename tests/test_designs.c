@@ -88,7 +88,9 @@ TEST(designs_off_the_front_stay_addressable)
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
     free(output_of(word));
     snprintf(word, sizeof word, "polish @/run --design %ld --evals 24", known.off);
-    free(output_of(word));
+    char *said = output_of(word);
+    assert_int_equal(strstr(said, "No improvement was found") != NULL, strstr(said, "\npolished") == NULL);
+    free(said);
 }
 
 TEST(evaluate_without_a_record_takes_those_of_the_run)
@@ -207,6 +209,32 @@ TEST(choose_limits_any_result_of_a_run)
     run_free(&h);
     expect(2, "did you mean drift_ratio?", "choose @/run --max drift_rato=1");
     expect(69, "this run has no base_shear_n of its designs", "choose @/run --max base_shear_n=1");
+}
+
+/* By a result that the knee is not the best in. */
+TEST(a_knee_within_limits_is_told_from_that_of_the_front)
+{
+    static const char *const NAMES[] = {"j1_m", "j2_m", "j3_g", "mcore_kg"};
+    char words[200] = "", wanted[100], best[32];
+    size_t i;
+    json_t *o = json_of("choose @/run --json"), *list = json_object_get(o, "designs"), *pick;
+    const json_t *knee = json_object_get(json_array_get(list, 0), "objectives");
+    json_array_foreach(list, i, pick) for (int k = 0; k < 4; k++)
+    {
+        snprintf(best, sizeof best, "best_%s", NAMES[k]);
+        if (strcmp(json_string_value(json_object_get(pick, "name")), best) == 0 && number(pick, "id") != known.knee)
+            snprintf(words, sizeof words, "choose @/run --max %s=%.17g", NAMES[k],
+                     nextafter(number(knee, NAMES[k]), 0));
+    }
+    json_decref(o);
+    assert_true(words[0]);
+    snprintf(wanted, sizeof wanted, "of the whole front, is design %ld\n", known.knee);
+    char *said = output_of("choose @/run");
+    assert_null(strstr(said, wanted));
+    free(said);
+    said = output_of(words);
+    assert_non_null(strstr(said, wanted));
+    free(said);
 }
 
 TEST(words_that_name_nothing_are_refused_with_what_is_there)

@@ -17,6 +17,8 @@
 #include "report/importance.h"
 #include "report/report.h"
 #include "scene_options.h"
+#include "settings/settings.h"
+#include "report/words.h"
 #include "settings/options.h"
 
 static char folder[64]; /* of this test program's files */
@@ -285,6 +287,56 @@ TEST(growth_is_the_hypervolume_that_status_tells)
     }
     run_free(&run);
     json_decref(page);
+}
+
+TEST(the_page_has_the_errors_of_front_csv)
+{
+    Table t;
+    Err err = {0};
+    json_t *page = run_of("tower");
+    char path[600];
+    snprintf(path, sizeof path, "%s/front.csv", in_folder("tower"));
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    const json_t *names = json_object_get(json_object_get(page, "schema"), "objectives");
+    const json_t *errors = json_object_get(page, "chosen_error");
+    const double chosen = json_number_value(json_object_get(page, "chosen"));
+    size_t row = 0;
+    while (row < t.n_rows && t.values[row * t.n_cols] != chosen)
+        row++;
+    assert_less(row, t.n_rows);
+    for (size_t k = 0; k < json_array_size(names); k++) {
+        char name[64];
+        snprintf(name, sizeof name, "err_%s", json_string_value(json_object_get(json_array_get(names, k), "name")));
+        const int column = table_column(&t, name);
+        assert_at_most(0, column);
+        assert_close(json_number_value(json_array_get(errors, k)), t.values[row * t.n_cols + (size_t)column], 1e-5);
+    }
+    assert_string_equal(json_string_value(json_object_get(page, "rule")), "");
+    table_free(&t);
+    json_decref(page);
+}
+
+TEST(an_objective_of_several_simulations_says_of_which)
+{
+    static const struct {
+        const char *records, *robust, *wanted;
+        long replicates;
+    } CASES[] = {{"none", "worst", "", 1},
+                 {"none", "worst", "mean of 4 replicates", 4},
+                 {"a.csv, b.csv", "worst", "worst of 3 records", 1},
+                 {"a.csv, b.csv", "mean", "mean of 3 records x 4 replicates", 4},
+                 {"a.csv", "0.9", "quantile 0.9 of 2 records x 8 replicates", 8}};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        Settings s;
+        Err err = {0};
+        char text[RULE_WORDS_MAX];
+        settings_defaults(&s);
+        CHECK_OK(settings_put(&s, "motion.records", CASES[i].records, &err), &err);
+        CHECK_OK(settings_put(&s, "sim.robust", CASES[i].robust, &err), &err);
+        s.sim.replicates = CASES[i].replicates;
+        words_of_rule(&s, text);
+        assert_string_equal(text, CASES[i].wanted);
+    }
 }
 
 static int is_among(size_t row, size_t n, const size_t rows[])

@@ -272,7 +272,7 @@ static void print_motion(const Evaluations *e, size_t i)
 static void add_case(json_t *table, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
 {
     char label[160] = "", device[DEVICE_TEXT_MAX] = "";
-    if (c >= N_EVALUATED)
+    if (c == EVALUATED_TMD || c == EVALUATED_LINKS)
         baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c].device, device);
     snprintf(label, sizeof label, "%s%s%s%s", EVALUATION_CASES[c].word, *device ? " (" : "", device,
              *device ? ")" : "");

@@ -22,28 +22,23 @@ static void write_row(const Writing *w, const double x[], const double f[])
 {
     const Schema *schema = adapter_schema(w->adapter);
     double exact[OBJECTIVES_MAX];
-    for (size_t j = 0; j < schema->n_var; j++) {
-        fputs(j ? "," : "", w->f);
-        print_number(w->f, x[j]);
-    }
     textbook_exact(adapter_problem(w->adapter), x, exact);
-    for (int pass = !w->noisy; pass < 2; pass++)
-        for (size_t k = 0; k < schema->n_obj; k++) {
-            fputc(',', w->f);
-            print_number(w->f, pass ? exact[k] : f[k]);
-        }
+    print_number(w->f, x[0]);
+    print_cells(w->f, schema->n_var - 1, x + 1);
+    print_cells(w->f, w->noisy ? schema->n_obj : 0, f);
+    print_cells(w->f, schema->n_obj, exact);
     fputc('\n', w->f);
 }
 
 static void write_header(const Writing *w)
 {
     const Schema *schema = adapter_schema(w->adapter);
-    for (size_t j = 0; j < schema->n_var; j++)
-        fprintf(w->f, "%s%s", j ? "," : "", schema_variable(schema, j)->name);
-    for (size_t k = 0; w->noisy && k < schema->n_obj; k++)
-        fprintf(w->f, ",seen_%s", schema_objective(schema, k)->name);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        fprintf(w->f, ",%s", schema_objective(schema, k)->name);
+    fputs(schema->column[0].name, w->f);
+    for (size_t j = 1; j < schema->n_var; j++)
+        fprintf(w->f, ",%s", schema->column[j].name);
+    for (int pass = !w->noisy; pass < 2; pass++)
+        for (size_t k = 0; k < schema->n_obj; k++)
+            fprintf(w->f, ",%s%s", pass ? "" : "seen_", schema_objective(schema, k)->name);
     fputc('\n', w->f);
 }
 
