@@ -364,6 +364,19 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
 
 /* -- baselines of a tower ------------------------------------------------------------------------------------------ */
 
+/* By an integrator of its own, under record r. */
+static void run_alone(const Problem *p, size_t r, SceneKind kind, const double x[], const LinearDevice *device,
+                      SimResult *result)
+{
+    SimWorker *w;
+    Err err = {0};
+    CHECK_OK(sim_worker_create(&w, tower_record(tower_of(p), r)->scene, &err), &err);
+    if (device)
+        sim_worker_device(w, device);
+    CHECK_OK(sim_run(w, kind, x, result, &err), &err);
+    sim_worker_free(w);
+}
+
 static void open_tower(Problem *p, const char *records, Robust robust, long threads)
 {
     Settings s;
@@ -398,8 +411,7 @@ TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_thre
         for (int k = BASELINE_NO_CORE; k <= BASELINE_RIGID; k++) {
             SimResult each[2];
             for (size_t r = 0; r < 2; r++)
-                CHECK_OK(sim_run(tower_worker(tower_of(&p), r, 0), k ? SCENE_RIGID : SCENE_NO_CORE, x, &each[r], &err),
-                         &err);
+                run_alone(&p, r, k ? SCENE_RIGID : SCENE_NO_CORE, x, NULL, &each[r]);
             assert_close(both[i][k].value[0],
                          i == 1 ? 0.5 * (each[0].j1_m + each[1].j1_m) : fmax(each[0].j1_m, each[1].j1_m), 1e-12);
         }
@@ -437,9 +449,7 @@ TEST(devices_are_better_than_none_and_than_their_neighbours)
             d.tmd_hz *= i == 0 ? 1.3 : i == 1 ? 0.75 : 1;
             d.tmd_damping *= i == 2 ? 2 : i == 3 ? 0.5 : 1;
             d.link_ns_m *= i == 4 ? 2 : i == 5 ? 0.5 : 1;
-            SimWorker *w = tower_worker(tower_of(&p), 0, 0);
-            sim_worker_device(w, &d);
-            CHECK_OK(sim_run(w, k == BASELINE_TMD ? SCENE_TMD : SCENE_LINKS, x, &other.first, &err), &err);
+            run_alone(&p, 0, k == BASELINE_TMD ? SCENE_TMD : SCENE_LINKS, x, &d, &other.first);
             other.value[0] = other.first.j1_m;
             other.value[1] = other.first.j2_m;
             other.value[2] = other.first.j3_g;
@@ -455,16 +465,13 @@ TEST(devices_are_better_than_none_and_than_their_neighbours)
 TEST(gaps_that_vanish_are_tight_links_and_the_rigid_baseline_is_damped_more)
 {
     Problem p;
-    Err err = {0};
     double x[22];
     SimResult rigid, closed, tight;
     rigid_design(x);
     open_tower(&p, "none", ROBUST_WORST, 1);
-    SimWorker *w = tower_worker(tower_of(&p), 0, 0);
-    sim_worker_device(w, &(LinearDevice){.link_ns_m = 1e12});
-    CHECK_OK(sim_run(w, SCENE_RIGID, x, &rigid, &err), &err);
-    CHECK_OK(sim_run(w, SCENE_LINKS, x, &tight, &err), &err);
-    CHECK_OK(sim_run(w, SCENE_IMPACT, x, &closed, &err), &err);
+    run_alone(&p, 0, SCENE_RIGID, x, NULL, &rigid);
+    run_alone(&p, 0, SCENE_LINKS, x, &(LinearDevice){.link_ns_m = 1e12}, &tight);
+    run_alone(&p, 0, SCENE_IMPACT, x, NULL, &closed);
     assert_close(closed.j1_m, tight.j1_m, 0.02);
     assert_close(closed.j2_m, tight.j2_m, 0.05);
     assert_less(rigid.j1_m, 0.97 * tight.j1_m);

@@ -155,6 +155,16 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     problem_close(&p);
 }
 
+static void run_as_built(const Problem *p, const AsBuilt *built, const double x[], SimResult *r)
+{
+    SimWorker *w;
+    Err err = {0};
+    CHECK_OK(sim_worker_create(&w, tower_record(tower_of(p), 0)->scene, &err), &err);
+    CHECK_OK(sim_worker_as_built(w, built, &err), &err);
+    CHECK_OK(sim_run(w, SCENE_IMPACT, x, r, &err), &err);
+    sim_worker_free(w);
+}
+
 static SimResult run_scene(const Settings *s, const AsBuilt *built)
 {
     double X[DESIGNS * N_VAR];
@@ -163,9 +173,7 @@ static SimResult run_scene(const Settings *s, const AsBuilt *built)
     SimResult r;
     designs(X);
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
-    SimWorker *w = tower_worker(tower_of(&p), 0, 0);
-    CHECK_OK(sim_worker_as_built(w, built, &err), &err);
-    CHECK_OK(sim_run(w, SCENE_IMPACT, X, &r, &err), &err);
+    run_as_built(&p, built, X, &r);
     problem_close(&p);
     return r;
 }
@@ -287,8 +295,7 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
         memcpy(x, X, sizeof x);
         replicate_design((uint32_t)s.search.seed, k, 0.01, 20, x);
         CHECK_OK(tower_open(&p, &single, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(sim_worker_as_built(tower_worker(tower_of(&p), 0, 0), k ? &b : NULL, &err), &err);
-        CHECK_OK(sim_run(tower_worker(tower_of(&p), 0, 0), SCENE_IMPACT, x, &r, &err), &err);
+        run_as_built(&p, k ? &b : NULL, x, &r);
         v[k] = r.j3_g;
         problem_close(&p);
     }

@@ -500,11 +500,6 @@ const Scenario *tower_record(const Tower *t, size_t i)
     return t->place[i].scenario;
 }
 
-SimWorker *tower_worker(const Tower *t, size_t record, size_t worker)
-{
-    return t->worker[record * t->n_workers + worker];
-}
-
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */
 
 static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)

@@ -46,8 +46,7 @@ int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
 const MeasureOrder *tower_measures(const Tower *t);
-const Scenario *tower_record(const Tower *t, size_t i);                /* of a search; 0: motion.record */
-SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* likewise, while no queue uses it */
+const Scenario *tower_record(const Tower *t, size_t i); /* of a search; 0: motion.record */
 
 /* The ground motion of a scene, for motion_free. */
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);
