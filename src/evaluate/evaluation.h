@@ -92,7 +92,7 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
 
 /* Outcome and reason, for which there is room where it is not empty; the text becomes one of visible characters
- * (base/visible.h) and a cell of a CSV file (base/cell.h), of valid UTF-8 whatever a worker wrote. */
+ * and a cell of a CSV file (base/visible.h), of valid UTF-8 whatever a worker wrote. */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 
 typedef Status (*EvaluationFn)(const Evaluation *e, void *user, Err *err); /* the row holds until it returns */

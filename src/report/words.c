@@ -40,7 +40,7 @@ Words words_of_measure(int k)
     return WORDS[k].title ? WORDS[k] : (Words){m->name, has_unit ? m->unit : "", 1};
 }
 
-/* Without the apostrophe that keeps a name from being a formula in a spreadsheet (base/cell.h). */
+/* Without the apostrophe that keeps a name from being a formula in a spreadsheet (base/visible.h). */
 Words words_of_objective(const Schema *schema, size_t k)
 {
     const char *name = schema_objective(schema, k)->name;
