@@ -9,10 +9,6 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Of the values value(i, user), i = 0..n-1; sd may be NULL. */
-void mean_and_sd(size_t n, double (*value)(size_t i, const void *user), const void *user, double *mean, double *sd);
-
-/* Of v (n). */
 void mean_and_sd_of(size_t n, const double v[], double *mean, double *sd);
 
 void sort_values(size_t n, double v[]); /* ascending */

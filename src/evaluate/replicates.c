@@ -69,16 +69,9 @@ static const Measured *simulation(const Sample *s, size_t i)
     return (const Measured *)(const void *)(s->parts + part_of(s->plan, i) * s->size);
 }
 
-static double value_of(size_t i, const void *user)
+static double value_of(const Sample *s, size_t i)
 {
-    const Sample *s = user;
     return simulation(s, s->first + i)->value[s->measure];
-}
-
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd)
@@ -87,7 +80,7 @@ double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v
     mean_and_sd_of(n, v, &mean, sd);
     if (plan->rule == ROBUST_MEAN_PLUS_SD || !isfinite(mean))
         return isfinite(*sd) ? mean + sense * *sd : mean;
-    qsort(v, n, sizeof *v, by_value);
+    sort_values(n, v);
     const double place = (sense > 0 ? plan->quantile : 1 - plan->quantile) * (double)(n - 1);
     const size_t below = (size_t)place, above = below + 1 < n ? below + 1 : below;
     return v[below] + (place - (double)below) * (v[above] - v[below]);
@@ -99,7 +92,7 @@ static void combine_all(Sample *s, double *value, double *sd)
     double v[PARTS_MAX];
     const size_t n = s->plan->n_records * s->plan->n_replicates;
     for (size_t i = 0; i < n; i++)
-        v[i] = value_of(i, s);
+        v[i] = value_of(s, i);
     *value = robust_pooled(s->plan, measure(s->measure)->sense, n, v, sd);
 }
 
@@ -109,9 +102,11 @@ static void combine_records(Sample *s, double *value, double *sd)
     const double sense = measure(s->measure)->sense, n = (double)s->plan->n_records;
     *value = *sd = 0.0;
     for (size_t r = 0; r < s->plan->n_records; r++) {
-        double mean, deviation;
+        double mean, deviation, v[PARTS_MAX];
         s->first = r * s->plan->n_replicates;
-        mean_and_sd(s->plan->n_replicates, value_of, s, &mean, &deviation);
+        for (size_t i = 0; i < s->plan->n_replicates; i++)
+            v[i] = value_of(s, i);
+        mean_and_sd_of(s->plan->n_replicates, v, &mean, &deviation);
         if (s->plan->rule == ROBUST_MEAN) {
             *value += mean / n;
             *sd += deviation * deviation / n;
