@@ -251,21 +251,13 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 
 /* ---- frame ---------------------------------------------------------------------------------------------------- */
 
-static Status reduce_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, FrameKept kept, Err *err)
-{
-    frame_full_free(&b->full);
-    TRY(frame_reduce(f, kept, &b->full, err));
-    TRY(check_symmetric(b->full.n, b->full.K, o->model, err));
-    return check_symmetric(b->full.n, b->full.M, o->model, err);
-}
-
 /* The floors alone are the first rows; what they do not miss is no model of its own. */
-static Status condense_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
+static Status condense_frame(BuildingFiles *b, const Frame *f, Err *err)
 {
     const int n = f->n_floors;
     TRY(allocate(b, n, err));
     memcpy(b->storey_m, f->storey_m, (size_t)n * sizeof *b->storey_m);
-    TRY(reduce_frame(b, f, o, FRAME_FLOORS, err));
+    TRY(frame_reduce(f, FRAME_FLOORS, &b->full, err));
     for (int j = 0; j < n; j++) {
         memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, (size_t)n * sizeof *b->floors.K);
         memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, (size_t)n * sizeof *b->floors.M);
@@ -281,9 +273,11 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
     Frame f;
     TRY(frame_read(&f, o, err));
     snprintf(b->note, sizeof b->note, "%s", f.note);
-    Status status = b->floors.n ? STATUS_OK : condense_frame(b, &f, o, err);
-    if (status == STATUS_OK && o->modes > 0)
-        status = reduce_frame(b, &f, o, FRAME_FULL, err);
+    Status status = b->floors.n ? STATUS_OK : condense_frame(b, &f, err);
+    if (status == STATUS_OK && o->modes > 0) {
+        frame_full_free(&b->full);
+        status = frame_reduce(&f, FRAME_FULL, &b->full, err);
+    }
     frame_free(&f);
     return status;
 }
