@@ -128,22 +128,35 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
     motion_free(&g.m);
 }
 
-TEST(windows_of_the_promise_lie_in_their_record_and_repeat)
+TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
 {
+    static const double LEAST[N_GAPS] = {1e-3, 0.05, 1e-3, 1e-3, 1e-3, 4.75e-3},
+                        MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21};
     Ground g;
     PromiseCase c, again;
+    Err err;
     ground_open(&g);
-    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_windows = 50};
-    for (long k = 0; k < plan.n_windows; k++) {
-        promise_window(&plan, 20, k, &c);
-        promise_window(&plan, 20, k, &again);
+    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 10};
+    for (long k = 0; k < plan.n_scenes * N_GAPS; k++) {
+        const GapKind kind = (GapKind)(k % N_GAPS);
+        int open = 0;
+        CHECK_OK(promise_case(&plan, 20, kind, k, &c, &err), &err);
+        CHECK_OK(promise_case(&plan, 20, kind, k, &again, &err), &err);
         assert_memory_equal(c.x, again.x, 22 * sizeof *c.x);
-        assert_true(c.motion.accel == again.motion.accel && c.duration == again.duration);
-        assert_true(c.motion.accel >= g.m.accel && c.motion.accel + c.motion.n == g.m.accel + g.m.n);
-        assert_true(c.duration >= 4 && c.duration <= 15 && c.duration <= (double)(c.motion.n - 1) * c.motion.dt_s);
-        for (int j = 0; j < 20; j++)
-            assert_true(c.x[j] >= 1e-3 && c.x[j] <= 0.2);
+        assert_memory_equal(c.motion.accel, again.motion.accel, c.motion.n * sizeof *c.motion.accel);
+        assert_less(motion_peak(&c.motion), 0.5001 * 9.81);
+        assert_at_most(c.duration, (double)(c.motion.n - 1) * c.motion.dt_s);
+        assert_true(c.duration >= 4 && c.duration <= 40);
+        for (int j = 0; j < 20; j++) {
+            assert_at_most(LEAST[kind], c.x[j]);
+            assert_at_most(c.x[j], MOST[kind]);
+            open += c.x[j] == 5;
+            assert_true(kind != GAPS_GROWING || j == 0 || c.x[j] > c.x[j - 1]);
+        }
+        assert_true(kind == GAPS_THREE_FLOORS ? open >= 17 : open == 0);
         assert_true(c.x[20] >= 4e-3 && c.x[20] <= 0.04 && c.x[21] >= 4e-3 && c.x[21] <= c.x[20]);
+        motion_free(&c.motion);
+        motion_free(&again.motion);
     }
     motion_free(&g.m);
 }
@@ -166,15 +179,15 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     ground_open(&g);
     FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
     assert_true(f && quiet);
-    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_windows = 1};
+    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 1};
     CHECK_OK(promise_write(&plan, f, quiet, &err), &err);
     fclose(f);
     fclose(quiet);
     print_message("%s", page);
-    assert_non_null(strstr(page, "\nwindows,\"coarse\",j1,1,"));
-    assert_non_null(strstr(page, "\nwindows,\"standard\",j3,1,"));
-    assert_non_null(strstr(page, "\nwindows,\"estimated / true error\",edcs_pct,1,"));
-    assert_non_null(strstr(page, "\ncvode,\"fine\",share_points,1,"));
+    assert_non_null(strstr(page, "\nlog-uniform,\"coarse\",j1,1,1,"));
+    assert_non_null(strstr(page, "\nwide,\"standard\",j3,1,1,"));
+    assert_non_null(strstr(page, "\nthree floors,\"true / estimated error\",edcs_pct,1,1,"));
+    assert_non_null(strstr(page, "\ncvode,\"fine\",share_points,1,1,"));
     free(page);
     motion_free(&g.m);
 }

@@ -145,16 +145,17 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     assert_true(estimate_options(&o.sim, &twice.sim));
     fine.sim.accuracy = ACCURACY_FINE;
-    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = 24};
-    for (long k = 0; k < plan.n_windows; k++) {
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 24};
+    for (long k = 0; k < plan.n_scenes; k++) {
         PromiseCase c;
         double error[N_MEASURES];
-        promise_window(&plan, 20, k, &c);
+        CHECK_OK(promise_case(&plan, 20, k % 2 ? GAPS_WIDE : GAPS_LOG_UNIFORM, k, &c, &err), &err);
         const SimResult r = run_window(&o, &c), t = run_window(&twice, &c), f = run_window(&fine, &c);
         errors_of(&r, &t, error);
         for (size_t i = 0; i < sizeof RESULTS / sizeof RESULTS[0]; i++, all++)
             below += fabs(measure_value(&r, RESULTS[i]) - measure_value(&f, RESULTS[i])) <=
                      ESTIMATE_FACTOR * error[RESULTS[i]];
+        motion_free(&c.motion);
     }
     print_message("%d of %d errors are below their estimate\n", below, all);
     assert_at_most(9 * all, 10 * below);

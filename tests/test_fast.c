@@ -105,7 +105,14 @@ TEST(rebound_converges_with_at_least_third_order)
     double worst[2] = {0};
     for (int fine = 0; fine < 2; fine++)
         for (int i = 0; i < 40; i++) { /* the closing falls anywhere in a step */
-            Ball ball = {1000, 4.865e10, 0.3 * (1 + 0.01 * i), 0.7, {fine ? 32 : 8, 1e-13, 0, 1e7, 1e-6, 0, 0, 0}};
+            Ball ball = {1000,
+                         4.865e10,
+                         0.3 * (1 + 0.01 * i),
+                         0.7,
+                         {.steps_per_contact = fine ? 32 : 8,
+                          .solver_tolerance = 1e-13,
+                          .steps_max = 1e7,
+                          .peak_tolerance = 1e-6}};
             Bounce b;
             bounce(&ball, -1, &b);
             worst[fine] = fmax(worst[fine], fabs(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j) - exact));

@@ -62,12 +62,12 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
     Err err;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
-    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = WINDOWS};
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = WINDOWS};
     stage_open(&t, &o);
     for (int k = 0; k < WINDOWS; k++) {
         PromiseCase c;
         double each[BENCH_OBJECTIVES];
-        promise_window(&plan, 20, k, &c);
+        CHECK_OK(promise_case(&plan, 20, GAPS_LOG_UNIFORM, k, &c, &err), &err);
         stage_set(&t, &o, &c);
         const SimResult all = run_with(&t, &c, 0, 0), few = run_with(&t, &c, 0.1, 0);
         assert_true(few.outcome == RUN_OK && few.energy_balance_error < 3e-4);
@@ -75,6 +75,7 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
         result_errors(&few, &all, each);
         for (int i = 0; i < RESULTS; i++)
             error[i][k] = each[i];
+        motion_free(&c.motion);
     }
     for (int i = 0; i < RESULTS; i++) {
         const double median = bench_median(WINDOWS, error[i]);
@@ -94,12 +95,14 @@ TEST(so_many_core_modes_are_kept_as_are_asked_for)
     PromiseCase c;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
-    promise_window(&(PromisePlan){.options = &o, .records = &m, .n_records = 1, .n_windows = 1}, 20, 0, &c);
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 1};
+    CHECK_OK(promise_case(&plan, 20, GAPS_LOG_UNIFORM, 0, &c, &err), &err);
     stage_open(&t, &o);
     stage_set(&t, &o, &c);
     const SimResult all = run_with(&t, &c, 0, 0), twenty = run_with(&t, &c, 0.1, 20), more = run_with(&t, &c, 0.1, 99);
     const SimResult two = run_with(&t, &c, 0, 2), six = run_with(&t, &c, 0, 6);
     assert_true(twenty.j3_g == all.j3_g && twenty.steps == all.steps && more.j3_g == all.j3_g);
+    motion_free(&c.motion);
     assert_less(2 * fabs(six.edcs_pct / all.edcs_pct - 1), fabs(two.edcs_pct / all.edcs_pct - 1));
     stage_close(&t);
     motion_free(&m);

@@ -78,7 +78,8 @@ TEST(contacts_end_where_they_can_change_nothing)
         assert_true(r.outcome == RUN_OK && r.settled_s <= length);
         assert_int_equal(r.impacts, s.impacts);
         assert_true(r.j1_m == s.j1_m && r.j2_m == s.j2_m && r.j3_g == s.j3_g);
-        assert_at_most(s.kinetic_strain_j, 4e-4 * s.input_energy_j); /* the tail tolerance of standard */
+        const double least = fmin(fmin(s.ed1_pct, s.ed5_10_pct), s.edcs_pct) / 100 * s.input_energy_j;
+        assert_at_most(s.kinetic_strain_j, 0.04 * least); /* the tail share of standard */
         assert_close(r.contact_loss_j, s.contact_loss_j, 1e-15);
         earliest = fmin(earliest, r.settled_s);
     }
@@ -117,13 +118,36 @@ TEST(a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole)
         assert_less(ended.settled_s, whole.settled_s);
         assert_true(ended.j1_m == whole.j1_m && ended.j2_m == whole.j2_m && ended.j3_g == whole.j3_g);
         assert_close(ended.input_energy_j, whole.input_energy_j, 1e-3);
-        assert_close(ended.ed1_pct, whole.ed1_pct, 1e-3);
+        assert_close(ended.ed1_pct, whole.ed1_pct, 3e-3); /* a third of the promise */
         assert_close(ended.ed5_10_pct, whole.ed5_10_pct, 5e-3);
         assert_close(ended.edcs_pct, whole.edcs_pct, 5e-3);
     }
     model_free(&model);
     building_free(&b);
     free(input);
+    motion_free(&m);
+}
+
+TEST(a_motion_that_ends_between_two_samples_ends_without_contacts_as_well)
+{
+    SceneOptions o = paper_scene();
+    Motion m = kobe_like();
+    double x[FLOORS_MAX + 2];
+    bench_irregular_gaps(0, 20, x);
+    for (int j = 10; j < 20; j++) /* floors lie in the core where contacts have ended */
+        x[j] = 0.005;
+    x[20] = BENCH_WALL_BASE;
+    x[21] = BENCH_WALL_TOP;
+    const SimResult whole = run_with(&o, &m, SCENE_IMPACT, x);
+    assert_less(whole.settled_s, 0.9 * (double)(m.n - 1) * m.dt_s);
+    for (int i = 0; i < 6; i++) { /* anywhere in a period of the first mode */
+        o.sim.duration_s = ((double)(m.n - 1) - 10 * i - 0.3) * m.dt_s;
+        const SimResult r = run_with(&o, &m, SCENE_IMPACT, x);
+        assert_int_equal(r.outcome, RUN_OK);
+        assert_int_equal(r.impacts, whole.impacts);
+        assert_same_number(r.j1_m, whole.j1_m);
+        assert_same_number(r.j3_g, whole.j3_g);
+    }
     motion_free(&m);
 }
 

@@ -146,12 +146,15 @@ FastTolerances fast_tolerances(Accuracy accuracy)
                              .flexibility_left_out = 0.1,
                              .tail_tolerance = 2e-3},
         [ACCURACY_STANDARD] = {.steps_per_contact = 2,
-                               .solver_tolerance = 5e-4,
-                               .energy_tolerance = 1e-6,
+                               .solver_tolerance = 3e-5,
+                               .energy_tolerance = 1.2e-7,
                                .steps_max = 2e7,
                                .peak_tolerance = 6e-4,
                                .flexibility_left_out = 0.02,
-                               .tail_tolerance = 4e-4},
+                               .tail_tolerance = 0.02,
+                               .tail_share = 0.04,
+                               .crowd = 2,
+                               .calms_down = 1},
         [ACCURACY_FINE] = {.steps_per_contact = 80,
                            .solver_tolerance = 1e-12,
                            .energy_tolerance = 0,
@@ -172,6 +175,7 @@ static FastTolerances refined(Accuracy accuracy, double times)
     tolerances.peak_tolerance /= times;
     tolerances.flexibility_left_out /= times * times;
     tolerances.tail_tolerance /= times * times;
+    tolerances.tail_share /= times * times;
     return tolerances;
 }
 

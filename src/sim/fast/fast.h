@@ -7,7 +7,8 @@
  *           error bound (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
  * Free      several intervals at once where bounds of the modes reach no gap and no peak.
  * Contact   steps whose energy balances: of a fixed share of a Hertz contact's duration or shorter where a gap closes
- *           or the other side of the core may be reached, else longer. Over a step the force of floor j is
+ *           or the other side of the core may be reached, else longer; shorter where several floors meet the core at
+ *           once, and less exact where little energy is left (kernel.c). Over a step the force of floor j is
  *               f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x),
  *           which the modes answer exactly; F1 and the mean come from the force law along the Hermite cubic of the
  *           indentation, implicitly: Newton's method over all floors in contact, on the n x n compliances of w to those

@@ -146,6 +146,8 @@ typedef struct FastWork {
     int flight_level, contact_level; /* where the next free flight, the next contact step is tried */
     int may_grow;                    /* the last contact step could have been twice as long */
     double energy_scale;             /* [J] */
+    double calm;                     /* >= 1, by which the tolerances of a step may grow: calm_of */
+    double crowd;                    /* >= 1, by which the energy tolerance of the step under way is divided */
     double most_energy, mass_ratio;  /* [J] of the modes at any sample; building and core over the building */
     double settled;                  /* [s] where contacts ended */
     long free_from, free_count;      /* the interval from which free intervals are tried, and over how many */
