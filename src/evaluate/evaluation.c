@@ -149,7 +149,8 @@ Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
         point_row(t, t->n_used++);
     }
     *row = &t->row[t->n++];
-    memset((*row)->x, 0, t->n_var * sizeof *t->x);
+    if (t->n_var > 0)
+        memset((*row)->x, 0, t->n_var * sizeof *t->x);
     evaluation_forget(*row, t->n_obj, t->n_extra);
     return STATUS_OK;
 }

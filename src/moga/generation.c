@@ -6,10 +6,19 @@
 
 /* -- step 1: initial sample ---------------------------------------------------------------------------------------- */
 
+/* Designs that the search was planned for: where they are screened, more than evaluations. */
+static size_t planned(const Search *s)
+{
+    const SearchConfig *c = s->config;
+    const Screening *q = &s->screening;
+    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
+    return q->cost.whole == 1 ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
+}
+
 /* Enough for a first surrogate of this many variables, and no more than half of the budget. */
 static size_t initial_size(const Search *s)
 {
-    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET, half = (search_planned(s) + 1) / 2;
+    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET, half = (planned(s) + 1) / 2;
     if (s->config->initial > 0)
         return s->config->initial;
     return wanted < half ? wanted : half > 4 ? half : 4;
@@ -71,6 +80,45 @@ static Status sample_again(Search *s, Err *err)
 
 /* -- step 2: surrogate --------------------------------------------------------------------------------------------- */
 
+/* The front to be improved; where nothing is feasible yet, the population. Plain search does not look at it, but for
+ * the choice of designs to be replicated. */
+static void measure_front(Search *s)
+{
+    if (s->config->surrogate == SURROGATE_OFF && !s->problem->is_noisy)
+        return;
+    Archive *a = &s->archive;
+    const Population *p = &s->population;
+    pareto_archive_list_front(a);
+    for (size_t i = 0; i < p->n; i++)
+        s->scratch.members[i] = i;
+    for (int k = 0; k < INFILL_KINDS; k++)
+        if (s->screening.n_front > 0)
+            infill_measure(s->criteria.select[k], s->screening.n_front, s->screening.front, a->estimate);
+        else if (a->n_front > 0)
+            infill_measure(s->criteria.select[k], a->n_front, a->front, a->estimate);
+        else
+            infill_measure(s->criteria.select[k], p->n, s->scratch.members, p->F);
+}
+
+int search_uses_surrogate(const Search *s)
+{
+    return s->config->surrogate == SURROGATE_ON && surrogate_is_usable(s->surrogate) && control_agrees(&s->control);
+}
+
+void search_predict(Search *s, Population *p, size_t first, int with_uncertainty)
+{
+    const double before = search_seconds(s);
+    surrogate_predict(s->surrogate, p, first, with_uncertainty);
+    s->surrogate_s += search_seconds(s) - before;
+}
+
+void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[])
+{
+    const double before = search_seconds(s);
+    surrogate_descend(s->surrogate, &s->archive, s->criteria.select[kind], n, vectors, X);
+    s->surrogate_s += search_seconds(s) - before;
+}
+
 /* Where the noise is significant: the front to be improved and the parents, as the surrogate corrects them. */
 static void take_estimates(Search *s)
 {
@@ -79,17 +127,19 @@ static void take_estimates(Search *s)
     if (!replication_noise_is_significant(s))
         return;
     surrogate_estimate(s->surrogate, a);
-    search_measure_front(s);
+    measure_front(s);
     for (size_t i = 0; i < p->n; i++)
         memcpy(p->F + i * p->n_obj, a->estimate + p->row[i] * a->n_obj, a->n_obj * sizeof *a->estimate);
 }
 
 static Status fit_surrogate(Search *s, Err *err)
 {
+    const double before = search_seconds(s);
     if (s->config->surrogate == SURROGATE_ON)
-        TRY(search_fit_surrogate(s, err));
+        TRY(surrogate_fit(s->surrogate, &s->archive, s->criteria.select[INFILL_PBI], err));
     else
         surrogate_drop(s->surrogate);
+    s->surrogate_s += search_seconds(s) - before;
     take_estimates(s);
     return STATUS_OK;
 }
@@ -157,7 +207,7 @@ Status generation_next(Search *s, Err *err)
     if (s->population.n < 2)
         return sample_again(s, err);
     pareto_archive_reset_estimates(&s->archive);
-    search_measure_front(s);
+    measure_front(s);
     size_t n_last = replication_last(s);
     TRY(screening_last(s, &n_last, err));
     if (n_last > 0)

@@ -2,8 +2,8 @@
  *
  *   search.c         limits, the loop over generations, the view of the observer
  *   state.c          memory; what outlives a generation, as bytes
- *   generation.c     one generation: the steps of the method in their order
- *   surrogate_use.c  criteria, fit, prediction, descents, predicted failures
+ *   generation.c     one generation: the steps of the method in their order; the surrogate, timed
+ *   surrogate.c      fit, prediction, descents, predicted failures
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
  *   infill_select.c  which candidates are evaluated
  *   replication.c    which noisy designs are evaluated again
@@ -134,15 +134,6 @@ static inline double search_seconds(const Search *s)
     return clock_seconds() - s->start;
 }
 
-/* Designs that the search was planned for: where they are screened, more than evaluations. */
-static inline size_t search_planned(const Search *s)
-{
-    const SearchConfig *c = s->config;
-    const Screening *q = &s->screening;
-    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
-    return q->cost.whole == 1 ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
-}
-
 /* Evaluations with which the search ends. */
 static inline size_t search_evals(const Search *s)
 {
@@ -168,11 +159,7 @@ size_t generation_samples(const Search *s); /* size of the initial sample withou
 Status generation_first(Search *s, Err *err);
 Status generation_next(Search *s, Err *err);
 Status generation_last(Search *s, Err *err); /* asynchronous: what is under way when the search ends */
-
-/* surrogate_use.c */
-void search_measure_front(Search *s);
-int search_uses_surrogate(const Search *s); /* usable, and control agrees */
-Status search_fit_surrogate(Search *s, Err *err);
+int search_uses_surrogate(const Search *s);  /* usable, and control agrees */
 void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);
 
