@@ -81,7 +81,8 @@ Status output_open_inside(Output *o, const char *path, Err *err)
     return open_at(o, path, 0, err);
 }
 
-Status output_sync(FILE *stream, const char *path, Err *err)
+/* Flushed to the disk, or STATUS_IO. */
+static Status output_sync(FILE *stream, const char *path, Err *err)
 {
     errno = 0;
     if (fflush(stream) != 0 || ferror(stream))

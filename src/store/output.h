@@ -28,9 +28,6 @@ void output_abandon(Output *o); /* a closed Output is fine */
 /* Closed; where status says that writing failed, abandoned and the status returned. */
 Status output_end(Output *o, Status status, Err *err);
 
-/* Flushed to the disk, or STATUS_IO. */
-Status output_sync(FILE *stream, const char *path, Err *err);
-
 /* A rename is on the disk when the folder of `path` is. Not every file system allows it: then the file is still whole.
  */
 void output_sync_folder(const char *path);
