@@ -91,9 +91,11 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 
 static void point_row(EvaluationTable *t, size_t i)
 {
-#define X(array, width) t->row[i].array = t->width > 0 ? t->array + i * t->width : NULL;
+#define X(array, width) t->row[i].array = t->array + i * t->width;
     EVALUATION_ARRAYS(X)
 #undef X
+    if (t->n_sd == 0)
+        t->row[i].sd = NULL;
 }
 
 /* Room for n of them; the old array, and *lacks, without memory. */
