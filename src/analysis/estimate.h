@@ -6,8 +6,8 @@
  *                     narrower by ESTIMATE_GAP_M, by a pattern of signs that is the same for every design
  *
  * A contact that grazes is found by the second alone: the first compares runs that both meet it. The factor is
- * calibrated: the error against `fine` is below the bound in 95 % of the windows of docs/promise.md (`make promise`
- * prints the share and how much too large the bound is). Of the engine `fast` alone.
+ * calibrated: the error against `fine` is below the bound for 95 % of the figures of docs/promise.md (`make promise`
+ * prints the share and the ratio of the true to the likely error). Of the engine `fast` alone.
  *
  * Threads  estimate_errors is pure; estimate_designs has the workers of the problem */
 #ifndef IMTET_ANALYSIS_ESTIMATE_H
