@@ -35,8 +35,8 @@ typedef struct SimWorker SimWorker;
 double sim_energy_balance_max(const SimOptions *o);
 
 /* Steps per contact that a tolerance needs, a relative error: 2 (0.01 / tolerance)^(2/3), so that J3 and the shares,
- * which converge last, err by less in 95 % of the windows of docs/promise.md: 2e-2, 7e-3 and 2e-3 were measured at 1,
- * 2 and 4 steps. Core modes, tolerances of a step and the end of the contacts follow the steps (sim/fast/fast.h). The
+ * which converge last, err by less in 95 % of the scenes of docs/promise.md: 1e-2 and 6e-3 at most were measured at 2
+ * and 4 steps. Core modes, tolerances of a step and the end of the contacts follow the steps (sim/fast/fast.h). The
  * presets are names: standard of 0.01, coarse of about 0.05. 0: as the preset says. */
 double sim_steps_per_contact(const SimOptions *o);
 
