@@ -71,8 +71,8 @@ typedef struct {
     size_t *cell;                  /* (n_rows, n_cols) where each begins in text */
 } Table;
 
-/* Numbers, every one finite, without names of columns; below them, where an empty cell is NAN and there may be no row at
- * all; words and numbers below names. Without a row the others are refused. */
+/* Numbers, every one finite, without names of columns; below them, where an empty cell is NAN and there may be no row
+ * at all; words and numbers below names. Without a row the others are refused. */
 typedef enum { TABLE_PLAIN, TABLE_HEADED, TABLE_WORDS } TableForm;
 Status table_read(Table *t, const char *path, TableForm form, Err *err);
 

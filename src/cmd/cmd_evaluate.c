@@ -26,7 +26,7 @@ typedef struct {
     const char *word; /* as it was asked for */
 } Chosen;
 
-/* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % ---------------------------------- */
+/* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
 
 enum { IDA_FRACTILES = 3, IDA_SHOWN = 3 };
 static const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};

@@ -270,7 +270,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
     return *row < run->table.n ? STATUS_OK : fail(err, STATUS_BAD_DATA, "%s: is no design of %s", word, run->folder);
 }
 
-/* -- results by name ------------------------------------------------------------------------------------------------ */
+/* -- results by name ----------------------------------------------------------------------------------------------- */
 
 static Status split(const char *option, const char *text, double otherwise, char name[TABLE_NAME_MAX], double *value,
                     Err *err)

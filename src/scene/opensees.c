@@ -417,8 +417,8 @@ static int line_that_builds(Reader *r, const char *path, int line)
     return found ? at : 0;
 }
 
-/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, and adds
- * nothing to the model from there on, the model is complete and the script ends there. */
+/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, and
+ * adds nothing to the model from there on, the model is complete and the script ends there. */
 static int run_file(Reader *r, const char *path)
 {
     Tcl_Obj *name = Tcl_NewStringObj(path, -1);

@@ -42,8 +42,8 @@ typedef void (*WarnFn)(const char *key, const char *text, void *user);
 /* What the building alone has of them. */
 void building_warnings(const Building *b, WarnFn warn, void *user);
 
-/* Which of the first periods of a frame whose floors stretch (building.rigid_floors = off) its full model has otherwise:
- * one node of a floor stands for all of it then. */
+/* Which of the first periods of a frame whose floors stretch (building.rigid_floors = off) its full model has
+ * otherwise: one node of a floor stands for all of it then. */
 static const double PERIOD_ERROR_MAX = 0.01;
 Status condensation_warnings(const Building *b, const BuildingOptions *o, WarnFn warn, void *user, Err *err);
 void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,

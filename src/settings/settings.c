@@ -700,7 +700,7 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
     }
 }
 
-/* ---- settings that do nothing because of another one's value ------------------------------------------------------ */
+/* ---- settings that do nothing because of another one's value ----------------------------------------------------- */
 
 /* keys, parted by blanks: one that ends in . stands for its section. They are read where `other` has the value, with !
  * in front of it where it has any other. */
