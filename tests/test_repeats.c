@@ -56,7 +56,7 @@ TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
         double n = 0.0, mean[2] = {0.0, 0.0};
         repeats += h.table.row[i].kind == KIND_REPEAT;
         for (size_t j = 0; j < h.table.n; j++)
-            if (memcmp(h.table.x + 2 * j, h.table.x + 2 * i, 2 * sizeof *h.table.x) == 0) {
+            if (h.table.x[2 * j] == h.table.x[2 * i] && h.table.x[2 * j + 1] == h.table.x[2 * i + 1]) {
                 n += 1.0;
                 mean[0] += h.table.f[2 * j];
                 mean[1] += h.table.f[2 * j + 1];

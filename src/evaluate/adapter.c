@@ -11,8 +11,8 @@ struct Adapter {
     Schema schema;
     Limits limits;
     Problem problem;
-    Recipe recipe; /* of an external simulator */
     int threads;
+    Recipe recipe; /* of an external simulator; without scenes */
 };
 
 const Problem *adapter_problem(const Adapter *a)

@@ -272,7 +272,7 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
     w->n_answered++;
     if (!o && json_error_code(&error) == json_error_numeric_overflow)
-        settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+        settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers: one is too large for a double", e->n_obj);
     else if (!json_is_object(o) || !json_is_number(id))
         settle(e, w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
     else if (json_number_value(id) != (double)w->id)

@@ -414,28 +414,27 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     return STATUS_OK;
 }
 
-static Status make_recipe(Recipe **out, const Settings *s, size_t n_records, size_t n_scenes, Err *err)
+/* NULL: err says why. */
+static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes, Err *err)
 {
-    *out = calloc(1, recipe_size(n_records, n_scenes));
-    if (s->problem.kind != PROBLEM_TOWER || !*out) {
-        free(*out);
-        return *out ? fail(err, STATUS_BAD_DATA,
-                           "problem.kind: is no tower, which alone has a building, a core and a motion")
-                    : fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", n_scenes);
-    }
-    (*out)->settings = *s;
-    (*out)->n_records = n_records;
-    (*out)->n_scenes = n_scenes;
-    return STATUS_OK;
+    Recipe *r = s->problem.kind == PROBLEM_TOWER ? calloc(1, recipe_size(n_records, n_scenes)) : NULL;
+    if (!r && s->problem.kind != PROBLEM_TOWER)
+        fail(err, STATUS_BAD_DATA, "problem.kind: is no tower, which alone has a building, a core and a motion");
+    else if (!r)
+        fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", n_scenes);
+    else
+        *r = (Recipe){.settings = *s, .n_records = n_records, .n_scenes = n_scenes};
+    return r;
 }
 
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
     char names[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
     size_t n;
-    Recipe *r;
     TRY(list_records(s, use, names, &n, err));
-    TRY(make_recipe(&r, s, n, n, err));
+    Recipe *r = make_recipe(s, n, n, err);
+    if (!r)
+        return err->code;
     memcpy(recipe_record(r, 0), names, n * sizeof names[0]);
     for (size_t i = 0; i < n; i++)
         r->scene[i].record = i;
@@ -447,8 +446,9 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
 Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const char *const records[], size_t n_scenes,
                          const SceneChange scenes[], Err *err)
 {
-    Recipe *r;
-    TRY(make_recipe(&r, s, n_records, n_scenes, err));
+    Recipe *r = make_recipe(s, n_records, n_scenes, err);
+    if (!r)
+        return err->code;
     r->is_sweep = 1;
     memcpy(r->scene, scenes, n_scenes * sizeof *scenes);
     Status status = STATUS_OK;

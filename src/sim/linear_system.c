@@ -85,11 +85,14 @@ static void set_rigid_losses(LinearSystem *s, const Building *b, const int like[
 static Status make_rigid(LinearSystem *s, const Building *b, const CoreBeam *core, Err *err)
 {
     const size_t mm = (size_t)s->m * (size_t)s->m;
-    double *K = malloc(3 * mm * sizeof *K + (size_t)s->m * sizeof(int));
-    if (!K)
+    double *K = malloc(3 * mm * sizeof *K);
+    int *like = malloc((size_t)s->m * sizeof *like);
+    if (!K || !like) {
+        free(K);
+        free(like);
         return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", s->n);
+    }
     double *M = K + mm, *psi = M + mm;
-    int *like = (int *)(psi + mm);
     building_join_core(core, &b->model, K, M);
     const Status status = linalg_modes(s->m, K, M, s->omega, psi, err);
     if (status == STATUS_OK) {
@@ -98,6 +101,7 @@ static Status make_rigid(LinearSystem *s, const Building *b, const CoreBeam *cor
         set_rigid_losses(s, b, like);
     }
     free(K);
+    free(like);
     return status;
 }
 

@@ -278,16 +278,18 @@ static uint64_t digest_kind(EvaluationKind kind, long generation)
 
 /* -- a new database ------------------------------------------------------------------------------------------------ */
 
-static Status settings_text(const Settings *s, char **text, Err *err)
+/* The caller's; NULL: no memory. */
+static char *settings_text(const Settings *s)
 {
     size_t length;
-    FILE *f = text_open(text, &length);
+    char *text = NULL;
+    FILE *f = text_open(&text, &length);
     if (f)
         settings_write(s, f, SETTINGS_PLAIN);
     if (f && text_close(f) == 0)
-        return STATUS_OK;
-    free(*text);
-    return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
+        return text;
+    free(text);
+    return NULL;
 }
 
 static long digest_of_head(const char *settings, const char *provenance, long planned_evals, long n_var)
@@ -305,9 +307,10 @@ int tables_head_is_whole(sqlite3_stmt *row)
 static Status fill_new_database(Database *db, const Schema *schema, const char *tables, const Settings *used,
                                 const char *provenance, Err *err)
 {
-    char created[24], *text = NULL;
+    char created[24], *text = settings_text(used);
+    if (!text)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
     utc_now(created);
-    TRY(settings_text(used, &text, err));
     Status status = database_do(db, err, "BEGIN", "");
     if (status == STATUS_OK)
         status = database_do(db, err, tables, "");
@@ -347,8 +350,9 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
 
 Status tables_set_settings(Database *db, const Settings *used, const Run *run, Err *err)
 {
-    char *text = NULL;
-    TRY(settings_text(used, &text, err));
+    char *text = settings_text(used);
+    if (!text)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
     const Status status =
         database_do(db, err, "UPDATE run SET settings = ?, digest = ?", "ti", text,
                     digest_of_head(text, run->provenance, run->planned_evals, (long)run->schema.n_var));
@@ -456,9 +460,11 @@ static Status prepare_insert(Database *db, const TableColumns *t, size_t n, cons
 {
     char sql[4200]; /* 2 for each of 2,000 columns */
     int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", t->name);
-    for (size_t i = 1; i < n; i++, at += 2)
-        memcpy(sql + at, ",?", 2);
-    memcpy(sql + at, ")", 2);
+    for (size_t i = 1; i < n; i++) {
+        sql[at++] = ',';
+        sql[at++] = '?';
+    }
+    snprintf(sql + at, 2, ")");
     TRY(database_statement(db, sql, s, err));
     for (size_t i = 0; i < t->n; i++)
         bind_field(*s, (int)i + 1, &t->field[i], record);
