@@ -6,6 +6,7 @@
 typedef struct {
     char **text;
     size_t *length, room;
+    int failed;
 } Text;
 
 /* 0: no memory, which becomes the error of the stream. */
@@ -16,8 +17,10 @@ static ssize_t append(void *cookie, const char *bytes, size_t n)
     if (needed > t->room) {
         const size_t room = needed > 2 * t->room ? needed : 2 * t->room;
         char *wider = realloc(*t->text, room);
-        if (!wider)
+        if (!wider) {
+            t->failed = 1;
             return 0;
+        }
         *t->text = wider;
         t->room = room;
     }
@@ -27,9 +30,15 @@ static ssize_t append(void *cookie, const char *bytes, size_t n)
     return (ssize_t)n;
 }
 
+/* What is not whole is of use to nobody. */
 static int end(void *cookie)
 {
-    free(cookie);
+    Text *t = cookie;
+    if (t->failed) {
+        free(*t->text);
+        *t->text = NULL;
+    }
+    free(t);
     return 0;
 }
 
@@ -39,7 +48,7 @@ FILE *text_open(char **text, size_t *length)
     *text = calloc(1, 1);
     *length = 0;
     if (t)
-        *t = (Text){text, length, 1};
+        *t = (Text){text, length, 1, 0};
     FILE *f = t && *text ? fopencookie(t, "w", (cookie_io_functions_t){.write = append, .close = end}) : NULL;
     if (!f) {
         free(t);

@@ -1,8 +1,8 @@
 /* base/text.h -- a stream into memory that says when there was none: glibc's open_memstream loses what it had no room
  * for, and neither ferror nor fclose tells.
  *
- * Ownership  *text is malloc'd, ends with a zero byte behind its *length, and is the caller's from the first on
- * Errors     text_open: NULL; text_close: not 0, and the text is not whole */
+ * Ownership  *text is malloc'd, ends with a zero byte behind its *length, and is the caller's
+ * Errors     text_open: NULL; text_close: not 0. *text is NULL then */
 #ifndef IMTET_BASE_TEXT_H
 #define IMTET_BASE_TEXT_H
 

@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "moga/hypervolume.h"
 #include "store/output.h"
+#include "study/progress.h"
 
 /* ---- tables ------------------------------------------------------------------------------------------------------ */
 
@@ -130,6 +131,15 @@ static void list_value(const json_t *value)
         printf(" %s", text);
 }
 
+/* Behind seconds of a study that are many: hours and minutes. */
+static void list_duration(const char *key, const json_t *value)
+{
+    char text[32];
+    duration_words(json_number_value(value), text);
+    if (strncmp(key, "seconds", 7) == 0 && json_number_value(value) >= 100)
+        printf(" (%s)", text);
+}
+
 /* Nothing to be seen: no value, no text, or rows, which a table shows. */
 static int is_listed(const json_t *value)
 {
@@ -150,6 +160,7 @@ void figures_list(int indent, json_t *o)
         if (!json_is_object(value)) {
             printf("%*s", 24 - (int)strlen(key), "");
             list_value(value);
+            list_duration(key, value);
         }
         putchar('\n');
         figures_list(indent + 2, value);
