@@ -531,7 +531,7 @@ TEST(the_channels_of_an_archive_are_listed_by_names_that_differ)
     assert_non_null(strstr(err.text, "holds 26 channels: 1 'N-S"));
     assert_non_null(strstr(err.text, "A.20160224"));
     assert_non_null(strstr(err.text, "B.20160224"));
-    assert_non_null(strstr(err.text, "... 26; choose one by motion.channel (--channel)"));
+    assert_non_null(strstr(err.text, "... 26; choose one by motion.channel (--set motion.channel=NAME)"));
     free(one.text);
     free(all.text);
 }
@@ -1363,6 +1363,8 @@ TEST(a_spectrum_is_no_motion_with_any_option)
                                           "frequency_hz,amplitude [g]",
                                           "f [Hz],a_g",
                                           "T,psa_g",
+                                          "Tn [s],acc_m_s2",
+                                          "omega_rad_s,acc_m_s2",
                                           "freq,Fourier amplitude [g]",
                                           "\xe5\x91\xa8\xe6\x9c\x9f,acc_g"};
     static const MotionHow HOWS[] = {{0}, {.dt_s = 0.02}, {.dt_s = 0.02, .channel = "2"}, {.channel = "1"}};

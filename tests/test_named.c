@@ -97,6 +97,30 @@ TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
     run_free(&run);
 }
 
+TEST(choose_marks_what_cannot_be_predicted)
+{
+    Run run = run_here();
+    size_t n_marked = 0, n_reasons = 0, i;
+    json_t *o = json_of("choose @/run --json"), *pick;
+    char *said = output_of("choose @/run");
+    json_array_foreach(json_object_get(o, "designs"), i, pick)
+    {
+        const long id = json_integer_value(json_object_get(pick, "id"));
+        int is_unpredictable = 0;
+        for (size_t k = 0; k < run.finer.n; k++)
+            is_unpredictable |= run.finer.row[k].id == id && run.finer.row[k].reason[0];
+        assert_int_equal(json_is_true(json_object_get(json_object_get(pick, "error"), "unpredictable")),
+                         is_unpredictable);
+        n_reasons += is_unpredictable;
+    }
+    for (const char *at = said; (at = strstr(at, " sd ")); at++)
+        n_marked++;
+    assert_int_equal(n_marked > 0, n_reasons > 0);
+    json_decref(o);
+    free(said);
+    run_free(&run);
+}
+
 /* Three designs of two objectives: the second was on the front until the first came, which was better by its error. */
 TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_back)
 {

@@ -157,14 +157,16 @@ static void show_table(const Run *run, const Picks *p)
 {
     json_t *table = json_array();
     printf("%zu of %zu designs are within the limits\n\n", p->n_left, run->n_front);
+    size_t n_unknown = 0;
     for (size_t i = 0; i < p->n; i++) {
-        const size_t row = p->pick[i].row;
-        double error[OBJECTIVES_MAX];
-        run_likely(run, row, error);
-        figures_design(table, p->pick[i].name, run->table.row[row].id, &run->schema, run_f(run, row), error,
-                       run->table.row[row].sd, run->table.row[row].extra);
+        figures_of_run(table, run, p->pick[i].name, p->pick[i].row);
+        n_unknown += run->finer.n > 0 && !run->table.row[p->pick[i].row].err;
     }
     figures_print(table);
+    if (n_unknown > 0)
+        printf("\n%zu of them are not among the designs that the study named, and no error of theirs is known: `imtet "
+               "evaluate %s --design ID` estimates it\n",
+               n_unknown, run->folder);
     if (p->n > 0)
         tell_knees(run, p);
 }
@@ -221,7 +223,8 @@ static json_t *describe(const Run *run, const Picks *p)
                                  "variables", json_values(s, 0, s->n_var, NULL, e->x));
         if (run_likely(run, p->pick[i].row, error))
             json_object_set_new(pick, "error",
-                                json_pack("{s:o}", "likely", json_values(s, s->n_var, s->n_obj, NULL, error)));
+                                json_pack("{s:o, s:b}", "likely", json_values(s, s->n_var, s->n_obj, NULL, error),
+                                          "unpredictable", run_is_unpredictable(run, p->pick[i].row)));
         json_array_append_new(picks, pick);
     }
     return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",

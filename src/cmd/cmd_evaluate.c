@@ -42,7 +42,9 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
     char text[3 * FIGURE_MAX + 16], value[IDA_FRACTILES][FIGURE_MAX];
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *table = json_array();
-        printf("%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word, e->n_read);
+        const int is_one = e->n_read == 1;
+        printf(is_one ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word,
+               e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
             json_t *row = figures_row(table);
             json_object_set_new(row, "pga_g", json_real(e->level[l]));
@@ -50,7 +52,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
                 for (int f = 0; f < IDA_FRACTILES; f++)
                     figure_text(ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]), NAN, NAN,
                                 value[f]);
-                snprintf(text, sizeof text, "%s (%s to %s)", value[1], value[0], value[2]);
+                snprintf(text, sizeof text, is_one ? "%s" : "%s (%s to %s)", value[1], value[0], value[2]);
                 json_object_set_new(row, measure(order->of[i])->name, json_string(text));
             }
         }
@@ -279,7 +281,7 @@ static void add_case(json_t *table, const MeasureOrder *order, const EvaluatedRu
     const int is_known = c == EVALUATED_DESIGN && run->error_known;
     figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
     if (c == EVALUATED_DESIGN && run->replicates.n_replicates > 0)
-        figures_replicates(table, order, &run->replicates);
+        figures_replicates(table, order, &run->replicates, is_known ? run->error : NULL);
 }
 
 /* The records that were named, each under its motion. */

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "cmd/warnings.h"
@@ -80,15 +81,6 @@ static void explain_objectives(const Schema *schema, const char *objectives)
         puts(missing);
 }
 
-static void add_design(json_t *table, const Run *run, const char *label, size_t row)
-{
-    const Schema *schema = &run->schema;
-    double error[OBJECTIVES_MAX];
-    run_likely(run, row, error);
-    figures_design(table, label, run->table.row[row].id, schema, run_f(run, row), error, run->table.row[row].sd,
-                   run->table.row[row].extra);
-}
-
 static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_BASELINES])
 {
     for (int k = 0; k < N_BASELINES; k++) {
@@ -111,9 +103,9 @@ static void print_front(const Run *run, const StudySummary *summary)
         printf("each number: %s\n", rule);
     for (size_t k = 0; k < schema->n_obj; k++) {
         snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
-        add_design(table, run, label, run_best(run, k));
+        figures_of_run(table, run, label, run_best(run, k));
     }
-    add_design(table, run, "knee", knee);
+    figures_of_run(table, run, "knee", knee);
     if (summary->has_baselines)
         add_baselines(table, schema, summary->baseline);
     figures_print(table);

@@ -159,7 +159,7 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
         figures_result(table, job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i],
                        row_of(job->error, i), row_of(job->sd, i));
         if (job->has_parts)
-            figures_replicates(table, order, &job->summary[i]);
+            figures_replicates(table, order, &job->summary[i], row_of(job->error, i));
     }
     figures_print(table);
 }
@@ -258,7 +258,7 @@ static void print_horizon(const Scenario *w, const MeasureOrder *order, const Ho
             printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
     printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
            h->distance_at_end);
-    figures_replicates(table, order, r);
+    figures_replicates(table, order, r, NULL);
     figures_print(table);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cmd/show.h"
 #include "evaluate/measures.h"
 #include "store/run_read.h"
 
@@ -320,4 +321,14 @@ Status weights_check(const Schema *schema, const char *option, const double weig
         sum += weights[k];
     }
     return sum > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "%s: all of them are 0", option);
+}
+
+void figures_of_run(json_t *table, const Run *run, const char *label, size_t row)
+{
+    const Evaluation *e = &run->table.row[row];
+    double error[OBJECTIVES_MAX];
+    run_likely(run, row, error);
+    const int is_sd = run_is_unpredictable(run, row);
+    figures_design(table, label, e->id, &run->schema, run_f(run, row), is_sd ? NULL : error, is_sd ? error : e->sd,
+                   e->extra);
 }

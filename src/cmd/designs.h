@@ -11,6 +11,7 @@
 #ifndef IMTET_CMD_DESIGNS_H
 #define IMTET_CMD_DESIGNS_H
 
+#include "base/json.h"
 #include "scene/design.h"
 #include "store/run.h"
 
@@ -47,5 +48,9 @@ Status pairs_take(const Schema *schema, const char *option, const char *list, do
 
 /* None negative, and not all of them 0. */
 Status weights_check(const Schema *schema, const char *option, const double weights[], Err *err);
+
+/* A design of a run in a table for people, with its likely errors, or its standard deviations where it cannot be
+ * predicted or has replicates. */
+void figures_of_run(json_t *table, const Run *run, const char *label, size_t row);
 
 #endif

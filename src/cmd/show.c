@@ -452,7 +452,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     return row;
 }
 
-void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r)
+void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[])
 {
     char label[96];
     const int has_sd = r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]);
@@ -467,7 +467,8 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
         snprintf(label + strlen(label), sizeof label - strlen(label), ", sd %s", r->spread);
     json_object_set_new(row, "", json_string(label));
     for (int i = 0; i < order->n_obj && !r->n_failed; i++)
-        figures_put(row, measure(order->of[i])->name, r->mean[order->of[i]], NAN, has_sd ? r->sd[order->of[i]] : NAN);
+        figures_put(row, measure(order->of[i])->name, r->mean[order->of[i]], error ? error[order->of[i]] : NAN,
+                    has_sd ? r->sd[order->of[i]] : NAN);
     if (!r->n_failed)
         figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, has_sd ? r->sd[MEASURE_IMPACTS] : NAN);
 }

@@ -179,7 +179,8 @@ static Status choose_channel(const Record *r, const char *path, const char *want
     if (!automatic || n > 1)
         *out = automatic ? NULL : find_channel(r, wanted);
     if (!*out && automatic)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)", path,
                     r->n_channels, list);
     if (!*out)
         return fail(err, STATUS_BAD_DATA, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path,

@@ -52,6 +52,14 @@ int run_likely(const Run *run, size_t row, double error[])
     return err != NULL;
 }
 
+int run_is_unpredictable(const Run *run, size_t row)
+{
+    for (size_t i = 0; i < run->finer.n; i++)
+        if (run->finer.row[i].id == run->table.row[row].id)
+            return run->finer.row[i].reason[0] != 0;
+    return 0;
+}
+
 void run_steps(const Run *run, size_t row, SimOptions *sim)
 {
     const SimOptions *set = &run->settings->sim;

@@ -93,6 +93,9 @@ void run_minimise(const Run *run, size_t row, double f[]); /* the same, minimise
  * any is there. */
 int run_likely(const Run *run, size_t row, double error[]);
 
+/* Whether that is a standard deviation under gaps that are 1 um off: the design cannot be predicted. */
+int run_is_unpredictable(const Run *run, size_t row);
+
 /* The steps by which the run knows that design, where sim has the accuracy of its settings. */
 void run_steps(const Run *run, size_t row, SimOptions *sim);
 

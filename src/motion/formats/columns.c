@@ -53,10 +53,14 @@ static int names_seconds(Cell c)
     return text_is(EQUALS, c.from, c.to, "s|sec|secs|second|seconds");
 }
 
-/* Or a period; the last two are the first letters of both in Japanese and Chinese. */
+/* Or a period, by name or as the T of an oscillator; the last two are the first letters of both in Japanese and
+ * Chinese. */
 static int names_frequency(Cell c)
 {
-    return text_is(HOLDS, c.from, c.to, "period|freq|frec|[hz|(hz|_hz|\xe5\x91\xa8|\xe9\xa2\x91");
+    const char *p = c.from;
+    const Cell word = cell_next(&p, c.to, "_ ()[],");
+    return text_is(EQUALS, word.from, word.to, "tn|t0|t1|t2") ||
+           text_is(HOLDS, c.from, c.to, "period|freq|frec|omega|[hz|(hz|_hz|\xe5\x91\xa8|\xe9\xa2\x91");
 }
 
 /* "time", "t [s]", "Zeit", or anything in seconds but a period. */
