@@ -59,7 +59,7 @@ REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html doc
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)
-	@scripts/tables study trust
+	@scripts/tables building study trust
 
 pages: promise study paper ## every page that names designs, of one study and one program
 
