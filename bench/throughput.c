@@ -20,7 +20,7 @@ static const struct {
              {"ARKODE IMEX at equal error", ENGINE_ARKODE_IMEX, 1e-3, 0.8, 8},
              {"CVODE Adams at equal error", ENGINE_CVODE, 3e-4, 0.5, 2}};
 enum { N_PEERS = sizeof PEERS / sizeof PEERS[0] };
-static const double FINEST = 1e-2; /* of the coarsest */
+static const double FINEST = 1e-3; /* of the coarsest */
 
 typedef struct {
     const SceneOptions *settings;

@@ -90,7 +90,8 @@ async function downloaded() {
 
 const counted = async () => +(await page.evaluate("document.getElementById('count').textContent")).replace(/ of.*/, "").replaceAll(",", "");
 const tableIds = () => page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr:not([hidden])'), (tr) => +tr.dataset.id)");
-const csvOf = (chosen) => [names.join(","), ...chosen.map((i) => lines[i])].join("\n") + "\n";
+const errors = () => (lines[0].split(",").length > names.length ? run.schema.objectives.map((c) => `err_${c.name}`) : []);
+const csvOf = (chosen) => [[...names, ...errors()].join(","), ...chosen.map((i) => lines[i])].join("\n") + "\n";
 
 // ---- what is tried
 

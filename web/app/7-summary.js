@@ -48,6 +48,12 @@ function sentence(d) {
 
 const VERDICT = { "-1": ["worse", "\u2716"], 0: ["same", "="], 1: ["better", "\u2714"] };
 
+// The value, and behind it in small what is not known of it and the unit.
+function shownValue(c, value, error) {
+  const [known, rest] = value === null ? ["failed"] : figureText(positive(c, value * c.factor), error === null ? NaN : error * c.factor).split(/(?= \u00b1)/);
+  return [known, " ", element("small", {}, `${rest ? rest.trim() + " " : ""}${c.unit}`)];
+}
+
 function cards(raw, error) {
   const against = (c, k, o) => {
     const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
@@ -56,7 +62,7 @@ function cards(raw, error) {
   };
   return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
-    element("div", { class: "value" }, raw[k] === null ? "failed" : figureText(positive(c, raw[k] * c.factor), error?.[k] === null ? NaN : error?.[k] * c.factor), " ", element("small", {}, c.unit)),
+    element("div", { class: "value" }, ...shownValue(c, raw[k], error?.[k])),
     ...overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o)))));
 }
 
