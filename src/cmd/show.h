@@ -53,8 +53,8 @@ void show_motion(FILE *out, const Motion *m, double duration_s);
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
                        const double error[], const double sd[]);
 
-/* A row of means and standard deviations of the objectives; without them where a replicate failed. error: likely ones of
- * the integration (N_MEASURES), which every replicate has; NULL: not known. */
+/* A row of means and standard deviations of the objectives; without them where a replicate failed. error: likely ones
+ * of the integration (N_MEASURES), which every replicate has; NULL: not known. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[]);
 
 /* A design: label, number (0: none), objectives with their likely errors and standard deviations (n_obj) or NULL, and
