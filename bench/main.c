@@ -306,10 +306,9 @@ static const Command COMMANDS[] = {
      .summary = "how often every accuracy holds what it promises",
      .example = "imtet-bench promise --scenes 10",
      .details =
-         "Runs random scenes of six kinds of gaps by the engine fast at every accuracy: quantiles of the errors "
-         "against\n"
-         "accuracy fine, share of the predictable ones that hold the promise, time; true over likely error; and fine\n"
-         "against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",
+         "Runs random scenes of six kinds of gaps by the engine fast at every accuracy: quantiles of the errors\n"
+         "against accuracy fine, share of the predictable ones that hold the promise, time; true over likely\n"
+         "error; and fine against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",
      .options = PROMISE_OPTIONS,
      .run = run_promise,
      .program = "imtet-bench"},

@@ -30,6 +30,7 @@ typedef struct {
     int n, n_judged;
     FILE *out;
     TimedRun *seen, *reference;
+    TimedRun *judged; /* (n_judged) the window of each with REFERENCE_STEPS */
 } Throughput;
 
 static Status take(Throughput *t, int design, int whole, Err *err)
@@ -67,15 +68,23 @@ static Status run_fast(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
+static Status find_references(Throughput *t, Err *err)
+{
+    for (int k = 0; k < t->n_judged; k++) {
+        TRY(take(t, k, 0, err));
+        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, &t->judged[k], err));
+    }
+    return STATUS_OK;
+}
+
 /* Median over the judged designs of the error in the window. */
 static Status judge(Throughput *t, int engine, double tolerance, double *error, Err *err)
 {
     double errors[JUDGED];
     for (int k = 0; k < t->n_judged; k++) {
         TRY(take(t, k, 0, err));
-        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, t->reference, err));
         TRY(timed_run(&t->bench_case, engine, ACCURACY_STANDARD, tolerance, t->seen, err));
-        const RunErrors e = run_errors(&t->bench_case, t->seen, t->reference);
+        const RunErrors e = run_errors(&t->bench_case, t->seen, &t->judged[k]);
         errors[k] = t->seen->result.outcome == RUN_OK && isfinite(e.objectives) ? e.objectives : HUGE_VAL;
     }
     *error = bench_median(t->n_judged, errors);
@@ -121,6 +130,7 @@ static Status compare(Throughput *t, const char *label, int engine, double toler
 static Status compare_all(Throughput *t, int quick, Err *err)
 {
     double allowed, plain, tolerance[N_PEERS], error[N_PEERS];
+    TRY(find_references(t, err));
     TRY(judge(t, ENGINE_FAST, 0, &allowed, err));
     TRY(judge(t, ENGINE_ETDRK4, PLAIN_STEP, &plain, err));
     for (size_t i = 0; i < N_PEERS; i++)
@@ -147,10 +157,11 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
                     .out = out};
     double start;
     t.window = bench_window(motion, &start);
-    t.seen = malloc(2 * sizeof *t.seen);
+    t.seen = malloc((2 + JUDGED) * sizeof *t.seen);
     if (!t.seen)
         return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
     t.reference = t.seen + 1;
+    t.judged = t.seen + 2;
     Status status = bench_case_open(&t.bench_case, bench_kind(2), s, motion, quick, err);
     if (status == STATUS_OK)
         status = run_fast(&t, err);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "base/units.h"
 #include "report/history.h"
 #include "motion/spectrum.h"
@@ -42,18 +43,29 @@ static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *er
 
 /* -- contacts one by one ------------------------------------------------------------------------------------------- */
 
+/* Of the run under way, which may be repeated with shorter steps. */
 typedef struct {
-    FILE *rows; /* of the run under way, which may be repeated with shorter steps */
+    FILE *rows; /* NULL: no memory */
+    char *text;
+    size_t length;
     long design;
 } ContactRows;
 
+static void begin_rows(ContactRows *r)
+{
+    if (r->rows)
+        text_close(r->rows);
+    free(r->text);
+    r->rows = text_open(&r->text, &r->length);
+}
+
 static void add_contact(const SimContact *c, void *user)
 {
-    const ContactRows *r = user;
-    if (!c) { /* a run begins */
-        rewind(r->rows);
+    ContactRows *r = user;
+    if (!c) /* a run begins */
+        begin_rows(r);
+    if (!c || !r->rows)
         return;
-    }
     fprintf(r->rows, "%ld,%d,%d,%d", r->design, c->floor + 1, c->side, c->open);
     print_cells(
         r->rows, 8,
@@ -70,19 +82,15 @@ static void write_contacts_header(FILE *out, int n_floors)
 
 static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    char *text = NULL;
-    size_t length = 0;
-    ContactRows rows = {open_memstream(&text, &length), number_of(job, i)};
-    if (!rows.rows)
-        return fail(err, STATUS_NO_MEMORY, "--contacts: no memory");
+    ContactRows rows = {.design = number_of(job, i)};
+    begin_rows(&rows);
     sim_worker_contacts(worker, add_contact, &rows);
     Status status = run_again(job, worker, i, err);
-    const long end = ftell(rows.rows);
-    if ((fclose(rows.rows) != 0 || end < 0) && status == STATUS_OK)
+    if ((!rows.rows || text_close(rows.rows) != 0) && status == STATUS_OK)
         status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for the contacts of design %ld", rows.design);
     if (status == STATUS_OK)
-        fwrite(text, 1, (size_t)end, out);
-    free(text);
+        fwrite(rows.text, 1, rows.length, out);
+    free(rows.text);
     return status;
 }
 

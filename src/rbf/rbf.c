@@ -325,6 +325,7 @@ size_t rbf_left_out(const Rbf *m)
     return n;
 }
 
+/* A variable at its bound has no logarithm: it is taken as if it were this near to it. */
 static double log_away(double u)
 {
     return log(u < 1e-9 ? 1e-9 : u);

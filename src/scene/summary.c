@@ -193,8 +193,7 @@ Status condensation_warnings(const Building *b, const BuildingOptions *o, WarnFn
         if (is > 0 && should > 0 && fabs(is / should - 1) > PERIOD_ERROR_MAX)
             say(&(Warner){warn, user}, "building.rigid_floors",
                 "off: period %d is %.4g s with one node for each floor, %.4g s in the full model; set building.modes, "
-                "or "
-                "leave floors rigid",
+                "or leave floors rigid",
                 i + 1, is, should);
     }
     building_free(&full);

@@ -632,6 +632,12 @@ void store_free(RunStore *store)
 
 /* -- designs from outside ------------------------------------------------------------------------------------------ */
 
+/* Of the session, or where none was begun, of the run as it is stored. */
+static const Schema *schema_of_store(const RunStore *store)
+{
+    return store->schema ? store->schema : &store->run.schema;
+}
+
 /* Behind all that are there, as of the last generation. */
 static Status insert_polished(RunStore *store, const Evaluation *design, long *id, Err *err)
 {
@@ -642,7 +648,7 @@ static Status insert_polished(RunStore *store, const Evaluation *design, long *i
     *id = e.id = (long)last + 1;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;
-    return rows_insert(store->db, ROWS_EVALUATION, store->schema ? store->schema : &store->run.schema, &e, err);
+    return rows_insert(store->db, ROWS_EVALUATION, schema_of_store(store), &e, err);
 }
 
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id, Err *err)
@@ -659,7 +665,6 @@ Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *er
 {
     Status status = begin(store, err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status =
-            rows_insert(store->db, ROWS_FINER, store->schema ? store->schema : &store->run.schema, &better[i], err);
+        status = rows_insert(store->db, ROWS_FINER, schema_of_store(store), &better[i], err);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }

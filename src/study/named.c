@@ -4,13 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/estimate.h"
+#include "base/stat.h"
 #include "evaluate/adapter.h"
 
 /* Times that the steps are doubled; copies of a design; designs looked at together, then the front is formed again; how
  * often, so that names which move again and again come to an end. */
 enum { LEVELS = 4, COPIES = 2, TOGETHER = 4, ROUNDS = 32 };
-
-static const double CHANGE_M = 1e-6;
 
 /* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
 static const double PROMISE[N_MEASURES] = {[MEASURE_J1] = 1e-3,  [MEASURE_J2] = 3e-3,     [MEASURE_J3] = 1e-2,
@@ -167,20 +167,18 @@ static Status climb(Work *w, Err *err)
 /* Signs as in the columns of a Hadamard matrix, so that no two copies move the gaps alike. */
 static void change_gaps(const Schema *s, size_t copy, double x[])
 {
-    for (size_t j = 0, gap = 1; j < s->n_var; j++)
-        if (strncmp(schema_variable(s, j)->name, "gap_", 4) == 0)
-            x[j] += __builtin_popcountl(gap++ & (copy + 1)) % 2 ? CHANGE_M : -CHANGE_M;
+    for (size_t j = 0; j < (size_t)s->design.n_gaps; j++)
+        x[j] += __builtin_popcountl((j + 1) & (copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M;
 }
 
 /* Of the design's own value and those of its copies. */
 static double deviation(const Evaluation copies[], double own, const Schema *s, size_t k)
 {
-    double mean = own / (COPIES + 1), square = 0.0;
+    double v[1 + COPIES] = {own}, mean, sd;
     for (size_t c = 0; c < COPIES; c++)
-        mean += answer(&copies[c], s, k) / (COPIES + 1);
-    for (size_t c = 0; c < COPIES; c++)
-        square += pow(answer(&copies[c], s, k) - mean, 2.0);
-    return sqrt((square + pow(own - mean, 2.0)) / COPIES);
+        v[1 + c] = answer(&copies[c], s, k);
+    mean_and_sd_of(1 + COPIES, v, &mean, &sd);
+    return sd;
 }
 
 /* Of the n designs in w->asked, by copies at that level. */

@@ -162,12 +162,13 @@ Status polish_run(Queue *queue, const PolishGoal *goal, Polished *best, Err *err
     p.first = p.least = value_of(&p, best->f);
     p.store = carve_all(layout, &p);
     Status status = p.store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    double step = STEP;
     int idle = 0;
-    for (double step = STEP;
-         status == STATUS_OK && !is_spent(&p) && step > STEP_MIN && idle<IDLE_MAX; step *= idle> 0 ? 0.5 : 1.0) {
+    while (status == STATUS_OK && !is_spent(&p) && step > STEP_MIN && IDLE_MAX > idle) {
         const double before = p.least;
         status = descend(&p, step);
         idle = before - p.least > goal->gain_min ? 0 : idle + 1;
+        step *= idle > 0 ? 0.5 : 1.0;
     }
     free(p.store);
     return status;
