@@ -16,6 +16,7 @@
 #include "store/run_read.h"
 #include "report/importance.h"
 #include "report/report.h"
+#include "report/report_json.h"
 #include "scene_options.h"
 #include "settings/settings.h"
 #include "report/words.h"
@@ -337,6 +338,35 @@ TEST(an_objective_of_several_simulations_says_of_which)
         words_of_rule(&s, text);
         assert_string_equal(text, CASES[i].wanted);
     }
+}
+
+/* The band of the page ends where the worst of the records, simulated each on its own, ends. */
+TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
+{
+    static const char *const RECORDS[] = {"builtin:kobe-like", "builtin:sylmar-like", "builtin:elcentro-like"};
+    Err err = {0};
+    Settings s = *tower.settings;
+    Detail several, alone;
+    CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
+    const double *x = tower.table.row[run_knee(&tower)].x;
+    const DetailOptions options = {.floor = -1, .without_devices = 1, .other = &s};
+    CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
+    json_t *page = detail_json(&several, &tower.schema.order),
+           *ends = json_object_get(json_object_get(page, "band"), "drift_m");
+    double low = INFINITY, high = 0;
+    for (int i = 0; i < 3; i++) {
+        CHECK_OK(settings_put(&s, "motion.records", "none", &err), &err);
+        CHECK_OK(settings_put(&s, "motion.record", RECORDS[i], &err), &err);
+        CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &alone, &err), &err);
+        low = fmin(low, alone.result[SCENE_IMPACT].peak_drift_m[4]);
+        high = fmax(high, alone.result[SCENE_IMPACT].peak_drift_m[4]);
+        detail_free(&alone);
+    }
+    assert_true(low < 0.98 * high);
+    assert_close(json_number_value(json_array_get(json_array_get(ends, 0), 4)), low, 1e-12);
+    assert_close(json_number_value(json_array_get(json_array_get(ends, 1), 4)), high, 1e-12);
+    json_decref(page);
+    detail_free(&several);
 }
 
 static int is_among(size_t row, size_t n, const size_t rows[])

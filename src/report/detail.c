@@ -28,6 +28,21 @@ static Status simulate(const Problem *p, const double x[], BaselineKind last, De
     return STATUS_OK;
 }
 
+/* As designed: replicates are not among them. */
+static Status simulate_records(const Problem *p, const double x[], Detail *d, Err *err)
+{
+    SimTask tasks[TOWER_RECORDS_MAX];
+    d->n_records = tower_n_records(tower_of(p));
+    if (d->n_records < 2)
+        return STATUS_OK;
+    for (size_t i = 0; i < d->n_records; i++)
+        tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = x, .scene = i};
+    d->by_record = calloc(d->n_records, sizeof *d->by_record);
+    if (!d->by_record)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu results", d->n_records);
+    return tower_simulate(p, d->n_records, tasks, d->by_record, err);
+}
+
 static void describe(const Scenario *w, const double x[], Detail *d)
 {
     const int n = d->n_floors;
@@ -143,6 +158,7 @@ static Status take_here(const Problem *p, const double x[], const DetailOptions 
     double rigid_hz[FLOORS_MAX], mass;
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
+    TRY(simulate_records(p, x, d, err));
     TRY(simulate(p, x, options->without_devices ? BASELINE_RIGID : BASELINE_LINKS, d, err));
     return take_histories(w, x, d, err);
 }
@@ -198,5 +214,6 @@ void detail_free(Detail *d)
         history_free(&d->history[i]);
     free(d->spectrum);
     free(d->elsewhere);
+    free(d->by_record);
     memset(d, 0, sizeof *d);
 }

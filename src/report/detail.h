@@ -35,6 +35,8 @@ typedef struct {
     SimResult result[N_SCENES];     /* by SceneKind, under the first record */
     double error[N_MEASURES];       /* likely ones of the design (analysis/estimate.h); NAN: not known */
     Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
+    size_t n_records;               /* of the run */
+    SimResult *by_record;           /* (n_records) the design under each of them; NULL: there is one */
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
     Spectrogram *spectrum; /* (2) the same */

@@ -127,6 +127,30 @@ static json_t *json_of_forces(const SimResult *r)
                      f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
 }
 
+/* What every floor reaches at least and at most under the records of the run; empty: there is one. A record under which
+ * the design fails is left out. */
+static json_t *json_of_band(const Detail *d)
+{
+    static const char *const KEYS[] = {"displacement_m", "drift_m", "acceleration_g"};
+    json_t *band = json_object();
+    for (int k = 0; k < 3 && d->by_record; k++) {
+        double low[FLOORS_MAX], high[FLOORS_MAX];
+        for (int j = 0; j < d->n_floors; j++) {
+            low[j] = INFINITY, high[j] = 0;
+            for (size_t i = 0; i < d->n_records; i++) {
+                const SimResult *r = &d->by_record[i];
+                const double *peak[] = {r->peak_displacement_m, r->peak_drift_m, r->peak_acceleration_g};
+                const double v = r->outcome == RUN_OK ? peak[k][j] : NAN;
+                low[j] = fmin(low[j], v);
+                high[j] = fmax(high[j], v);
+            }
+        }
+        const size_t n = (size_t)d->n_floors;
+        json_object_set_new(band, KEYS[k], json_pack("[o, o]", json_numbers(n, low), json_numbers(n, high)));
+    }
+    return band;
+}
+
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     static const char *const KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
@@ -153,6 +177,8 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     for (int k = 0; k < order->n_obj; k++)
         json_array_append_new(error, json_number(d->error[order->of[k]]));
     json_object_set_new(o, "error", error);
+    json_object_set_new(o, "band", json_of_band(d));
+    json_object_set_new(o, "records", json_integer((json_int_t)d->n_records));
     for (int k = 0; k < N_SCENES; k++)
         json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
     return o;

@@ -73,12 +73,14 @@ window.addEventListener("afterprint", () => {
 });
 
 // Lines over the height: { name, values from the first floor up, colour, symbol: of a dot on every floor, dash, thick }.
-function heightChart(width, height, label, lines, floor = "floor") {
+// band: [lows, highs] behind the lines.
+function heightChart(width, height, label, lines, floor = "floor", band = null) {
   const rows = lines.flatMap(({ values, ...one }) => values.map((v, j) => ({ ...one, v, floor: j + 1 })));
   return chart({
     width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: 4 }, y: { ...floorAxis(lines[0].values.length), label: floor },
     color: { type: "identity" }, symbol: { type: "identity" },
     marks: [
+      band ? charts.rectX(band[0].map((low, j) => ({ low, high: band[1][j], floor: j + 1 })), { x1: "low", x2: "high", y1: (r) => r.floor - 0.5, y2: (r) => r.floor + 0.5, fill: lines[0].colour, fillOpacity: 0.18, title: (r) => `all records, ${floor} ${r.floor}: ${show(r.low)} to ${show(r.high)}` }) : null,
       ...lines.map(({ name, dash, thick = 1.8 }) => charts.line(rows.filter((r) => r.name === name), { x: "v", y: "floor", stroke: "colour", strokeWidth: thick, strokeDasharray: dash })),
       charts.dot(rows.filter((r) => r.symbol), { x: "v", y: "floor", r: 3, fill: "colour", symbol: "symbol", title: (r) => `${r.name}, ${floor} ${r.floor}: ${show(r.v)}` }),
       charts.ruleX([0]),

@@ -115,7 +115,7 @@ function summaryPart() {
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
-  if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)} alone.`));
+  if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 290);
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());

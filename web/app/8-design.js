@@ -48,9 +48,9 @@ function forceFigures(host, d) {
 }
 
 // scenes: [[key, result]]
-function peakFigure(host, scenes, key, title, label, height) {
+function peakFigure(host, scenes, key, title, label, height, band) {
   const lines = scenes.map(([scene, r]) => ({ name: SCENES[scene].words, colour: SCENES[scene].colour, symbol: SCENES[scene].symbol, values: r[key] }));
-  figure(host, title, null, (width) => heightChart(width, height, label, lines));
+  figure(host, title, null, (width) => heightChart(width, height, label, lines, "floor", band?.[key]));
 }
 
 const scenesOf = (d) => [["impacts", d.with_core], ["no_core", d.no_core], ["rigid", d.rigid], ["tmd", d.tmd], ["links", d.links]].filter(([, s]) => s?.objectives);
@@ -60,9 +60,9 @@ function peakPart(host, d, height) {
   if (!scenes.length) return;
   host.append(sceneLegend(scenes.map(([key]) => key)));
   const grid = host.appendChild(element("div", { class: "grid3" }));
-  peakFigure(grid, scenes, "displacement_m", "Displacement", "peak displacement [m]", height);
-  peakFigure(grid, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]", height);
-  peakFigure(grid, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]", height);
+  peakFigure(grid, scenes, "displacement_m", "Displacement", "peak displacement [m]", height, d.band);
+  peakFigure(grid, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]", height, d.band);
+  peakFigure(grid, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]", height, d.band);
 }
 
 // ---- where the energy goes
