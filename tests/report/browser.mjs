@@ -68,10 +68,16 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
       return result.value;
     }
 
+    // While the page changes to another one, nobody is there to answer.
+    const isBetweenPages = (error) => /navigated or closed|context was destroyed|Cannot find (default execution )?context/.test(error.message);
+    const isTrue = (expression) => evaluate(expression).catch((error) => {
+      if (!isBetweenPages(error)) throw error;
+    });
+
     // Until the expression is true; it is asked every 20 ms.
     async function until(expression, seconds = 60) {
       const end = Date.now() + 1000 * seconds;
-      while (!(await evaluate(expression))) {
+      while (!(await isTrue(expression))) {
         if (Date.now() > end) throw new Error(`never came true: ${expression}`);
         await new Promise((resolve) => setTimeout(resolve, 20));
       }
