@@ -109,13 +109,12 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_PROBLEM = {
     .name = "problem",
     .operand = "NAME",
-    .summary = "the search on a problem from a textbook: dtlz2, wfg4, ...",
+    .summary = "the search on a problem from a textbook: dtlz2, wfg4",
     .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
     .details =
         "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
         "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
-        "noisy objectives of the search stand before the exact ones. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
-        "dtlz5, dtlz7, wfg5.",
+        "noisy objectives of the search stand before the exact ones.",
     .options = OPTIONS,
     .run = run,
 };

@@ -6,65 +6,18 @@
 
 #include "base/random.h"
 
-static double square_off_middle(size_t n_var, size_t n_obj, const double x[])
+void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[])
 {
     double g = 0.0;
     for (size_t d = n_obj - 1; d < n_var; d++)
         g += (x[d] - 0.5) * (x[d] - 0.5);
-    return g;
-}
-
-/* Point of the sphere of that radius with the angles pi/2 p. */
-static void on_sphere(size_t n_obj, double radius, const double p[], double f[])
-{
     for (size_t k = 0; k < n_obj; k++) {
-        f[k] = radius;
+        f[k] = 1.0 + g;
         for (size_t d = 0; d + k + 1 < n_obj; d++)
-            f[k] *= cos(p[d] * M_PI_2);
+            f[k] *= cos(x[d] * M_PI_2);
         if (k > 0)
-            f[k] *= sin(p[n_obj - 1 - k] * M_PI_2);
+            f[k] *= sin(x[n_obj - 1 - k] * M_PI_2);
     }
-}
-
-void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[])
-{
-    on_sphere(n_obj, 1.0 + square_off_middle(n_var, n_obj, x), x, f);
-}
-
-static void dtlz5(size_t n_var, size_t n_obj, const double x[], double f[])
-{
-    const double g = square_off_middle(n_var, n_obj, x);
-    double p[TEXTBOOK_OBJ_MAX];
-    for (size_t d = 0; d + 1 < n_obj; d++)
-        p[d] = d == 0 ? x[0] : (1.0 + 2.0 * g * x[d]) / (2.0 * (1.0 + g));
-    on_sphere(n_obj, 1.0 + g, p, f);
-}
-
-static void dtlz1_inverted(size_t n_var, size_t n_obj, const double x[], double f[])
-{
-    double g = 100.0 * (double)(n_var - n_obj + 1);
-    for (size_t d = n_obj - 1; d < n_var; d++)
-        g += 100.0 * ((x[d] - 0.5) * (x[d] - 0.5) - cos(20.0 * M_PI * (x[d] - 0.5)));
-    for (size_t k = 0; k < n_obj; k++) {
-        double h = 1.0;
-        for (size_t d = 0; d + k + 1 < n_obj; d++)
-            h *= x[d];
-        if (k > 0)
-            h *= 1.0 - x[n_obj - 1 - k];
-        f[k] = 0.5 * (1.0 + g) * (1.0 - h);
-    }
-}
-
-static void dtlz7(size_t n_var, size_t n_obj, const double x[], double f[])
-{
-    double g = 1.0, h = (double)n_obj;
-    for (size_t d = n_obj - 1; d < n_var; d++)
-        g += 9.0 * x[d] / (double)(n_var - n_obj + 1);
-    for (size_t k = 0; k + 1 < n_obj; k++) {
-        f[k] = x[k];
-        h -= x[k] / (1.0 + g) * (1.0 + sin(3.0 * M_PI * x[k]));
-    }
-    f[n_obj - 1] = (1.0 + g) * h;
 }
 
 /* Huband et al., table XI: A minima, hill size B, global minimum at C. */
@@ -76,15 +29,6 @@ static double s_multi(double y)
     return fmin(fmax(t, 0.0), 1.0);
 }
 
-/* Huband et al., table XI: global minimum at A with aperture B, deceptive minima of value C at both ends. */
-static double s_decept(double y)
-{
-    static const double A = 0.35, B = 0.001, C = 0.05;
-    const double left = floor(y - A + B) * (1.0 - C + (A - B) / B) / (A - B);
-    const double right = floor(A + B - y) * (1.0 - C + (1.0 - A - B) / B) / (1.0 - A - B);
-    return fmin(fmax(1.0 + (fabs(y - A) - B) * (left + right + 1.0 / B), 0.0), 1.0);
-}
-
 static double mean_of(size_t first, size_t end, const double t[])
 {
     double sum = 0.0;
@@ -93,18 +37,12 @@ static double mean_of(size_t first, size_t end, const double t[])
     return sum;
 }
 
-/* 2 (n_obj - 1) position variables, or as much of that as leaves a variable for the distance. */
-static size_t n_position_of(size_t n_var, size_t n_obj)
-{
-    const size_t once = n_obj - 1;
-    return 2 * once < n_var ? 2 * once : once;
-}
-
-/* The concave front of WFG4 to WFG9, from the variables after their first transformation. */
-static void concave(size_t n_var, size_t n_obj, size_t n_position, const double t[], double f[])
+void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[])
 {
     const size_t group = n_position / (n_obj - 1);
-    double p[TEXTBOOK_OBJ_MAX];
+    double t[TEXTBOOK_VAR_MAX], p[TEXTBOOK_OBJ_MAX];
+    for (size_t i = 0; i < n_var; i++)
+        t[i] = s_multi(z[i] / (2.0 * (double)(i + 1)));
     for (size_t k = 0; k + 1 < n_obj; k++)
         p[k] = mean_of(k * group, (k + 1) * group, t);
     const double far = mean_of(n_position, n_var, t);
@@ -118,31 +56,14 @@ static void concave(size_t n_var, size_t n_obj, size_t n_position, const double 
     }
 }
 
-void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[])
-{
-    double t[TEXTBOOK_VAR_MAX];
-    for (size_t i = 0; i < n_var; i++)
-        t[i] = s_multi(z[i] / (2.0 * (double)(i + 1)));
-    concave(n_var, n_obj, n_position, t, f);
-}
-
+/* 2 (n_obj - 1) position variables, or as much of that as leaves a variable for the distance. */
 static void wfg4(size_t n_var, size_t n_obj, const double z[], double f[])
 {
-    textbook_wfg4(n_var, n_obj, n_position_of(n_var, n_obj), z, f);
+    const size_t once = n_obj - 1;
+    textbook_wfg4(n_var, n_obj, 2 * once < n_var ? 2 * once : once, z, f);
 }
 
-static void wfg5(size_t n_var, size_t n_obj, const double z[], double f[])
-{
-    double t[TEXTBOOK_VAR_MAX];
-    for (size_t i = 0; i < n_var; i++)
-        t[i] = s_decept(z[i] / (2.0 * (double)(i + 1)));
-    concave(n_var, n_obj, n_position_of(n_var, n_obj), t, f);
-}
-
-static const Textbook PROBLEMS[] = {
-    {"dtlz2", 0, textbook_dtlz2}, {"wfg4", 1, wfg4},   {"dtlz1_inverted", 0, dtlz1_inverted},
-    {"dtlz5", 0, dtlz5},          {"dtlz7", 0, dtlz7}, {"wfg5", 1, wfg5},
-};
+static const Textbook PROBLEMS[] = {{"dtlz2", 0, textbook_dtlz2}, {"wfg4", 1, wfg4}};
 
 const Textbook *textbook(size_t i)
 {

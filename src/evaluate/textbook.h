@@ -6,15 +6,11 @@
  *          the positive part of the ellipsoid with half axes 2, 4, ..., 2 m; the first n_position variables say where
  *          on the front, the others how far from it
  *
- *   and without a form as simple:  dtlz1_inverted (front upside down, 11^16 local ones), dtlz5 (a curve, below it
- *          degenerate pieces), dtlz7 (2^(m-1) pieces), wfg5 (deceptive: the wide basins lead away from the optimum)
- *
  * As a simulator  one part, the objectives f (n_obj), each times 1 + problem.noise z, z standard normal from the stream
  *                 (search.seed, id of the request); one worker, since it takes no time
  * Threads  pure functions
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
- *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4, WFG5); Jain and Deb, IEEE Trans. Evol. Comput. 18 (2014)
- *          602-622 (the inversion). */
+ *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4). */
 #ifndef IMTET_EVALUATE_TEXTBOOK_H
 #define IMTET_EVALUATE_TEXTBOOK_H
 

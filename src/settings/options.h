@@ -15,13 +15,7 @@
 /* -- [problem]: all but the kind only where it is not the tower -- */
 
 /* In the order of evaluate/textbook.h. */
-#define TEXTBOOK_LIST(X)                                                                                               \
-    X(PROBLEM_DTLZ2, "dtlz2")                                                                                          \
-    X(PROBLEM_WFG4, "wfg4")                                                                                            \
-    X(PROBLEM_DTLZ1_INVERTED, "dtlz1_inverted")                                                                        \
-    X(PROBLEM_DTLZ5, "dtlz5")                                                                                          \
-    X(PROBLEM_DTLZ7, "dtlz7")                                                                                          \
-    X(PROBLEM_WFG5, "wfg5")
+#define TEXTBOOK_LIST(X)     X(PROBLEM_DTLZ2, "dtlz2") X(PROBLEM_WFG4, "wfg4")
 #define PROBLEM_KIND_LIST(X) X(PROBLEM_TOWER, "tower") X(PROBLEM_EXTERNAL, "external") TEXTBOOK_LIST(X)
 typedef enum {
     PROBLEM_KIND_LIST(CHOICE_NAME) PROBLEM_KIND_COUNT,
