@@ -52,14 +52,14 @@ static void make_core(CoreBeam *core, const SceneOptions *o, int n)
     CHECK_OK(core_beam_make(core, &o->core, n, storey, 0.02, 0.01, &err), &err);
 }
 
-static SimResult run_system(LinearKind kind, const SceneOptions *o, const Frame *f, const CoreBeam *core,
-                            LinearDevice device, const Motion *motion, double step)
+static SimResult run_system(LinearKind kind, const Frame *f, const CoreBeam *core, LinearDevice device,
+                            const Motion *motion, double step)
 {
     Err err = {0};
     LinearSystem s;
     SimResult r;
     const LinearRun run = {(double)(motion->n - 1) * motion->dt_s, step, NULL, NULL};
-    CHECK_OK(linear_system_make(&s, kind, o, &f->b, core, &device, f->b.n, &err), &err);
+    CHECK_OK(linear_system_make(&s, kind, &f->b, core, &device, f->b.n, &err), &err);
     CHECK_OK(linear_run(&s, motion, &run, &r, &err), &err);
     linear_system_free(&s);
     return r;
@@ -77,7 +77,6 @@ static double amplitude(double w1, double mu, LinearDevice d, double w)
 TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
 {
     enum { SAMPLES = 60001 };
-    const SceneOptions o = paper_scene();
     const double w1 = 2 * M_PI, ratios[] = {0.85, 0.95, 1.1, 1.3};
     double *accel = malloc(SAMPLES * sizeof *accel);
     CoreBeam *core = calloc(1, sizeof *core);
@@ -90,7 +89,7 @@ TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
         for (int i = 0; i < SAMPLES; i++) /* slowly risen, so that no transient is larger than the steady state */
             accel[i] = pow(sin(M_PI / 2 * fmin(i * dt / 250, 1)), 2) * sin(w * i * dt);
         const Motion m = {.dt_s = dt, .n = SAMPLES, .accel = accel};
-        const SimResult r = run_system(LINEAR_TMD, &o, &f, core, d, &m, 0.005);
+        const SimResult r = run_system(LINEAR_TMD, &f, core, d, &m, 0.005);
         assert_close(r.j1_m, amplitude(w1, 0.05, d, w), 2e-3);
         assert_less(r.energy_balance_error, 1e-6);
     }
@@ -284,7 +283,7 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
     make_core(core, &o, N);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
     for (int is_tmd = 0; is_tmd < 2; is_tmd++) {
-        const SimResult r = run_system(is_tmd ? LINEAR_TMD : LINEAR_LINKS, &o, &f, core, d, &m, 5e-4);
+        const SimResult r = run_system(is_tmd ? LINEAR_TMD : LINEAR_LINKS, &f, core, d, &m, 5e-4);
         if (is_tmd)
             lay_out_tmd(&p, &f, core->mass_kg, d);
         else
@@ -310,16 +309,16 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     make_frame(&f, N, 4e7, 1e5, 0.03);
     make_core(core, &o, N);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
-    const SimResult loose = run_system(LINEAR_LINKS, &o, &f, core, (LinearDevice){.link_ns_m = 0}, &m, 5e-4);
+    const SimResult loose = run_system(LINEAR_LINKS, &f, core, (LinearDevice){.link_ns_m = 0}, &m, 5e-4);
     lay_out_tmd(&p, &f, 1e-9, (LinearDevice){.tmd_hz = 1, .tmd_damping = 0.1});
     integrate(&p, N, &m, 200, J);
     assert_close(loose.j1_m, J[0], 1e-6);
     memset(f.zeta, 0, sizeof f.zeta); /* what damping both have together is a matter of its own */
-    o.core.damping = 0;
-    const SimResult rigid = run_system(LINEAR_RIGID, &o, &f, core, (LinearDevice){0}, &m, 5e-4);
+    memset(core->zeta, 0, sizeof core->zeta);
+    const SimResult rigid = run_system(LINEAR_RIGID, &f, core, (LinearDevice){0}, &m, 5e-4);
     double before = INFINITY;
     for (double c = 1e10; c < 1e14; c *= 10) {
-        const SimResult tight = run_system(LINEAR_LINKS, &o, &f, core, (LinearDevice){.link_ns_m = c}, &m, 5e-4);
+        const SimResult tight = run_system(LINEAR_LINKS, &f, core, (LinearDevice){.link_ns_m = c}, &m, 5e-4);
         const double off = fabs(tight.j1_m / rigid.j1_m - 1);
         assert_true(off < 0.3 * before || off < 1e-5);
         before = off;
@@ -353,7 +352,7 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
     invert(N, M, p.M_inverse);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
     integrate(&p, N, &m, 400, J);
-    const SimResult r = run_system(LINEAR_RIGID, &o, &f, core, (LinearDevice){0}, &m, 5e-4);
+    const SimResult r = run_system(LINEAR_RIGID, &f, core, (LinearDevice){0}, &m, 5e-4);
     assert_close(r.j1_m, J[0], 1e-6);
     assert_close(r.j2_m, J[1], 1e-6);
     assert_close(r.j3_g, J[2], 1e-5);

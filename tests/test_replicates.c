@@ -19,7 +19,8 @@ static Settings short_scene(const char *records, long replicates, const char *to
     paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
-    s.sim.forces = FORCES_YES; /* every measure */
+    s.sim.forces = FORCES_YES; /* every measure, those of the ground too */
+    snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=10");
     s.sim.replicates = replicates;
     snprintf(text, sizeof text, "motion.records=%s", records);
     CHECK_OK(settings_set(&s, text, &err), &err);
@@ -182,7 +183,7 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 {
     const Settings s = short_scene("none", 1, "0");
     const SimResult designed = run_scene(&s, NULL);
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 6; k++) {
         Settings other = s;
         AsBuilt b = AS_DESIGNED;
         switch (k) {
@@ -201,6 +202,10 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
         case 3:
             b.core_damping = 0.5;
             other.core.damping *= 0.5;
+            break;
+        case 4:
+            b.ground_stiffness = 0.5;
+            other.core.foundation_factor *= 0.5;
             break;
         default:
             b.building_damping = 3;

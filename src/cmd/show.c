@@ -270,6 +270,7 @@ static const struct {
     FORCE(OF_NUMBER, IF_FORCES, overturning_nm),
     FORCE(OF_FLOORS, IF_FORCES, peak_velocity_m_s),
     FORCE(OF_NUMBER, IN_CORE, core_top_m),
+    FORCE(OF_NUMBER, IN_CORE, base_translation_m),
     FORCE(OF_FLOORS, IN_CORE, core_shear_n),
     FORCE(OF_FLOORS, IN_CORE, core_moment_nm),
     FORCE(OF_STOREY, IN_CORE | IF_STRESS, core_stress_storey),

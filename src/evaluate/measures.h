@@ -57,7 +57,11 @@ enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
       "base shear of the building")                                                                                    \
     X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FORCES, r->forces.base_shear_n, "base shear of building and core")     \
     X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER, r->j3_filtered_g,                                            \
-      "largest floor acceleration behind a low-pass of sim.filter_hz")
+      "largest floor acceleration behind a low-pass of sim.filter_hz")                                                 \
+    X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FORCES, r->forces.base_rotation_rad,                         \
+      "rotation of the core's foundation")                                                                             \
+    X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FORCES, r->forces.uplift_ratio,                                            \
+      "overturning moment of the core over the moment at which its foundation begins to lift")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,

@@ -21,7 +21,7 @@ void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps
 int is_uncertain(const UncertainOptions *u)
 {
     return u->restitution > 0 || u->contact_stiffness > 0 || u->core_stiffness > 0 || u->building_stiffness > 0 ||
-           u->damping > 0;
+           u->damping > 0 || u->ground_stiffness > 0;
 }
 
 const char *spread_word(double tolerance_m, const UncertainOptions *u)
@@ -47,6 +47,7 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
     b.building_stiffness = draw_factor(&random, u->building_stiffness);
     b.core_damping = draw_factor(&random, u->damping);
     b.building_damping = draw_factor(&random, u->damping);
+    b.ground_stiffness = draw_factor(&random, u->ground_stiffness);
     return b;
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/filter.h"
+#include "base/keyed.h"
 #include "base/units.h"
 #include "motion/builtin.h"
 #include "motion/motion_read.h"
@@ -122,55 +123,32 @@ static const double DAMPING = 0.05;
 /* ---- code spectra ------------------------------------------------------------------------------------------------ */
 
 /* The keys of motion.target. */
-enum { FROM, TO, SOIL, AG, S, TB, TC, TD, SDS, SD1, TL, N_KEYS };
-static const struct {
-    const char *key;
-    TargetKind of;                 /* TARGET_NONE: both */
-    double least, most, otherwise; /* 0: none */
-} KEYS[N_KEYS] = {
-    {"from", TARGET_NONE, 1e-3, 1e3, 0.2},  {"to", TARGET_NONE, 1e-3, 1e3, 2},
-    {"soil", TARGET_EUROCODE8, 1, 5, 0},    {"ag", TARGET_EUROCODE8, 1e-6, 1e6, 0},
-    {"s", TARGET_EUROCODE8, 0.1, 10, 0},    {"tb", TARGET_EUROCODE8, 1e-3, 100, 0},
-    {"tc", TARGET_EUROCODE8, 1e-3, 100, 0}, {"td", TARGET_EUROCODE8, 1e-3, 100, 0},
-    {"sds", TARGET_ASCE7, 1e-6, 1e6, 0},    {"sd1", TARGET_ASCE7, 1e-6, 1e6, 0},
-    {"tl", TARGET_ASCE7, 1e-3, 100, 8},
+enum { AG, SOIL, S, TB, TC, TD, SDS, SD1, TL, FROM, TO, N_KEYS };
+enum { EUROCODE8 = 1 << TARGET_EUROCODE8, ASCE7 = 1 << TARGET_ASCE7 };
+static const KeyedNumber KEYS[N_KEYS] = {
+    {"ag", EUROCODE8, 1e-6, 1e6, 0},
+    {"soil", EUROCODE8, 1, 5, 1},
+    {"s", EUROCODE8, 0.1, 10, 0},
+    {"tb", EUROCODE8, 1e-3, 100, 0},
+    {"tc", EUROCODE8, 1e-3, 100, 0},
+    {"td", EUROCODE8, 1e-3, 100, 0},
+    {"sds", ASCE7, 1e-6, 1e6, 0},
+    {"sd1", ASCE7, 1e-6, 1e6, 0},
+    {"tl", ASCE7, 1e-3, 100, 0},
+    {"from", EUROCODE8 | ASCE7, 1e-3, 1e3, 0},
+    {"to", EUROCODE8 | ASCE7, 1e-3, 1e3, 0},
 };
+static const double OTHERWISE[N_KEYS] = {[TL] = 8, [FROM] = 0.2, [TO] = 2};
 
 /* EN 1998-1, Table 3.2: S, TB, TC, TD of ground types A to E, spectrum of type 1. */
 static const double SOILS[][4] = {
     {1, 0.15, 0.4, 2}, {1.2, 0.15, 0.5, 2}, {1.15, 0.2, 0.6, 2}, {1.35, 0.2, 0.8, 2}, {1.4, 0.15, 0.5, 2}};
 
-/* One "key=value"; none twice, for the other one would be lost. */
-static Status take_number(TargetKind kind, const char *word, double x[N_KEYS], Err *err)
-{
-    const size_t length = strcspn(word, "=");
-    const char *value = word + length + (word[length] == '=');
-    char *end;
-    int k = 0;
-    while (k < N_KEYS && !((KEYS[k].of == kind || KEYS[k].of == TARGET_NONE) && strlen(KEYS[k].key) == length &&
-                           strncmp(word, KEYS[k].key, length) == 0))
-        k++;
-    if (k == N_KEYS)
-        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of %s", word,
-                    kind == TARGET_ASCE7 ? "sds= sd1= tl= from= to=" : "ag= soil=A..E s= tb= tc= td= from= to=");
-    if (x[k] != 0)
-        return fail(err, STATUS_BAD_DATA, "motion.target: %s stands twice; the second is '%s'", KEYS[k].key, word);
-    x[k] = strtod(value, &end);
-    if (k == SOIL && *value >= 'A' && *value <= 'E') {
-        x[k] = *value - 'A' + 1;
-        end++;
-    }
-    if (end == value || *end || !(x[k] >= KEYS[k].least && x[k] <= KEYS[k].most))
-        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is no number from %g to %g%s", word, KEYS[k].least,
-                    KEYS[k].most, k == SOIL ? " and no letter from A to E" : "");
-    return STATUS_OK;
-}
-
 /* Both codes rise from 0.4 to a plateau, which ends at TC, and fall with T and from TD on with its square. */
 static Status settle_target(CodeSpectrum *c, double x[N_KEYS], Err *err)
 {
     for (int k = 0; k < N_KEYS; k++)
-        x[k] = x[k] != 0 ? x[k] : k >= S && k <= TD && x[SOIL] > 0 ? SOILS[(int)x[SOIL] - 1][k - S] : KEYS[k].otherwise;
+        x[k] = x[k] != 0 ? x[k] : k >= S && k <= TD && x[SOIL] > 0 ? SOILS[(int)x[SOIL] - 1][k - S] : OTHERWISE[k];
     const int is_eurocode = c->kind == TARGET_EUROCODE8;
     const double ts = x[SD1] / x[SDS];
     *c = is_eurocode ? (CodeSpectrum){c->kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
@@ -201,9 +179,8 @@ Status target_parse(const char *text, CodeSpectrum *out, Err *err)
     if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
         return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...",
                     text);
-    while ((word = strsep(&rest, " ")))
-        if (*word)
-            TRY(take_number(out->kind, word, x, err));
+    if (rest)
+        TRY(keyed_numbers("motion.target", rest, 1u << out->kind, N_KEYS, KEYS, x, err));
     return out->kind == TARGET_NONE ? STATUS_OK : settle_target(out, x, err);
 }
 

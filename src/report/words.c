@@ -31,6 +31,8 @@ static const Words WORDS[N_MEASURES] = {
     [MEASURE_BUILDING_SHEAR] = {"building base shear", "MN", 1e-6},
     [MEASURE_BASE_SHEAR] = {"base shear", "MN", 1e-6},
     [MEASURE_J3_FILTERED] = {"J3 filtered", "g", 1},
+    [MEASURE_BASE_ROTATION] = {"base rotation", "mrad", 1e3},
+    [MEASURE_UPLIFT] = {"moment / uplift", "", 1},
 };
 
 Words words_of_measure(int k)

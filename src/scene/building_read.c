@@ -238,7 +238,7 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
         beam[j] = (Beam){.EI = s->bending, .kGA = s->shear * s->height, .length = s->height};
     }
     if (all.storey[0].bending > 0)
-        TRY(beam_cantilever(n, beam, b->floors.K, b->floors.M, err));
+        TRY(beam_cantilever(n, beam, NULL, b->floors.K, b->floors.M, err));
     else
         shear_building(n, all.storey, b->floors.K);
     memset(b->floors.M, 0, (size_t)(n * n) * sizeof *b->floors.M);

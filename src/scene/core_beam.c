@@ -54,14 +54,18 @@ void beam_element(const Beam *b, double k[4][4], double m[4][4])
 
 /* ---- cantilever ----------------------------------------------------------------------------------------------- */
 
-/* Unknowns: deflections 0..n-1, then rotations n..2n-1. */
-static void assemble(int n, const Beam beam[], double K[], double M[])
+/* Unknowns: deflections 0..n-1, rotations n..2n-1, then those of the base that is not fixed: rotation, translation. */
+static void assemble(int n, const Beam beam[], const Foundation *base, int size, double K[], double M[])
 {
-    const int size = 2 * n;
+    const int turns = base && base->rotation > 0 ? 2 * n : -1, moves = base && base->translation > 0 ? size - 1 : -1;
+    if (turns >= 0)
+        K[turns * size + turns] = base->rotation;
+    if (moves >= 0)
+        K[moves * size + moves] = base->translation;
     for (int e = 0; e < n; e++) {
         double k[4][4], m[4][4];
         beam_element(&beam[e], k, m);
-        const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
+        const int at[4] = {e == 0 ? moves : e - 1, e == 0 ? turns : n + e - 1, e, n + e};
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
                 if (at[i] >= 0 && at[j] >= 0) {
@@ -71,22 +75,25 @@ static void assemble(int n, const Beam beam[], double K[], double M[])
     }
 }
 
-Status beam_cantilever(int n, const Beam beam[], double K[], double M[], Err *err)
+Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err)
 {
-    const size_t size = 2 * (size_t)n, nn = (size_t)n * (size_t)n;
-    double *whole_K = calloc(2 * size * size + 5 * nn, sizeof *whole_K);
+    const int slaves = n + (base && base->rotation > 0) + (base && base->translation > 0);
+    const size_t size = (size_t)(n + slaves), nn = (size_t)n * (size_t)n, rn = (size_t)slaves * (size_t)n;
+    double *whole_K = calloc(2 * size * size + (size_t)(slaves * slaves) + nn + rn + size * (size_t)n, sizeof *whole_K);
     if (!whole_K)
         return fail(err, STATUS_NO_MEMORY, "beam: no memory for %d elements", n);
-    double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + nn, *R = T + nn, *work = R + nn;
-    assemble(n, beam, whole_K, whole_M);
-    for (int i = 0; i < n; i++) {
+    double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + slaves * slaves, *R = T + nn,
+           *work = R + rn;
+    assemble(n, beam, base, (int)size, whole_K, whole_M);
+    for (int i = 0; i < n; i++)
         T[i * n + i] = 1;
-        for (int j = 0; j < n; j++) {
-            Krr[i * n + j] = whole_K[(size_t)(n + i) * size + (size_t)(n + j)];
-            R[i * n + j] = -whole_K[(size_t)(n + i) * size + (size_t)j];
-        }
+    for (int i = 0; i < slaves; i++) {
+        const double *row = whole_K + (size_t)(n + i) * size;
+        memcpy(Krr + i * slaves, row + n, (size_t)slaves * sizeof *row);
+        for (int j = 0; j < n; j++)
+            R[i * n + j] = -row[j];
     }
-    const Status status = linalg_solve_spd(n, n, Krr, R, err);
+    const Status status = linalg_solve_spd(slaves, n, Krr, R, err);
     if (status == STATUS_OK) {
         linalg_congruent((int)size, n, whole_K, T, work, K);
         linalg_congruent((int)size, n, whole_M, T, work, M);
@@ -177,6 +184,34 @@ static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m
     return STATUS_OK;
 }
 
+double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], int stride)
+{
+    double rotation = 0, translation = 0;
+    for (int j = 0; j < c->n; j++) {
+        rotation += c->base_rotation[j] * v[j * stride];
+        translation += c->base_translation[j] * v[j * stride];
+    }
+    return foundation_loss(c->base.rotation, foundation_rotation_dashpot(&c->base, omega), omega) * rotation *
+               rotation +
+           foundation_loss(c->base.translation, c->base.translation_dashpot, omega) * translation * translation;
+}
+
+static void set_base(CoreBeam *c, const double storey_m[])
+{
+    double z = 0;
+    if (c->base.rotation == 0 && c->base.translation == 0)
+        return;
+    for (int j = 0; j < c->n; j++) {
+        z += storey_m[j];
+        for (int i = 0; i < c->n; i++) {
+            c->base_rotation[i] += c->base.rotation > 0 ? z * c->K[j * c->n + i] / c->base.rotation : 0;
+            c->base_translation[i] += c->base.translation > 0 ? c->K[j * c->n + i] / c->base.translation : 0;
+        }
+    }
+    for (int i = 0; i < c->n; i++)
+        c->zeta[i] += core_beam_base_loss(c, c->omega[i], c->phi + i, c->n) / (2 * c->omega[i]);
+}
+
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err)
 {
@@ -184,14 +219,18 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     TRY(check(o, n, t_base_m, t_top_m, err));
     memset(c, 0, sizeof *c);
     c->n = n;
+    TRY(foundation_parse(o->foundation, o->foundation_factor, &c->base, err));
     for (int e = 0; e < n; e++) {
         const CoreStorey section = core_beam_storey(o, n, e, t_base_m, t_top_m);
         beam[e] = storey_beam(o, &section, storey_m[e]);
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }
-    TRY(beam_cantilever(n, beam, c->K, c->M, err));
+    TRY(beam_cantilever(n, beam, &c->base, c->K, c->M, err));
     TRY(linalg_modes(n, c->K, c->M, c->omega, c->phi, err));
     linalg_participation(n, c->M, NULL, c->phi, c->gamma);
+    for (int i = 0; i < n; i++)
+        c->zeta[i] = o->damping;
+    set_base(c, storey_m);
     return STATUS_OK;
 }
 

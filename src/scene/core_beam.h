@@ -1,8 +1,8 @@
 /* scene/core_beam.h -- the light, stiff core as a cantilever with one node per floor.
  *
- * One beam element per storey, constant section inside it, consistent mass, clamped at the ground, the
- * rotations condensed. Thickness, and with `effective` areas and inertia, vary linearly with the storey number j =
- * 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
+ * One beam element per storey, constant section inside it, consistent mass, clamped at the ground or on the springs
+ * of a foundation, the rotations (and the foundation's motion) condensed. Thickness, and with `effective` areas and
+ * inertia, vary linearly with the storey number j = 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
  *
  *   box        A = B^2 - (B-2t)^2,  I = (B^4 - (B-2t)^4)/12,  shear area 20 (1+nu) / (48 + 39 nu) A   (Cowper 1966)
  *   plate      A = b t,             I = b t^3/12,             shear area 5/6 A
@@ -22,11 +22,20 @@
  * 5.6). The mass is consistent with the same shapes, rotary inertia included: Friedman and Kosmatka, Computers and
  * Structures 47 (1993) 473-481.
  *
+ * On a foundation the motion of the base follows by statics from the forces Kc v of the nodes, at heights z:
+ *
+ *   theta = z' Kc v / K_theta,   x = 1' Kc v / K_x
+ *
+ * Its dashpots damp each mode by what they take of its energy, 2 zeta_i w_i = 2 zeta w_i + C_theta(w_i) theta_i^2 +
+ * C_x x_i^2 of the mass-normalised mode; that they couple the modes is left out (tests/test_foundation.c measures it
+ * against complex modes).
+ *
  * Mode shapes are mass-normalised as in scene/building.h. Threads  no state. */
 #ifndef IMTET_SCENE_CORE_BEAM_H
 #define IMTET_SCENE_CORE_BEAM_H
 
 #include "base/status.h"
+#include "scene/foundation.h"
 #include "scene/options.h"
 
 typedef struct {
@@ -39,21 +48,28 @@ typedef struct {
 
 void beam_element(const Beam *b, double k[4][4], double m[4][4]);
 
-/* A cantilever of n beams, clamped where the first begins, condensed to the deflections of their ends by Guyan
- * reduction: T = [1; -Krr^-1 Kru],  K = T' K T,  M = T' M T   (n, n). */
-Status beam_cantilever(int n, const Beam beam[], double K[], double M[], Err *err);
+/* A cantilever of n beams, clamped where the first begins or on the springs of `base` (NULL: clamped), condensed to the
+ * deflections of their ends by Guyan reduction: T = [1; -Krr^-1 Kru],  K = T' K T,  M = T' M T   (n, n). */
+Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err);
 
 typedef struct {
     int n;
     double mass_kg;                                                /* of the whole core, ground node's share included */
     double K[FLOORS_MAX * FLOORS_MAX], M[FLOORS_MAX * FLOORS_MAX]; /* (n, n) */
     double phi[FLOORS_MAX * FLOORS_MAX];                           /* (n, n) column i is mode i */
-    double omega[FLOORS_MAX], gamma[FLOORS_MAX];
+    double omega[FLOORS_MAX], gamma[FLOORS_MAX], zeta[FLOORS_MAX];
+    Foundation base;
+    double base_rotation[FLOORS_MAX], base_translation[FLOORS_MAX]; /* (n) [rad/m], [-] of the base by a unit deflection
+                                                                     * of a node; 0 where it is fixed */
 } CoreBeam;
 
 /* storey_m (n): heights. */
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
+
+/* What the foundation's dashpots add to 2 zeta w of a mass-normalised mode of frequency omega: v, entries `stride`
+ * apart, are the core's nodes in it. */
+double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], int stride);
 
 /* The section in storey 0..n-1. */
 typedef struct {

@@ -6,6 +6,7 @@
 
 #include "base/list.h"
 #include "scene/design.h"
+#include "scene/foundation.h"
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"
 
@@ -38,6 +39,13 @@ static void check_motion(const MotionOptions *m, const Rules *r)
         break_rule(r, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 }
 
+static void check_core(const CoreOptions *o, const Rules *r)
+{
+    Err err;
+    if (foundation_parse(o->foundation, 1, &(Foundation){0}, &err) != STATUS_OK)
+        break_rule(r, "%s", err.text);
+}
+
 static void check_variables(const Settings *s, const Rules *r)
 {
     const DesignOptions *d = &s->design;
@@ -60,8 +68,9 @@ static void check_variables(const Settings *s, const Rules *r)
 static void check_replicates(const Settings *s, const Rules *r)
 {
     const UncertainOptions *u = &s->sim.uncertain;
-    const int varies =
-        u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0;
+    const int varies = u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping +
+                           u->ground_stiffness >
+                       0;
     if (s->sim.gap_tolerance_m > 0 && s->sim.replicates < 2)
         break_rule(r, "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
     if (varies && s->sim.replicates < 2)
@@ -83,6 +92,7 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
     check_motion(&s->motion, r);
+    check_core(&s->core, r);
     check_variables(s, r);
     check_replicates(s, r);
     check_fidelity(&s->search, r);

@@ -64,7 +64,8 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #define ENGINE_WORDS (ENGINE_BARS + 1)
 
 /* In the order of UncertainOptions. */
-static const char UNCERTAIN_WORDS[] = "restitution|contact_stiffness|core_stiffness|building_stiffness|damping";
+static const char UNCERTAIN_WORDS[] =
+    "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness";
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
@@ -104,6 +105,11 @@ static const Option OPTIONS[] = {
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),
     REAL(core.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of the core, for its shear modulus"),
     REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "density of the core"),
+    TEXT(core.foundation, "fixed",
+         "ground under the core: fixed, or a rigid disc on soil=A..D (site class of ASCE 7) or g=PA with radius=M "
+         "[nu=0.3 density=2000 weight=N], or springs rotation=N_m_rad translation=N_m with rotation_dashpot= "
+         "translation_dashpot= (docs/theory.md)"),
+    REAL(core.foundation_factor, "-", "1", 1e-6, 1e6, "the stiffness of that ground times this, to bound it"),
     LIST(core.areas_m2, "m2", "1.567, 0.811", 1e-9, 1e4,
          "effective: areas, in the first and the last storey, or storey by storey from the bottom"),
     LIST(core.inertias_m4, "m4", "25.6201, 24.0503", 1e-9, 1e6, "effective: second moments of area, the same way"),
@@ -182,7 +188,9 @@ static const Option OPTIONS[] = {
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",
         "standard deviations of what is built, as restitution=0.05 damping=0.3: of contact.restitution, and as shares "
-        "of the contact's (bumper included), core's and building's stiffness and of the damping ratios; needs "
+        "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness and of the "
+        "damping "
+        "ratios; needs "
         "sim.replicates >= 2"),
 
     TEXT(design.variables, "gaps, thickness",
@@ -264,7 +272,7 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
 
-_Static_assert(sizeof(UncertainOptions) == 5 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
+_Static_assert(sizeof(UncertainOptions) == 6 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert((int)N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
 _Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
@@ -713,6 +721,7 @@ static const struct {
     {"building.rayleigh_modes", "building.damping_model", "rayleigh"},
     {"core.width_m design.thickness_m", "core.section", "!effective"},
     {"core.areas_m2 core.inertias_m4 core.shear_areas_m2 core.masses_kg", "core.section", "effective"},
+    {"core.foundation_factor", "core.foundation", "!fixed"},
     {"motion.sa_period_s", "motion.sa_g", "!0"},
 };
 

@@ -11,6 +11,7 @@ void as_built_options(const AsBuilt *built, const SceneOptions *o, SceneOptions 
     out->contact.youngs_modulus_pa *= built->contact_stiffness;
     out->contact.bumper_stiffness_n_m *= built->contact_stiffness;
     out->core.youngs_modulus_pa *= built->core_stiffness;
+    out->core.foundation_factor *= built->ground_stiffness;
     out->core.damping *= built->core_damping;
 }
 

@@ -573,6 +573,16 @@ static void report_contacts(const ForceMonitor *m, SimForces *out)
             out->contact_force_max_n = fmax(out->contact_force_max_n, out->contact_force_n[side][j]);
 }
 
+/* The springs carry the base's shear and moment. */
+static void report_foundation(const ForceMonitor *m, SimForces *out)
+{
+    const Foundation f = m->nc > 0 ? m->core->base : (Foundation){0};
+    const double weight = m->nc > 0 ? f.weight_n + GRAVITY * m->core->mass_kg : 0;
+    out->base_rotation_rad = f.rotation > 0 ? out->core_overturning_nm / f.rotation : NAN;
+    out->base_translation_m = f.translation > 0 ? out->core_base_shear_n / f.translation : NAN;
+    out->uplift_ratio = f.radius_m > 0 ? out->core_overturning_nm / foundation_uplift_nm(&f, weight) : NAN;
+}
+
 /* Of output k of the groups from `at` on. */
 static double peak_of(const ForceMonitor *m, int at, int k)
 {
@@ -602,6 +612,7 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
     report_stresses(m, out);
     if (m->nc == 0)
         out->core_base_shear_n = out->core_overturning_nm = out->core_top_m = NAN;
+    report_foundation(m, out);
     if (!out->stress_known)
         out->core_stress_pa = out->core_shear_stress_pa = NAN;
     if (!out->buckling_known)

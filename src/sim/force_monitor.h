@@ -13,6 +13,7 @@
  *
  *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
  *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
+ *   foundation              rotation M_1 / K_theta, translation V_1 / K_x, uplift ratio M_1 / M_up (scene/foundation.h)
  *   plate buckling          k pi^2 E / (12 (1 - nu^2)) (t/b)^2, k = 4: a long wall of clear width b = B - 2t between
  *                           its neighbours, simply supported, without stiffeners, in uniform compression; elastic
  *

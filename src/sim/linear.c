@@ -408,14 +408,13 @@ Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *
     return status;
 }
 
-Status engine_linear(LinearKind kind, const SceneOptions *o, const Building *b, const CoreBeam *core,
-                     const LinearDevice *device, const Motion *motion, const EngineOptions *options, SimResult *result,
-                     Err *err)
+Status engine_linear(LinearKind kind, const Building *b, const CoreBeam *core, const LinearDevice *device,
+                     const Motion *motion, const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
     const LinearRun run = {options->duration, STEP[options->accuracy], options->forces, options};
     LinearSystem s;
-    TRY(linear_system_make(&s, kind, o, b, core, device, b->model.n, err));
+    TRY(linear_system_make(&s, kind, b, core, device, b->model.n, err));
     const Status status = linear_run(&s, motion, &run, result, err);
     linear_system_free(&s);
     return status;

@@ -45,8 +45,8 @@ typedef struct {
 
 /* n_modes: of building and of core, the lowest, each; a mode that is left out moves with the ground. LINEAR_RIGID has
  * all of them. The core gives the tuned mass; device is not read for LINEAR_RIGID. */
-Status linear_system_make(LinearSystem *s, LinearKind kind, const SceneOptions *o, const Building *b,
-                          const CoreBeam *core, const LinearDevice *device, int n_modes, Err *err);
+Status linear_system_make(LinearSystem *s, LinearKind kind, const Building *b, const CoreBeam *core,
+                          const LinearDevice *device, int n_modes, Err *err);
 void linear_system_free(LinearSystem *s);
 
 /* From rest at t = 0 to the end; steps of the motion's are divided into parts no longer than step [s]. forces NULL: not
@@ -59,8 +59,7 @@ typedef struct {
 Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *run, SimResult *result, Err *err);
 
 /* As of an engine (sim/engine.h), all modes, the step of options->accuracy. */
-Status engine_linear(LinearKind kind, const SceneOptions *o, const Building *b, const CoreBeam *core,
-                     const LinearDevice *device, const Motion *motion, const EngineOptions *options, SimResult *result,
-                     Err *err);
+Status engine_linear(LinearKind kind, const Building *b, const CoreBeam *core, const LinearDevice *device,
+                     const Motion *motion, const EngineOptions *options, SimResult *result, Err *err);
 
 #endif

@@ -32,12 +32,12 @@ void linear_system_free(LinearSystem *s)
 }
 
 /* Losses of the modes of building and core, each by its own damping. */
-static void set_modal_losses(LinearSystem *s, const SceneOptions *o, const Building *b, const CoreBeam *core)
+static void set_modal_losses(LinearSystem *s, const Building *b, const CoreBeam *core)
 {
     for (int i = 0; i < s->n_building; i++)
         s->loss[i] = 2 * b->model.zeta[i] * b->model.omega[i];
     for (int i = 0; i < s->n_core; i++)
-        s->loss[s->n_building + i] = 2 * o->core.damping * core->omega[i];
+        s->loss[s->n_building + i] = 2 * core->zeta[i] * core->omega[i];
 }
 
 /* -- rigidly connected --------------------------------------------------------------------------------------------- */
@@ -72,13 +72,16 @@ static void set_rigid_modes(LinearSystem *s, const Building *b, const CoreBeam *
 }
 
 /* The modes of both together have the damping ratios of the building's that they resemble: the sum C + Cc would leave
- * them less than either part has alone, 1.9 % of 3 % in the first mode of the tower under docs/study.md. */
-static void set_rigid_losses(LinearSystem *s, const Building *b, const int like[])
+ * them less than either part has alone, 1.9 % of 3 % in the first mode of the tower under docs/study.md. The core's
+ * foundation adds its own. */
+static void set_rigid_losses(LinearSystem *s, const Building *b, const CoreBeam *core, const double psi[],
+                             const int like[])
 {
     const int first = s->n_building + s->n_core;
     for (int k = 0; k < s->m; k++) {
         s->P[k * s->n_loss + first + k] = 1;
-        s->loss[first + k] = 2 * b->zeta[like[k] >= 0 ? like[k] : b->n - 1] * s->omega[k];
+        s->loss[first + k] = 2 * b->zeta[like[k] >= 0 ? like[k] : b->n - 1] * s->omega[k] +
+                             core_beam_base_loss(core, s->omega[k], psi + k, s->m);
     }
 }
 
@@ -98,7 +101,7 @@ static Status make_rigid(LinearSystem *s, const Building *b, const CoreBeam *cor
     if (status == STATUS_OK) {
         set_rigid_modes(s, b, core, psi);
         reduction_alike(b->n, b->phi, b->M, s->m, psi, like);
-        set_rigid_losses(s, b, like);
+        set_rigid_losses(s, b, core, psi, like);
     }
     free(K);
     free(like);
@@ -178,8 +181,8 @@ static void make_links(LinearSystem *s, const Building *b, const CoreBeam *core,
         s->loss[s->m + j] = d->link_ns_m;
 }
 
-Status linear_system_make(LinearSystem *s, LinearKind kind, const SceneOptions *o, const Building *b,
-                          const CoreBeam *core, const LinearDevice *device, int n_modes, Err *err)
+Status linear_system_make(LinearSystem *s, LinearKind kind, const Building *b, const CoreBeam *core,
+                          const LinearDevice *device, int n_modes, Err *err)
 {
     const int n = b->n, all = kind == LINEAR_RIGID ? INT_MAX : n_modes;
     *s = (LinearSystem){.n = n,
@@ -193,7 +196,7 @@ Status linear_system_make(LinearSystem *s, LinearKind kind, const SceneOptions *
     s->n_loss = s->n_building + s->n_core + (kind == LINEAR_RIGID ? s->m : s->n_apart);
     TRY(reserve(s, err));
     if (kind != LINEAR_RIGID)
-        set_modal_losses(s, o, b, core);
+        set_modal_losses(s, b, core);
     Status status = STATUS_OK;
     if (kind == LINEAR_RIGID)
         status = make_rigid(s, b, core, err);

@@ -82,7 +82,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
                  1);
     memcpy(model->like, building->like, (size_t)model->nb * sizeof *model->like);
     for (int i = 0; i < model->nc; i++)
-        set_mode(model, model->nb + i, core->omega[i], o->core.damping, core->gamma[i], core->phi + i, n, -1);
+        set_mode(model, model->nb + i, core->omega[i], core->zeta[i], core->gamma[i], core->phi + i, n, -1);
     for (int j = 0; j < model->n_pad; j++) {
         double sum = 0;
         for (int i = 0; i < model->m; i++)

@@ -48,7 +48,7 @@ typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 /* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of
  * restitution [-], and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
 typedef struct {
-    double restitution, contact_stiffness, core_stiffness, building_stiffness, damping;
+    double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness;
 } UncertainOptions;
 
 typedef struct {
@@ -70,7 +70,8 @@ typedef struct {
 
 /* One structure as built: restitution is added (and stays within 0.05 to 1), the others are factors. */
 typedef struct {
-    double restitution, contact_stiffness, core_stiffness, building_stiffness, core_damping, building_damping;
+    double restitution, contact_stiffness, core_stiffness, building_stiffness, core_damping, building_damping,
+        ground_stiffness;
 } AsBuilt;
 
 /* Linear devices in the place of impacts (sim/linear.h). */

@@ -42,7 +42,9 @@ typedef struct {
 
     double core_shear_n[FLOORS_MAX], core_moment_nm[FLOORS_MAX]; /* per storey; the moment at its foot */
     double core_base_shear_n, core_overturning_nm, core_top_m;
-    int stress_known; /* the section has a shape: box or plate */
+    double base_rotation_rad, base_translation_m; /* of the core's foundation; NAN: fixed */
+    double uplift_ratio; /* overturning moment over that at which the foundation begins to lift; NAN: no radius known */
+    int stress_known;    /* the section has a shape: box or plate */
     double core_storey_stress_pa[FLOORS_MAX], core_stress_pa, core_shear_stress_pa;
     int core_stress_storey;
     int buckling_known;                                                /* the section has walls: box */

@@ -316,8 +316,7 @@ static LinearKind linear_kind(SceneKind kind)
 static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
-    TRY(engine_linear(linear_kind(kind), w->options, w->building, &w->core, &w->device, scene->motion, &w->run, result,
-                      err));
+    TRY(engine_linear(linear_kind(kind), w->building, &w->core, &w->device, scene->motion, &w->run, result, err));
     check_result(result, sim_energy_balance_max(&w->options->sim));
     return STATUS_OK;
 }
@@ -413,7 +412,7 @@ Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSk
     Design d;
     design_of(&w->scene->design, x, &d);
     TRY(make_core(w, &d, err));
-    TRY(linear_system_make(&s, linear_kind(kind), w->options, w->building, &w->core, &w->device, sketch->n_modes, err));
+    TRY(linear_system_make(&s, linear_kind(kind), w->building, &w->core, &w->device, sketch->n_modes, err));
     const Status status = linear_run(&s, w->scene->motion, &run, result, err);
     linear_system_free(&s);
     return status;
