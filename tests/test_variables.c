@@ -56,7 +56,7 @@ TEST(a_core_of_given_areas_has_no_thickness_to_search)
     design_bounds(&s, &o, lower, upper);
     assert_true(upper[1] == o.gap_m.at[1] && lower[2] == log10(o.bumper_n_m.at[0]));
     design_of(&s, (double[]){0.1, 0.2, 8}, &d);
-    assert_true(d.gap[1] == 0.2 && d.t_base == 0 && d.t_top == 0);
+    assert_true(d.gap[0][1] == 0.2 && d.gap[1][1] == 0.2 && d.t_base == 0 && d.t_top == 0);
     assert_close(d.bumper[1], 1e8, 1e-12);
 }
 
@@ -88,8 +88,8 @@ TEST(every_floor_has_the_gap_and_the_bumper_of_its_zone)
             design_of(&s, x, &d);
             assert_true(d.t_base == 0.02 && d.t_top == 0.01 && d.side == x[s.n_var - 1]);
             for (int j = 0; j < n; j++) {
-                const int z = (int)round(d.gap[j] / 0.01) - 1;
-                assert_true(z >= 0 && z < zones && (j == 0 || d.gap[j] >= d.gap[j - 1]));
+                const int z = (int)round(d.gap[0][j] / 0.01) - 1;
+                assert_true(z >= 0 && z < zones && (j == 0 || d.gap[0][j] >= d.gap[0][j - 1]));
                 assert_close(d.bumper[j], pow(10, 7 + 0.1 * z), 1e-12);
                 floors[z]++;
             }

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/random.h"
 #include "base/stat.h"
@@ -9,13 +10,30 @@
 
 enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that the settings allow */
 
-void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
+/* Streams of the random numbers. */
+enum { OF_GAPS, OF_STRUCTURE, OF_LEFT_GAPS };
+
+static void change_gaps(Random random, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
-    Random random = random_stream(seed, RANDOM_REPLICATE, 0, (uint32_t)k);
     for (size_t j = 0; k > 0 && j < n_gaps; j++) {
         const double tiny = random_normal(&random), error = random_normal(&random);
         x[j] = fmax(x[j] * (1.0 + REPLICATE_CHANGE * tiny) + tolerance_m * error, 0.0);
     }
+}
+
+void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
+{
+    change_gaps(random_stream(seed, RANDOM_REPLICATE, OF_GAPS, (uint32_t)k), k, tolerance_m, n_gaps, x);
+}
+
+void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d)
+{
+    const size_t n = (size_t)s->n_floors;
+    replicate_design(seed, k, tolerance_m, n, d->gap[0]);
+    if (s->gap_sides == GAPS_BOTH)
+        memcpy(d->gap[1], d->gap[0], n * sizeof *d->gap[0]);
+    else
+        change_gaps(random_stream(seed, RANDOM_REPLICATE, OF_LEFT_GAPS, (uint32_t)k), k, tolerance_m, n, d->gap[1]);
 }
 
 int is_uncertain(const UncertainOptions *u)
@@ -37,7 +55,7 @@ static double draw_factor(Random *random, double sd)
 
 AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
 {
-    Random random = random_stream(seed, RANDOM_REPLICATE, 1, (uint32_t)k);
+    Random random = random_stream(seed, RANDOM_REPLICATE, OF_STRUCTURE, (uint32_t)k);
     AsBuilt b = AS_DESIGNED;
     if (k == 0)
         return b;

@@ -32,6 +32,9 @@ static const double REPLICATE_CHANGE = 1e-8;
 /* x becomes replicate k; its first n_gaps numbers are gaps [m], of which none gets negative. */
 void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[]);
 
+/* The same of a design: both sides of a floor are changed alike where they are one variable, else each by itself. */
+void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d);
+
 /* What replicate k is built like; 0: as designed. */
 AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u);
 int is_uncertain(const UncertainOptions *u);

@@ -209,7 +209,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     if (kind != SCENE_NO_CORE)
         design_of(&t->design, task->x, &design);
     if (kind == SCENE_IMPACT)
-        replicate_design((uint32_t)s->search.seed, k, s->sim.gap_tolerance_m, t->n_floors, design.gap);
+        replicate_gaps((uint32_t)s->search.seed, k, s->sim.gap_tolerance_m, &t->design, &design);
     if (is_uncertain(&s->sim.uncertain)) {
         const AsBuilt built = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));

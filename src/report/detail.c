@@ -49,9 +49,11 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     const double given = w->options.sim.duration_s, as_set = w->options.contact.bumper_stiffness_n_m;
     Design design;
     design_of(scene_design(w->scene), x, &design);
+    d->gap_sides = scene_design(w->scene)->gap_sides;
+    memcpy(d->gap_side_m, design.gap, sizeof d->gap_side_m);
     for (int j = 0; j < n; j++) {
         d->storey_m[j] = scene_building(w->scene)->storey_m[j];
-        d->gap_m[j] = design.gap[j];
+        d->gap_m[j] = design_gap(&design, j);
         d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);
         d->bumper_n_m[j] = design.bumper[j] >= 0 ? design.bumper[j] : as_set;
     }

@@ -29,6 +29,8 @@ typedef struct {
     int n_floors, floor;         /* floor from 0: whose displacement is followed */
     double storey_m[FLOORS_MAX]; /* heights */
     double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX], bumper_n_m[FLOORS_MAX]; /* the last 0: steel on steel */
+    GapSides gap_sides;
+    double gap_side_m[SIDES][FLOORS_MAX]; /* right, left; INFINITY: nothing there; gap_m: the smaller */
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
     double pga_g, scale, stretch, duration_s;

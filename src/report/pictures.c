@@ -168,16 +168,25 @@ static const char GROWTH[] =
     "set yrange [0.3:FLOORS+0.7]\nset ylabel 'floor'\n"                                                                \
     "set ytics 0,FLOORS <= 12 ? 1 : FLOORS <= 24 ? 5 : FLOORS <= 60 ? 10 : 20\nset ytics add ('1' 1)\n"
 
+/* [mm] Nothing to draw where there is nothing on that side. */
+static double side_or_none(double gap)
+{
+    return isfinite(gap) ? 1e3 * gap : NAN;
+}
+
 static void write_gaps(FILE *out, const Report *r)
 {
     const Detail *d = &r->detail;
     const DesignOptions *o = &r->run->settings->design;
     fputs("$D << EOD\n", out);
     for (int j = 0; j < d->n_floors; j++)
-        numbers(out, 4, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->thickness_m[j],
-                d->result[SCENE_IMPACT].closings[j] > 0 ? 1.0 : NAN);
-    fprintf(out, "EOD\nFLOORS = %d; LOW = %.6g; HIGH = %.6g\n", d->n_floors, 1e3 * o->gap_m.at[0],
-            1e3 * o->gap_m.at[1]);
+        numbers(out, 5, (double)j + 1, side_or_none(d->gap_side_m[0][j]), 1e3 * d->thickness_m[j],
+                d->result[SCENE_IMPACT].closings[j] > 0 ? 1.0 : NAN, -side_or_none(d->gap_side_m[1][j]));
+    fprintf(out, "EOD\nFLOORS = %d; LOW = %.6g; HIGH = %.6g; FROM = %s; TO = %s; GAP = '%s'\n", d->n_floors,
+            1e3 * o->gap_m.at[0], 1e3 * o->gap_m.at[1],
+            d->gap_sides == GAPS_BOTH || d->gap_sides == GAPS_RIGHT ? "0" : "-1.03*HIGH",
+            d->gap_sides == GAPS_LEFT ? "0" : "1.03*HIGH",
+            d->gap_sides == GAPS_BOTH ? "gap [mm]" : "gap [mm], to the left and to the right");
 }
 
 /* Pale: never closes; dashed: the bounds of the search. */
@@ -186,9 +195,11 @@ static const char GAPS[] =
     "set key at screen 0.5,0.97 center vertical maxrows 1\n"
     "set arrow 1 from LOW, graph 0 to LOW, graph 1 nohead dt (6,4) lw 1.5 lc rgb HUE[2]\n"
     "set arrow 2 from HIGH, graph 0 to HIGH, graph 1 nohead dt (6,4) lw 1.5 lc rgb HUE[2]\n" FLOOR_AXIS
-    "set xrange [0:1.03*HIGH]\nset xlabel 'gap [mm]'\n"
+    "set xrange [FROM:TO]\nset xlabel GAP\n"
     "plot $D using (0):1:(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb '#c5d6e2' title 'never closes', "
     "'' using (0):($4 > 0 ? $1 : NaN):(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb HUE[1] title 'closes', "
+    "'' using (0):1:5:(0):($1-0.38):($1+0.38) with boxxyerror lc rgb '#c5d6e2' notitle, "
+    "'' using (0):($4 > 0 ? $1 : NaN):5:(0):($1-0.38):($1+0.38) with boxxyerror lc rgb HUE[1] notitle, "
     "keyentry with lines dt (6,4) lw 1.5 lc rgb HUE[2] title 'bounds of the search'\n"
     "unset arrow\nunset key\nset xrange [0:*]\nset xlabel 'thickness of the core [mm]'\n"
     "plot $D using 3:1 with linespoints lt 1 ps 0.7\n";

@@ -179,6 +179,9 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     json_object_set_new(o, "error", error);
     json_object_set_new(o, "band", json_of_band(d));
     json_object_set_new(o, "records", json_integer((json_int_t)d->n_records));
+    if (d->gap_sides != GAPS_BOTH)
+        json_object_set_new(o, "gap_side_m",
+                            json_pack("[o,o]", json_numbers(n, d->gap_side_m[0]), json_numbers(n, d->gap_side_m[1])));
     for (int k = 0; k < N_SCENES; k++)
         json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
     return o;

@@ -24,8 +24,8 @@ static Status take_words(const char *list, unsigned *set, Err *err)
             return fail(err, STATUS_BAD_DATA, "design.variables: item %zu is empty or too long", i + 1);
         if (strcmp(word, "symmetric") == 0)
             return fail(err, STATUS_BAD_DATA,
-                        "design.variables: 'symmetric' is no choice: every gap is the same on both sides of the core; "
-                        "leave the word out");
+                        "design.variables: 'symmetric' is no choice: leave the word out; design.gap_sides = both makes "
+                        "every gap the same on both sides");
         while (k < N && strcmp(WORDS[k], word) != 0)
             k++;
         if (k == N)
@@ -58,9 +58,10 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection
     *space = (DesignSpace){.n_floors = n_floors,
                            .n_walls = section == CORE_EFFECTIVE ? 0 : 2,
                            .gap_zones = (int)o->gap_zones,
+                           .gap_sides = o->gap_sides,
                            .bumper_zones = (int)o->bumper_zones,
                            .has_side = (set & HAS_SIDE) != 0};
-    space->n_gaps = space->gap_zones ? space->gap_zones : n_floors;
+    space->n_gaps = (space->gap_sides == GAPS_EACH ? SIDES : 1) * (space->gap_zones ? space->gap_zones : n_floors);
     space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
     space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side;
     return STATUS_OK;
@@ -74,6 +75,16 @@ int design_space_floors(const DesignOptions *o, CoreSection section, int n_var)
         if (design_space_make(&s, o, section, n, &unused) == STATUS_OK && s.n_var == n_var)
             return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) ? 0 : n;
     return 0;
+}
+
+/* The number of variable j among the gaps of its side; *stem: of that side. */
+static int gap_number(const DesignSpace *s, int j, const char **stem)
+{
+    static const char *const STEM[] = {
+        [GAPS_BOTH] = "gap", [GAPS_LEFT] = "gap_left", [GAPS_RIGHT] = "gap_right", [GAPS_EACH] = "gap_left"};
+    const int is_second = s->gap_sides == GAPS_EACH && j >= s->n_gaps / SIDES;
+    *stem = STEM[is_second ? GAPS_RIGHT : s->gap_sides];
+    return is_second ? j - s->n_gaps / SIDES : j;
 }
 
 static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *unit, int zones, int i)
@@ -102,12 +113,15 @@ static Group group_of(const DesignSpace *s, int *j)
 void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX])
 {
     const Group group = group_of(s, &j);
-    if (group == GAP)
-        zoned_name(name, "gap", "m", s->gap_zones, j);
-    else if (group == BUMPER)
+    const char *stem;
+    if (group == GAP) {
+        j = gap_number(s, j, &stem);
+        zoned_name(name, stem, "m", s->gap_zones, j);
+    } else if (group == BUMPER) {
         zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j);
-    else
+    } else {
         snprintf(name, TABLE_NAME_MAX, "%s", group == SIDE ? "side_m" : j == 0 ? "t_base_m" : "t_top_m");
+    }
 }
 
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
@@ -130,14 +144,24 @@ static int zone_of(int count, int n_floors, int j)
 
 void design_of(const DesignSpace *s, const double x[], Design *d)
 {
+    const int per_side = s->gap_sides == GAPS_EACH ? s->n_gaps / SIDES : s->n_gaps;
     const double *bumper = x + s->n_gaps + s->n_walls;
     for (int j = 0; j < s->n_floors; j++) {
-        d->gap[j] = x[zone_of(s->n_gaps, s->n_floors, j)];
+        const double gap = x[zone_of(per_side, s->n_floors, j)];
+        d->gap[0][j] = s->gap_sides == GAPS_EACH   ? x[per_side + zone_of(per_side, s->n_floors, j)]
+                       : s->gap_sides == GAPS_LEFT ? INFINITY
+                                                   : gap;
+        d->gap[1][j] = s->gap_sides == GAPS_RIGHT ? INFINITY : gap;
         d->bumper[j] = s->n_bumpers ? pow(10, bumper[zone_of(s->n_bumpers, s->n_floors, j)]) : -1;
     }
     d->t_base = s->n_walls ? x[s->n_gaps] : 0;
     d->t_top = s->n_walls ? x[s->n_gaps + 1] : 0;
     d->side = s->has_side ? bumper[s->n_bumpers] : 0;
+}
+
+double design_gap(const Design *d, int j)
+{
+    return fmin(d->gap[0][j], d->gap[1][j]);
 }
 
 double design_thickness(const DesignSpace *s, const Design *d, int j)

@@ -3,13 +3,17 @@
  *
  *   design.variables = gaps, thickness                gap_01_m..gap_NN_m, t_base_m, t_top_m        the paper's
  *   design.gap_zones = 5                              gap_zone_1_m..gap_zone_5_m in place of a gap per floor
+ *   design.gap_sides = both                           a gap is the same on both sides
+ *                      left | right                   gap_left_01_m.. alone: there is nothing on the other side
+ *                      each                           gap_left_01_m..gap_left_NN_m, gap_right_01_m..
  *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. |
  *                  bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
  * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales
- * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. A gap is the same on both sides of the core.
+ * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. The right gap is how far a floor may go to the right,
+ * u - v > 0, before it meets the core (or the neighbour that stands there), the left one how far to the left.
  *
  *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m            a file: one column per variable in this order
  *   0.05,...,0.05,0.012,0.0064                        any number of rows
@@ -27,12 +31,13 @@
 #include "base/csv.h"
 #include "scene/options.h"
 
-enum { DESIGN_VARIABLES_MAX = 2 * FLOORS_MAX + 3 };
+enum { DESIGN_VARIABLES_MAX = (SIDES + 1) * FLOORS_MAX + 3 };
 
-/* x: n_gaps gaps, t_base and t_top (n_walls = 2) or neither (0), n_bumpers stiffnesses, has_side sides. */
+/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers stiffnesses, has_side widths. */
 typedef struct {
     int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side;
     int gap_zones, bumper_zones; /* 0: a variable per floor */
+    GapSides gap_sides;
 } DesignSpace;
 
 /* n_floors 0: not known; then gaps and bumpers that are one per floor are none. */
@@ -49,12 +54,15 @@ void design_bounds(const DesignSpace *space, const DesignOptions *o, double lowe
 
 /* A design as it is built. */
 typedef struct {
-    double gap[FLOORS_MAX];    /* [m] */
-    double bumper[FLOORS_MAX]; /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
-    double t_base, t_top;      /* [m]; 0: there are none */
-    double side;               /* [m]; 0: as core.width_m says */
+    double gap[SIDES][FLOORS_MAX]; /* [m]; INFINITY: there is nothing on that side */
+    double bumper[FLOORS_MAX];     /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
+    double t_base, t_top;          /* [m]; 0: there are none */
+    double side;                   /* [m]; 0: as core.width_m says */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);
+
+/* The smaller gap of floor j = 0..n_floors-1 [m]. */
+double design_gap(const Design *d, int j);
 
 /* Thickness of the core in storey j = 0..n_floors-1 [m]. */
 double design_thickness(const DesignSpace *space, const Design *d, int j);

@@ -7,6 +7,7 @@
 #include "base/option.h"
 
 enum { FLOORS_MAX = 128 }; /* of a building */
+enum { SIDES = 2 };        /* of a floor: [0] right, which it reaches by u > v, [1] left, by u < v */
 
 /* What the entries of K.csv and M.csv are in, kip_in: kip/in and kip s2/in; or an OpenSees model. */
 #define BUILDING_UNITS_LIST(X)                                                                                         \
@@ -52,8 +53,16 @@ typedef struct {
                                                                   * deformation, density times area */
 } CoreOptions;
 
+#define GAP_SIDES_LIST(X)                                                                                              \
+    X(GAPS_BOTH, "both")                                                                                               \
+    X(GAPS_LEFT, "left")                                                                                               \
+    X(GAPS_RIGHT, "right")                                                                                             \
+    X(GAPS_EACH, "each")
+typedef enum { GAP_SIDES_LIST(CHOICE_NAME) } GapSides;
+
 typedef struct {
-    char variables[OPTION_TEXT_MAX];                    /* words (scene/design.h); empty: gaps, thickness */
+    char variables[OPTION_TEXT_MAX]; /* words (scene/design.h); empty: gaps, thickness */
+    GapSides gap_sides;
     long gap_zones, bumper_zones;                       /* 0: one per floor */
     NumberList gap_m, thickness_m, bumper_n_m, width_m; /* each from, to */
 } DesignOptions;                                        /* the design variables and their bounds */

@@ -359,17 +359,20 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
     const MeasureOrder *order = tower_measures(tower);
     double natural[OBJECTIVES_MAX];
     Design design;
+    double gap_m[FLOORS_MAX];
     design_of(tower_design(tower), q->x, &design);
+    for (int j = 0; j < tower_n_floors(tower); j++)
+        gap_m[j] = design_gap(&design, j);
     for (int k = 0; k < order->n_obj; k++)
         natural[k] = measure_value(r, order->of[k]);
     const int ok = r->outcome == RUN_OK;
-    json_t *answer = json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:b, s:f}", "turn", (json_int_t)q->turn, "outcome",
-                               outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
-                               ok ? json_numbers((size_t)order->n_obj, natural) : json_null(), "gap_m",
-                               json_numbers((size_t)tower_n_floors(tower), design.gap), "peaks",
-                               ok ? result_json(r, order) : json_null(), "no_core",
-                               o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(),
-                               "beyond_law", beyond_contact_law(r), "seconds", r->seconds);
+    json_t *answer =
+        json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:b, s:f}", "turn", (json_int_t)q->turn, "outcome",
+                  outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
+                  ok ? json_numbers((size_t)order->n_obj, natural) : json_null(), "gap_m",
+                  json_numbers((size_t)tower_n_floors(tower), gap_m), "peaks", ok ? result_json(r, order) : json_null(),
+                  "no_core", o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), "beyond_law",
+                  beyond_contact_law(r), "seconds", r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
     if (ok && o->is_single && same_ground)

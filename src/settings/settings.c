@@ -195,6 +195,10 @@ static const Option OPTIONS[] = {
 
     TEXT(design.variables, "gaps, thickness",
          "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
+    CHOICE(
+        design.gap_sides, GapSides, CHOICE_WORDS(GAP_SIDES_LIST), "both",
+        "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
+        "left, right: nothing to meet on the other side. A floor closes its right gap where it moves right (u > v)"),
     WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
     WHOLE(design.bumper_zones, "1", 0, 128, "bumpers of so many zones of floors differ; 1: all are alike; 0: by floor"),
     BOUNDS(design.gap_m, "m", "0.001, 0.5", 0, 10, "bounds of the search: smallest and largest gap",

@@ -15,7 +15,7 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
 {
     memset(model, 0, sizeof *model);
     const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n);
-    const size_t need = 2 * m_max * n_pad + 3 * m_max + 2 * n_pad;
+    const size_t need = 2 * m_max * n_pad + 3 * m_max + 3 * n_pad;
     double *p = aligned_alloc(64, need * sizeof *p);
     model->like = malloc((size_t)nb_max * sizeof *model->like);
     model->store = p;
@@ -34,6 +34,8 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
     model->gamma = model->zeta + m_max;
     model->gap = model->gamma + m_max;
     model->mass_eff = model->gap + n_pad;
+    model->middle = model->mass_eff + n_pad;
+    memset(model->middle, 0, n_pad * sizeof *p);
     return STATUS_OK;
 }
 
@@ -49,14 +51,19 @@ static void set_mode(SimModel *model, int i, double omega, double zeta, double g
         model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = sign * phi[j * stride];
 }
 
-static Status set_gaps(SimModel *model, const double gaps[], Err *err)
+/* [m] A floor beside which there is nothing on one side moves freely so far: no floor gets there, and distances from
+ * the middle are still known to 1e-14 m. */
+static const double NOTHING_M = 128;
+
+Status model_set_gaps(SimModel *model, const double right[], const double left[], Err *err)
 {
-    for (int j = 0; j < model->n_pad; j++)
-        model->gap[j] = 1e300;
-    for (int j = 0; gaps && j < model->n; j++) {
-        if (!(gaps[j] >= 0) || isinf(gaps[j]))
-            return fail(err, STATUS_BAD_DATA, "gap_%02d_m: %g; a gap is zero or more and finite", j + 1, gaps[j]);
-        model->gap[j] = gaps[j];
+    for (int j = 0; j < model->n; j++) {
+        const double r = fmin(right[j], NOTHING_M), l = fmin(left[j], NOTHING_M);
+        if (!(right[j] >= 0 && left[j] >= 0))
+            return fail(err, STATUS_BAD_DATA, "gap_%02d_m: left %g, right %g; a gap is zero or more", j + 1, left[j],
+                        right[j]);
+        model->gap[j] = isinf(right[j]) && isinf(left[j]) ? 1e300 : 0.5 * (r + l);
+        model->middle[j] = 0.5 * (r - l);
     }
     return STATUS_OK;
 }
@@ -93,7 +100,11 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     TRY(contact_make(&model->contact[0], &o->contact, err));
     for (int j = 1; j < n; j++)
         model->contact[j] = model->contact[0];
-    return set_gaps(model, core ? gaps : NULL, err);
+    for (int j = 0; j < model->n_pad; j++) {
+        model->gap[j] = 1e300;
+        model->middle[j] = 0;
+    }
+    return core && gaps ? model_set_gaps(model, gaps, gaps, err) : STATUS_OK;
 }
 
 void model_free(SimModel *model)

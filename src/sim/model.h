@@ -2,12 +2,14 @@
  *
  *   q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = -gamma_i a(t) + sum_j R_ij f_j(t)      i = 0..m-1
  *   w_j  = u_j - v_j = sum_i R_ij q_i                                              j = 0..n-1
- *   f_j  = -s F(p_j, p_j', v0_j),  s = sign(w_j),  p_j = |w_j| - gap_j
+ *   f_j  = -s F(p_j, p_j', v0_j),  s = sign(w_j - middle_j),  p_j = |w_j - middle_j| - gap_j
  *
  * Modes 0..nb-1 are the building's (R_ij = phi_ji; nb may exceed n, scene/building.h), nb..m-1 the core's (R_ij =
  * -phi_ji); u_j = sum_{i<nb} R_ij q_i.
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
  * since sum_{i<nb} R_ij gamma_i = 1: the motion of the ground is in the span of the building's modes.
+ *
+ * A floor that may go right (u > v) by g_R and left by g_L has gap = (g_R + g_L) / 2 around middle = (g_R - g_L) / 2.
  *
  * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
  * Padding  a padded floor has an unreachable gap, a padded mode has omega = 1 and no coupling.
@@ -28,7 +30,8 @@ typedef struct {
     double *zeta;     /* (m_pad) [-] */
     double *gamma;    /* (m_pad) [sqrt(kg)] */
     int *like;        /* (nb) under which of n modes the share of a building mode is booked, -1: none */
-    double *gap;      /* (n_pad) [m] */
+    double *gap;      /* (n_pad) [m] half of the way from one side to the other */
+    double *middle;   /* (n_pad) [m] of that way, in w; 0: the sides are alike */
     double *mass_eff; /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
     double core_mass_kg;
     Contact contact[FLOORS_MAX]; /* (n) */
@@ -38,10 +41,19 @@ typedef struct {
 /* Room for n floors with up to nb_max building modes, n core modes. like: mode by mode. */
 Status model_create(SimModel *model, int n, int nb_max, Err *err);
 
-/* gaps (n) [m]; core NULL: the building alone (nc = 0, no gap can close). A negative or non-finite gap is refused. */
+/* gaps (n) [m] of both sides; core NULL: the building alone (nc = 0, no gap can close). */
 Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
                  Err *err);
 void model_free(SimModel *model);
+
+/* Gaps (n) [m] side by side (SIDES); INFINITY: there is nothing on that side. A negative gap and NAN are refused. */
+Status model_set_gaps(SimModel *model, const double right[], const double left[], Err *err);
+
+/* Of floor j on side s = 1, -1 where u_j - v_j is w [m]. */
+static inline double penetration(const SimModel *model, int j, int s, double w)
+{
+    return s * (w - model->middle[j]) - model->gap[j];
+}
 
 /* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
 void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);

@@ -30,8 +30,6 @@ typedef struct {
 } SimContact;
 typedef void (*SimContactFn)(const SimContact *contact, void *user);
 
-enum { SIDES = 2 }; /* of the core: [0] u > v, [1] u < v */
-
 /* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes, NAN where the scene
  * has no such part. Storeys and floors from 0. */
 typedef struct {

@@ -420,7 +420,8 @@ Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSk
 
 static Status set_impacts(SimWorker *w, const Design *d, Err *err)
 {
-    TRY(model_set(&w->model, w->options, w->building, &w->core, d->gap, err));
+    TRY(model_set(&w->model, w->options, w->building, &w->core, NULL, err));
+    TRY(model_set_gaps(&w->model, d->gap[0], d->gap[1], err));
     /* as built: the modulus is that of all parts of the contact */
     const double built = w->options->contact.youngs_modulus_pa / w->scene->options.contact.youngs_modulus_pa;
     for (int j = 0; j < w->model.n; j++)

@@ -2,7 +2,7 @@
  *
  *     M  u'' + C  u' + K  u - f = -M  1 a(t)        u (n_floors)  floors relative to the ground [m]
  *     Mc v'' + Cc v' + Kc v + f = -Mc 1 a(t)        v (n_floors)  core nodes
- *     f_j = -s F,  s = sign(u_j - v_j),  p = |u_j - v_j| - gap_j,  F = k p^1.5 (1 + a p'/v0) for p > 0, never tensile
+ *     f_j = -s F,  p = s (u_j - v_j) - gap_j on side s = 1, -1,  F = k p^1.5 (1 + a p'/v0) for p > 0, never tensile
  *
  * Both sides in mass-normalised modal coordinates, so that every modal energy is in joules.
  *

@@ -35,7 +35,7 @@ static void count_bounds(const Run *run, size_t row, FrontReview *r)
     const DesignOptions *o = &run->settings->design;
     const double near = ON_BOUND * (o->gap_m.at[1] - o->gap_m.at[0]);
     size_t gap = 0;
-    for (size_t j = 0; j < run->schema.n_var && gap < FLOORS_MAX; j++) {
+    for (size_t j = 0; j < run->schema.n_var && gap < SIDES * FLOORS_MAX; j++) {
         const double x = run_x(run, row)[j];
         if (!is_gap(run, j))
             continue;

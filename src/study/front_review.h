@@ -11,11 +11,12 @@
 #include "store/run.h"
 
 typedef struct {
-    size_t n_front, n_gaps;                                 /* 0 gaps: of another problem; the first n_gaps variables */
-    size_t n_beyond;                                        /* designs beyond the contact law */
-    size_t at_smallest[FLOORS_MAX], at_largest[FLOORS_MAX]; /* (n_gaps) designs with this gap on that bound */
-    size_t n_simulated, n_floors;                           /* designs that were simulated again */
-    size_t closes[FLOORS_MAX]; /* (n_floors) of them those in which the floor's gap closes */
+    size_t n_front, n_gaps; /* 0 gaps: of another problem; the first n_gaps variables */
+    size_t n_beyond;        /* designs beyond the contact law */
+    size_t at_smallest[SIDES * FLOORS_MAX],
+        at_largest[SIDES * FLOORS_MAX]; /* (n_gaps) designs with this gap on that bound */
+    size_t n_simulated, n_floors;       /* designs that were simulated again */
+    size_t closes[FLOORS_MAX];          /* (n_floors) of them those in which the floor's gap closes */
 } FrontReview;
 
 /* As the run has stored it; nothing is simulated. */

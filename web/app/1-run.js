@@ -14,12 +14,13 @@ const SINGLE = {
 };
 
 function variableWords(name) {
-  const gap = run.tower && name.match(/^gap(?:_(zone_)?0*(\d+))?_m$/);
+  const gap = run.tower && name.match(/^gap(?:_(left|right))?(?:_(zone_)?0*(\d+))?_m$/);
   const bumper = run.tower && name.match(/^bumper(?:_(zone_)?0*(\d+))?_log10_n_m$/);
-  const [, zone, number] = gap || bumper || [];
+  const [, side, zone, number] = gap || (bumper && [0, undefined, ...bumper.slice(1)]) || [];
   const where = number ? `${zone ? "zone" : "floor"} ${number}` : "every floor";
   const short = number ? (zone ? `, zone ${number}` : ` ${number}`) : "";
-  if (gap) return [`gap${short}`, "mm", 1e3, `gap at ${where}`];
+  const to = side ? ` ${side}` : "";
+  if (gap) return [`gap${to}${short}`, "mm", 1e3, `gap${to} at ${where}${side ? `: how far the floor may go to the ${side}` : ""}`];
   if (bumper) return [`bumper${short}`, "log10 N/m", 1, `stiffness of the bumper at ${where}, decimal logarithm`];
   return (run.tower && SINGLE[name]) || [name, "", 1, name];
 }

@@ -165,10 +165,11 @@ function typesPart(host) {
   part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
-  const rows = types.flatMap((t, k) => gaps.map((c, j) => ({ type: `${k + 1}`, place: j + 1, gap: c.value[t.typical], colour: TYPE_COLOURS[k] })));
+  const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));
+  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), gap: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: TYPE_COLOURS[k] })));
   figure(part, "Gaps of the typical designs", null, (width) => chart({
     width, height: 250, marginTop: 26, ariaLabel: "Gaps of the typical designs", color: { type: "identity" },
-    fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { label: "gap [mm]", grid: true, zero: true, ticks: 3 }, y: { ...floorAxis(gaps.length), label: /zone/.test(gaps[0].name) ? "zone" : "floor" },
-    marks: [charts.rectX(rows, { fx: "type", x1: 0, x2: "gap", y1: (r) => r.place - 0.4, y2: (r) => r.place + 0.4, fill: "colour", title: (r) => `type ${r.type}, ${r.place}: ${show(r.gap)} mm` }), charts.ruleX([0])],
+    fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { label: isEach ? "gap to the left and to the right [mm]" : "gap [mm]", grid: true, zero: true, ticks: 3, tickFormat: (v) => String(Math.abs(v)) }, y: { ...floorAxis(gaps.length / (isEach ? 2 : 1)), label: /zone/.test(gaps[0].name) ? "zone" : "floor" },
+    marks: [charts.rectX(rows, { fx: "type", x1: 0, x2: "gap", y1: (r) => r.place - 0.4, y2: (r) => r.place + 0.4, fill: "colour", title: (r) => `type ${r.type}, ${r.place}: ${show(Math.abs(r.gap))} mm` }), charts.ruleX([0])],
   }));
 }

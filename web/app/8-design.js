@@ -11,16 +11,18 @@ const BASELINE_NOTE = {
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
 function gapFigure(host, d) {
   const gaps = variables.filter((c) => /^gap_/.test(c.name)), [low, high] = gaps[0]?.bounds ?? [NaN, NaN];
-  const rows = d.gap_m.map((g, j) => ({ floor: j + 1, gap: 1e3 * g, bumper: d.bumper_n_m[j], closes: d.with_core.closings?.[j] !== 0, bound: gaps.length ? atBound(gaps[0], 1e3 * g) : 0 }));
+  const sides = d.gap_side_m ? [["right", 1, d.gap_side_m[0]], ["left", -1, d.gap_side_m[1]]] : [["", 1, d.gap_m]];
+  const rows = sides.flatMap(([side, sign, list]) => list.flatMap((g, j) => (g === null ? [] : [{ side, sign, g, j }]))).map(({ side, sign, g, j }) => ({ floor: j + 1, side, gap: sign * 1e3 * g, bumper: d.bumper_n_m[j], closes: d.with_core.closings?.[j] !== 0, bound: gaps.length ? atBound(gaps[0], 1e3 * g) : 0 }));
+  const isBoth = !d.gap_side_m, bounds = [low, high].flatMap((b) => sides.map(([, sign]) => sign * b));
   const soft = Math.min(...d.bumper_n_m), hard = Math.max(...d.bumper_n_m);
   const stiffness = soft === hard ? `${show(soft / 1e6)} MN/m` : `${show(soft / 1e6)} to ${show(hard / 1e6)} MN/m`;
   const bumpers = hard > 0 ? ` Bumpers of ${stiffness}.` : "";
-  const words = (r) => `floor ${r.floor}: ${show(r.gap)} mm${r.bound ? ", at a bound" : ""}${r.closes ? "" : ", never closes"}${r.bumper > 0 ? `, bumper ${show(r.bumper / 1e6)} MN/m` : ""}`;
-  figure(host, "Gaps over the height", `Clearance between floor and core on either side.${bumpers}`, (width) => chart({
-    width, height: 380, ariaLabel: "Gap of every floor", x: { label: "gap [mm]", grid: true, zero: true, nice: true }, y: floorAxis(rows.length), color: { type: "identity" }, symbol: { type: "identity" },
+  const words = (r) => `floor ${r.floor}${r.side && `, ${r.side}`}: ${show(Math.abs(r.gap))} mm${r.bound ? ", at a bound" : ""}${r.closes ? "" : ", never closes"}${r.bumper > 0 ? `, bumper ${show(r.bumper / 1e6)} MN/m` : ""}`;
+  figure(host, "Gaps over the height", `${isBoth ? "Clearance between floor and core on either side." : "How far a floor may go to the left (drawn to the left of 0) and to the right before it meets the core."}${bumpers}`, (width) => chart({
+    width, height: 380, ariaLabel: "Gap of every floor", x: { label: isBoth ? "gap [mm]" : "gap to the left and to the right [mm]", grid: true, zero: true, nice: true, tickFormat: (v) => String(Math.abs(v)) }, y: floorAxis(d.gap_m.length), color: { type: "identity" }, symbol: { type: "identity" },
     marks: [
       charts.rectX(rows, { x1: 0, x2: "gap", y1: (r) => r.floor - 0.38, y2: (r) => r.floor + 0.38, fill: (r) => (r.closes ? BLUE : "#c5d6e2"), title: words }),
-      charts.ruleX([low, high].filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
+      charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
       charts.dot(rows.filter((r) => r.bound), { x: "gap", y: "floor", symbol: "diamond2", fill: VERMILLION, stroke: "#fff", r: 5, title: words }),
       charts.ruleX([0]),
     ],
@@ -36,11 +38,11 @@ function thicknessFigure(host, d) {
 // The largest force on every floor by side, and what the storeys of the core bear.
 function forceFigures(host, d) {
   const { contact_n: sides, stress_pa: stress, buckling_pa: buckling } = d.forces, floors = d.gap_m.length;
-  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, floor: j + 1, low: j + (s ? 1 : 0.64), high: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, side: s ? "other side" : "one side" })));
-  figure(host, "Contact forces", "The largest on every floor, by the side of the core.", (width) => chart({
+  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, floor: j + 1, low: j + (s ? 1 : 0.64), high: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, side: s ? "moving left" : "moving right" })));
+  figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => chart({
     width, height: 340, ariaLabel: "Contact force of every floor", x: { label: "largest contact force [MN]", grid: true, zero: true, nice: true }, y: floorAxis(floors), color: { type: "identity" },
     marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: "low", y2: "high", fill: "colour", title: (r) => `floor ${r.floor}, ${r.side}: ${show(r.v)} MN` }), charts.ruleX([0])],
-  }), legend([["one side", BLUE], ["other side", SKY]]));
+  }), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
   if (!stress) return;
   const mega = (values) => values.map((v) => v / 1e6), lines = [{ name: "stress", values: mega(stress), colour: BLUE, thick: 2 }];
   if (buckling) lines.push({ name: "stress at which the bare wall buckles", values: mega(buckling), colour: VERMILLION, thick: 2, dash: "5 4" });

@@ -32,7 +32,7 @@ CLONED static void push_modes(int m, const double row[], double f, double g[])
  */
 static double approach(const Contacts *c, int j, int s, double *wait)
 {
-    const double way = fmax(c->model->gap[j] - s * relative_displacement(c->model, j, c->q_before), 0);
+    const double way = fmax(-penetration(c->model, j, s, relative_displacement(c->model, j, c->q_before)), 0);
     const double v = s * relative_displacement(c->model, j, c->v_before);
     const double square = v * v + 2 * way * s * relative_displacement(c->model, j, c->a_before);
     const double speed = square > 0 ? sqrt(square) : 0;
@@ -68,11 +68,13 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
         floors_from_modes(model, 0, model->m, q, w);
     for (int j = 0; j < model->n; j++) {
         if (!c->by_overlap && c->side[j]) {
-            const double p = c->side[j] * relative_displacement(model, j, q) - model->gap[j];
+            const double p = penetration(model, j, c->side[j], relative_displacement(model, j, q));
             if (p > 0) /* past the root: the law's continuation, continuous with its first derivative */
                 add_contact(c, j, c->side[j], p, v, g, &power);
-        } else if (c->by_overlap && fabs(w[j]) > model->gap[j]) {
-            add_contact(c, j, w[j] > 0 ? 1 : -1, fabs(w[j]) - model->gap[j], v, g, &power);
+        } else if (c->by_overlap) {
+            const int s = w[j] > model->middle[j] ? 1 : -1;
+            if (penetration(model, j, s, w[j]) > 0)
+                add_contact(c, j, s, penetration(model, j, s, w[j]), v, g, &power);
         }
     }
     return power;
@@ -98,8 +100,8 @@ int contacts_switch(Contacts *c, double t, const double q[], const double v[], c
     int flipped = 0;
     for (int j = 0; j < model->n; j++) {
         const double w = relative_displacement(model, j, q), w_dot = relative_displacement(model, j, v);
-        const int side = c->side[j] ? c->side[j] : w > 0 ? 1 : -1;
-        const double p = side * w - model->gap[j], p_dot = side * w_dot;
+        const int side = c->side[j] ? c->side[j] : w > model->middle[j] ? 1 : -1;
+        const double p = penetration(model, j, side, w), p_dot = side * w_dot;
         if (!c->side[j] && (found[j] || (p > 0 && p_dot > 0))) {
             close_gap(c, j, side, t, p_dot);
             flipped = 1;
@@ -119,8 +121,8 @@ void contacts_settle(Contacts *c, const double w[])
 {
     double wait;
     for (int j = 0; j < c->model->n && c->model->nc > 0; j++) {
-        const int s = w[j] > 0 ? 1 : -1;
-        if (!(fabs(w[j]) > c->model->gap[j])) {
+        const int s = w[j] > c->model->middle[j] ? 1 : -1;
+        if (!(penetration(c->model, j, s, w[j]) > 0)) {
             c->side[j] = 0;
         } else if (c->side[j] != s) {
             const double speed = approach(c, j, s, &wait);
@@ -136,7 +138,7 @@ FloorSet contacts_record(Contacts *c, double t, const double q[], const double v
     FloorSet in_contact = 0;
     for (int j = 0; j < model->n; j++) {
         const int s = c->side[j];
-        const double p = s * relative_displacement(model, j, q) - model->gap[j];
+        const double p = penetration(model, j, s, relative_displacement(model, j, q));
         const double p_dot = s * relative_displacement(model, j, v);
         ContactForce f = {0};
         if (s && p > 0)
@@ -159,7 +161,7 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
     const SimModel *model = c->model;
     for (int j = 0; j < model->n; j++) {
         const int s = model->nc > 0 ? c->side[j] : 0;
-        const double p = s * relative_displacement(model, j, q) - model->gap[j];
+        const double p = penetration(model, j, s, relative_displacement(model, j, q));
         const double p_dot = s * relative_displacement(model, j, v);
         const int touches = s && p > 0;
         force[j] = touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
@@ -180,6 +182,6 @@ double contacts_stored(const Contacts *c, const double q[])
     for (int j = 0; j < c->model->n && c->model->nc > 0; j++)
         if (c->side[j])
             stored += contact_stored(&c->model->contact[j],
-                                     c->side[j] * relative_displacement(c->model, j, q) - c->model->gap[j]);
+                                     penetration(c->model, j, c->side[j], relative_displacement(c->model, j, q)));
     return stored;
 }

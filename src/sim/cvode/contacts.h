@@ -4,7 +4,7 @@
  *   by event     contacts_switch after every step; in between only floors whose contact is closed count, with the law's
  *                smooth continuation past the root
  *   by overlap   (by_overlap = 1) any floor that overlaps the core counts at once, its approach speed extrapolated from
- *                the start of the step to the gap, v0^2 = w'^2 + 2 w'' (gap - |w|); contacts_settle after every step
+ *                the start of the step to the gap, v0^2 = w'^2 - 2 w'' p; contacts_settle after every step
  *                keeps it
  *
  * f_j = -s F, as in sim/model.h. Threads  no state but the struct */

@@ -23,7 +23,7 @@ void energy_account_peaks(EnergyAccount *l, double t, const double q[], const do
     floors_from_modes(model, 0, model->nb, pull, point->of[PEAK_ACCELERATION]);
     floors_from_modes(model, model->nb, model->m, q, core);
     for (int j = 0; j < model->n; j++)
-        point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j];
+        point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j] - model->middle[j];
     peak_monitor_add(&l->peaks);
 }
 

@@ -99,7 +99,7 @@ int ode_penetrations(sunrealtype t, N_Vector y, sunrealtype *p, void *user)
     floors_from_modes(model, 0, model->m, ode_values(y), w);
     for (int j = 0; j < model->n; j++) {
         const int side = o->contacts.side[j];
-        p[j] = (side ? side * w[j] : fabs(w[j])) - model->gap[j];
+        p[j] = penetration(model, j, side ? side : w[j] > model->middle[j] ? 1 : -1, w[j]);
         check += p[j];
     }
     o->finite = isfinite(check) != 0; /* SUNDIALS takes NaN for "no root" */
@@ -297,6 +297,7 @@ static int switch_contacts(Ode *o, double t, const int found[])
     return o->model->nc > 0 ? contacts_switch(&o->contacts, t, y, y + o->model->m, found) : 0;
 }
 
+/* w from the middle of the gap. */
 typedef struct {
     double w[FLOORS_MAX], w_dot[FLOORS_MAX];
 } Floors;
@@ -308,11 +309,13 @@ static void floors_now(const Ode *o, Floors *f)
         return;
     floors_from_modes(model, 0, model->m, ode_values(o->y), f->w);
     floors_from_modes(model, 0, model->m, ode_values(o->y) + model->m, f->w_dot);
+    for (int j = 0; j < model->n; j++)
+        f->w[j] -= model->middle[j];
 }
 
-/* The time in (low, high) where side w - level, or side w' with `speed`, of floor j changes sign, by dense output; the
+/* The time in (low, high) where the penetration, or side w' with `speed`, of floor j changes sign, by dense output; the
  * end where it is positive. */
-static double change_of_sign(Ode *o, int j, int side, int speed, double level, double low, double high)
+static double change_of_sign(Ode *o, int j, int side, int speed, double low, double high)
 {
     const SimModel *model = o->model;
     for (int i = 0; i < 60 && high - low > 1e-15 * high; i++) {
@@ -320,8 +323,8 @@ static double change_of_sign(Ode *o, int j, int side, int speed, double level, d
         if (o->solver->interpolate(o, mid, o->between))
             return high;
         const double *y = ode_values(o->between) + (speed ? model->m : 0);
-        const int past =
-            speed ? side * relative_displacement(model, j, y) < 0 : side * relative_displacement(model, j, y) > level;
+        const double w = relative_displacement(model, j, y);
+        const int past = speed ? side * w < 0 : penetration(model, j, side, w) > 0;
         *(past ? &high : &low) = mid;
     }
     return high;
@@ -339,11 +342,12 @@ static double unseen_closing(Ode *o, int j, double t_before, double t, const Flo
         side * to->w[j] > gap || /* the cubic's control points enclose it */
         fmax(side * (from->w[j] + third * from->w_dot[j]), side * (to->w[j] - third * to->w_dot[j])) <= gap)
         return HUGE_VAL;
-    const double top = change_of_sign(o, j, side, 1, 0, t_before, t);
+    const double top = change_of_sign(o, j, side, 1, t_before, t);
     if (o->solver->interpolate(o, top, o->between) ||
-        !(side * relative_displacement(o->model, j, ode_values(o->between)) > gap * (1 + GRAZE)))
+        !(side * (relative_displacement(o->model, j, ode_values(o->between)) - o->model->middle[j]) >
+          gap * (1 + GRAZE)))
         return HUGE_VAL;
-    return change_of_sign(o, j, side, 0, gap, t_before, top);
+    return change_of_sign(o, j, side, 0, t_before, top);
 }
 
 /* A gap that closes and opens again inside one step changes no sign that a root is found by. Goes back to the first

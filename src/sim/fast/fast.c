@@ -56,7 +56,7 @@ static void layout(FastWork *k, Carve *c)
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
     CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
           &k->max_shape_drift);
-    CARVE(c, floors, &k->gap, &k->bubble, &k->peak_u, &k->peak_d, &k->peak_a);
+    CARVE(c, floors, &k->gap, &k->middle, &k->bubble, &k->peak_u, &k->peak_d, &k->peak_a);
     layout_state(&k->now, c, modes, floors);
     layout_state(&k->next, c, modes, floors);
     layout_flight(&k->flight, c, modes, floors);

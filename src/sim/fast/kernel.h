@@ -45,7 +45,8 @@ typedef struct {
     vec *load;                       /* (m_pad) modal load of the contacts */
     vec *contact_work, *ground_work; /* (m_pad) [J] done on each mode since the start */
     vec *defect;                     /* (m_pad) by how much the equation of motion was missed, summed over the steps */
-    vec *w, *w_dot;                  /* (n_pad) [m], [m/s] floor minus core; current where state_valid */
+    vec *w, *w_dot;                  /* (n_pad) [m], [m/s] floor minus core, w from the middle of the gap; current where
+                                      * state_valid */
     vec *force;                      /* (n_pad) [N] of the contact on the floor */
     double flexible;                 /* [J] stored in the core modes that are left out */
 } State;
@@ -57,7 +58,7 @@ typedef struct {
     vec *end_q, *end_v, *end_a, *end_j;
     vec *bound_q, *bound_a;                     /* error of the cubics; largest acceleration, or its cubic's error */
     vec *u0, *u0_dot, *u1, *u1_dot;             /* floors */
-    vec *core0, *core0_dot, *core1, *core1_dot; /* the core's part of w */
+    vec *core0, *core0_dot, *core1, *core1_dot; /* the core's part of w, and the middle of the gap */
     vec *a0, *a0_dot, *a1, *a1_dot;             /* accelerations of the floors */
     vec *error_u, *error_core, *error_a;        /* bounds of what the cubics miss */
     vec *reach_a;                               /* largest acceleration by the bounds of the modes */
@@ -119,7 +120,8 @@ typedef struct FastWork {
     vec *max_shape, *max_shape_drift;      /* (m_pad) largest |R| of a mode over the floors, over the storeys */
     double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                            /* (n_pad, m_pad) */
-    vec *gap;                              /* (n_pad) */
+    vec *gap, *middle;                     /* (n_pad) as in SimModel */
+    int has_middle;                        /* some are not 0 */
     double *flex;                          /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
     int has_flex;                          /* some are left out */
     FloorSet floors;                       /* all of them */

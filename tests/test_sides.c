@@ -1,0 +1,259 @@
+/* Gaps of which the two sides differ: a single mass against closed forms, the tower against its own mirror image. */
+#include "check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "bench/stability/bob.h"
+#include "evaluate/replicates.h"
+#include "program.h"
+#include "scene_options.h"
+#include "sim/engine.h"
+#include "sim/sim.h"
+
+/* -- one mass ------------------------------------------------------------------------------------------------------ */
+
+static const double MASS = 1e3;
+
+/* A single mass in one engine, pushed to the right by a triangular pulse of 1 m/s that lasts 2 s. */
+static SimResult push(Engine engine, double omega, double right, double left, double v, double duration, OnsetLog *log)
+{
+    double pulse[] = {0, -v, 0};
+    const Motion motion = {.accel = pulse, .n = 3, .dt_s = 1};
+    SimModel model;
+    SimResult r;
+    Err err = {0};
+    bobs_model(&model, 1, &(Bob){.mass = MASS, .omega = omega}, 0,
+               &(Contact){.k = 4.8650e10, .a = 0, .v0_floor = 1e-6});
+    CHECK_OK(model_set_gaps(&model, &right, &left, &err), &err);
+    const EngineOptions o = {.duration = duration, .accuracy = ACCURACY_FINE, .onsets = log};
+    CHECK_OK(engine_entry(engine)->run(&model, &motion, &o, &r, &err), &err);
+    assert_int_equal(r.outcome, RUN_OK);
+    model_free(&model);
+    return r;
+}
+
+TEST(a_free_mass_flies_to_its_own_gap_on_either_side_and_not_at_all_where_there_is_nothing)
+{
+    for (Engine e = 0; e < ENGINE_COUNT; e++) {
+        ContactOnset at[4];
+        OnsetLog log = {.n_max = 4, .at = at};
+        /* at 2 s the mass is at 1 m with 1 m/s; right gap 1.5 m: closes at 2.5 s, flies back to -0.7 m: 4.7 s */
+        SimResult r = push(e, 0, 1.5, 0.7, 1, 5, e == ENGINE_CVODE ? &log : NULL);
+        assert_int_equal(r.impacts, 2);
+        if (log.n == 2) {
+            assert_close(at[0].t, 2.5, 1e-8);
+            assert_close(at[1].t, 4.7 + contact_hertz_duration(4.865e10, MASS, 1), 1e-6);
+            assert_close(at[1].speed, 1, 1e-6);
+        }
+        assert_close(r.peak_displacement_m[0], 1.5 + contact_hertz_indentation(4.865e10, MASS, 1), 1e-6);
+        assert_int_equal(push(e, 0, INFINITY, 0.7, 1, 5, NULL).impacts, 0);
+        assert_int_equal(push(e, 0, 1.5, INFINITY, 1, 5, NULL).impacts, 1);
+        r = push(e, 0, 1.5, INFINITY, 1, 5, NULL);
+        assert_close(r.indentation_max_m, contact_hertz_indentation(4.865e10, MASS, 1), 1e-6);
+        r = push(e, 0, INFINITY, 1.5, -1, 5, NULL);
+        assert_int_equal(r.impacts, 1);
+        assert_close(r.indentation_max_m, contact_hertz_indentation(4.865e10, MASS, 1), 1e-6);
+    }
+}
+
+/* Against a stop that it just touches an oscillator sees half of its orbit: it returns after pi / w and not 2 pi / w
+ * (S. W. Shaw and P. J. Holmes, J. Sound Vib. 90 (1983) 129). Contacts of some ms stretch that a little. */
+TEST(an_oscillator_at_a_stop_has_twice_its_frequency)
+{
+    const double omega = 2 * M_PI * 0.35;
+    ContactOnset at[16];
+    OnsetLog log = {.n_max = 16, .at = at};
+    const SimResult r = push(ENGINE_CVODE, omega, 0, INFINITY, 1, 16, &log);
+    assert_less(8, log.n);
+    for (int i = log.n - 4; i < log.n; i++)
+        assert_close(at[i].t - at[i - 1].t, M_PI / omega, 0.02);
+    assert_int_equal(push(ENGINE_FAST, omega, 0, INFINITY, 1, 16, NULL).impacts, r.impacts);
+}
+
+/* -- the tower ----------------------------------------------------------------------------------------------------- */
+
+/* Under the built-in record, with sign -1 under its mirror image. */
+static SimResult tower(GapSides sides, Engine engine, double sign, const double x[])
+{
+    SceneOptions o = scene_defaults();
+    Err err = {0};
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    o.design.gap_sides = sides;
+    o.sim.engine = engine;
+    o.sim.duration_s = 18;
+    o.sim.forces = FORCES_YES;
+    CHECK_OK(motion_load(&motion, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&motion, 0.3, 1.5, &err), &err);
+    for (size_t i = 0; i < motion.n; i++)
+        motion.accel[i] *= sign;
+    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+    sim_worker_free(worker);
+    scene_free(scene);
+    motion_free(&motion);
+    assert_int_equal(r.outcome, RUN_OK);
+    r.seconds = 0;
+    return r;
+}
+
+/* Irregular gaps of 20 floors from x on; equal ones are chaotic. */
+static void set_gaps(double x[], double from, double to)
+{
+    for (int j = 0; j < 20; j++)
+        x[j] = from + (to - from) * fmod(0.618 * (j + 1), 1);
+}
+
+static void set_walls(double t[])
+{
+    t[0] = 0.03;
+    t[1] = 0.02;
+}
+
+TEST(equal_gaps_on_each_side_give_the_bytes_of_a_gap_on_both)
+{
+    double both[22], each[42];
+    set_gaps(both, 0.005, 0.03);
+    set_walls(both + 20);
+    memcpy(each, both, 20 * sizeof *both);
+    memcpy(each + 20, both, sizeof both);
+    const SimResult a = tower(GAPS_BOTH, ENGINE_FAST, 1, both), b = tower(GAPS_EACH, ENGINE_FAST, 1, each);
+    assert_less(50, a.impacts);
+    assert_memory_equal(&a, &b, sizeof a);
+}
+
+static void expect_mirrored(const SimResult *a, const SimResult *b)
+{
+    assert_less(20, a->impacts);
+    assert_int_equal(a->impacts, b->impacts);
+    assert_close(b->j1_m, a->j1_m, 1e-9);
+    assert_close(b->j2_m, a->j2_m, 1e-9);
+    assert_close(b->j3_g, a->j3_g, 1e-9);
+    assert_close(b->edcs_pct, a->edcs_pct, 1e-9);
+    for (int j = 0; j < 20; j++)
+        for (int side = 0; side < SIDES; side++)
+            assert_close(b->forces.contact_force_n[1 - side][j], a->forces.contact_force_n[side][j], 1e-8);
+}
+
+TEST(mirrored_gaps_under_the_mirrored_record_give_mirrored_results)
+{
+    double each[42], mirrored[42], one[22];
+    set_gaps(each, 0.005, 0.02);
+    set_gaps(each + 20, 0.04, 0.015);
+    set_walls(each + 40);
+    memcpy(mirrored, each + 20, 20 * sizeof *each);
+    memcpy(mirrored + 20, each, 20 * sizeof *each);
+    set_walls(mirrored + 40);
+    const SimResult a = tower(GAPS_EACH, ENGINE_FAST, 1, each), b = tower(GAPS_EACH, ENGINE_FAST, -1, mirrored);
+    expect_mirrored(&a, &b);
+    set_gaps(one, 0.005, 0.03);
+    set_walls(one + 20);
+    const SimResult l = tower(GAPS_LEFT, ENGINE_FAST, 1, one), r = tower(GAPS_RIGHT, ENGINE_FAST, -1, one);
+    expect_mirrored(&l, &r);
+    for (int j = 0; j < 20; j++)
+        assert_true(l.forces.contact_force_n[0][j] == 0); /* nothing stands on the right */
+    assert_less(1e-3, fabs(a.j1_m / l.j1_m - 1));
+}
+
+TEST(both_engines_agree_on_gaps_that_differ)
+{
+    double each[42], left[22];
+    set_gaps(each, 0.01, 0.05);
+    set_gaps(each + 20, 0.10, 0.03);
+    set_walls(each + 40);
+    set_gaps(left, 0.015, 0.05);
+    set_walls(left + 20);
+    for (int i = 0; i < 2; i++) {
+        const GapSides sides = i ? GAPS_LEFT : GAPS_EACH;
+        const SimResult fast = tower(sides, ENGINE_FAST, 1, i ? left : each);
+        const SimResult cvode = tower(sides, ENGINE_CVODE, 1, i ? left : each);
+        assert_less(10, fast.impacts);
+        assert_close(fast.j1_m, cvode.j1_m, 2e-3);
+        assert_close(fast.j2_m, cvode.j2_m, 5e-3);
+        assert_close(fast.j3_g, cvode.j3_g, 2e-2);
+        assert_close(fast.input_energy_j, cvode.input_energy_j, 5e-3);
+        assert_close(fast.indentation_max_m, cvode.indentation_max_m, 2e-2);
+    }
+}
+
+/* -- variables and commands ---------------------------------------------------------------------------------------- */
+
+TEST(replicates_change_both_sides_together_only_where_they_are_one_variable)
+{
+    const double x[] = {0.1, 0.2, 0.3, 0.4, 0.02, 0.01};
+    for (GapSides sides = GAPS_BOTH; sides <= GAPS_EACH; sides++) {
+        DesignOptions o = scene_defaults().design;
+        DesignSpace s;
+        Design d, was;
+        Err err = {0};
+        o.gap_sides = sides;
+        CHECK_OK(design_space_make(&s, &o, CORE_BOX, 2, &err), &err);
+        assert_int_equal(s.n_var, sides == GAPS_EACH ? 6 : 4);
+        assert_int_equal(design_space_floors(&o, CORE_BOX, s.n_var), 2);
+        design_of(&s, x, &was);
+        d = was;
+        replicate_gaps(1, 0, 0.01, &s, &d);
+        assert_memory_equal(d.gap, was.gap, sizeof d.gap[0] / FLOORS_MAX * 2);
+        replicate_gaps(1, 1, 0.01, &s, &d);
+        assert_true((d.gap[0][0] == d.gap[1][0]) == (sides == GAPS_BOTH));
+        assert_true(isinf(d.gap[0][0]) == (sides == GAPS_LEFT) && isinf(d.gap[1][1]) == (sides == GAPS_RIGHT));
+        for (int j = 0; j < 2; j++)
+            for (int i = 0; i < SIDES; i++)
+                assert_true(isinf(d.gap[i][j]) ||
+                            (d.gap[i][j] != was.gap[i][j] && fabs(d.gap[i][j] - was.gap[i][j]) < 0.05));
+    }
+}
+
+#define SHORT "--set sim.duration_s=20 --set sim.accuracy=coarse "
+#define EACH  "--set design.gap_sides=each --set design.gap_zones=2 "
+
+TEST(every_command_follows_gaps_by_side)
+{
+    static const char HEADER[] =
+        "id,gap_left_zone_1_m,gap_left_zone_2_m,gap_right_zone_1_m,gap_right_zone_2_m,t_base_m,t_top_m,j1_m,";
+    static const char *const COMMANDS[] = {
+        "simulate configs/quick.ini " SHORT EACH "--json --design @/run:knee",
+        "simulate configs/quick.ini " SHORT EACH "--replicates 2 --design @/run:knee",
+        "simulate configs/quick.ini " SHORT EACH "--design @/run:knee --contacts @/contacts.csv",
+        "check configs/quick.ini " EACH SHORT,
+        "status @/run",
+        "export @/run --all --csv @/all.csv",
+        "report @/run --pictures @/pictures",
+        "report @/run",
+    };
+    free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                   "--set search.population=12 --set search.polish=0 " EACH SHORT));
+    char *front = read_in_place("run/front.csv");
+    assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
+    free(front);
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        Said s;
+        run(&s, "%s", COMMANDS[i]);
+        if (s.code != 0)
+            fail_msg("%s: %s", COMMANDS[i], s.err);
+        forget(&s);
+    }
+    char *page = read_in_place("run/report.html");
+    assert_non_null(strstr(page, "\"gap_side_m\":[["));
+    free(page);
+}
+
+TEST(a_design_of_other_sides_is_refused_by_its_column)
+{
+    write_in_place("both.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
+    expect(65, "both.csv: column 1 of the header is 'gap_m'; a design of 20 floors has gap_left_m there",
+           "simulate configs/quick.ini --set design.gap_zones=1 --set design.gap_sides=left --design @/both.csv");
+    expect(65, "design.gap_sides: 'either' is not one of both|left|right|each",
+           "check configs/quick.ini --set design.gap_sides=either");
+}
+
+int main(void)
+{
+    return RUN_TESTS(make_place, clear_place);
+}
