@@ -231,6 +231,7 @@ enum {
     IF_BUCKLING = 16,
     IF_DEVICE = 32,
     IF_BUMPER = 64,
+    IF_YIELDING = 128,
     IN_CORE = IF_FORCES | IF_CORE
 };
 
@@ -285,6 +286,9 @@ static const struct {
     FIELD(OF_NUMBER, 0, damped_building_j),
     FIELD(OF_NUMBER, 0, damped_core_j),
     FIELD(OF_NUMBER, 0, kinetic_strain_j),
+    FIELD(OF_NUMBER, IF_YIELDING, hysteresis_j),
+    FIELD(OF_FLOORS, IF_YIELDING, plastic_drift_m),
+    FIELD(OF_FLOORS, IF_YIELDING, residual_drift_m),
     FIELD(OF_NUMBER, 0, contact_loss_j),
     FIELD(OF_NUMBER, 0, contact_stored_j),
     FIELD(OF_NUMBER, 0, clamp_j),
@@ -347,7 +351,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
                          (kind != SCENE_NO_CORE && kind != SCENE_TMD ? IF_CORE : 0u) |
                          (kind == SCENE_IMPACT ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
                          (r->forces.buckling_known ? IF_BUCKLING : 0u) | (has_device ? IF_DEVICE : 0u) |
-                         (r->bumper_strain > 0 ? IF_BUMPER : 0u);
+                         (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
     json_t *o = json_pack("{s:s, s:s, s:s}", "scene", SCENES[kind], "outcome",
                           outcome_word(measure_outcome(r->outcome)), "reason", r->reason);
     for (int k = 0; k < N_MEASURES; k++)

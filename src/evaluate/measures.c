@@ -20,7 +20,8 @@ const Measure *measure(int k)
 double measure_value(const SimResult *r, int k)
 {
     const unsigned needs = MEASURES[k].needs;
-    if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known))
+    if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known) ||
+        ((needs & NEEDS_YIELDING) && !r->yields))
         return NAN;
     switch ((MeasureId)k) {
 #define X(id, name, unit, sense, needs, value, what)                                                                   \

@@ -2,6 +2,7 @@
  * table. Any of them may be an objective (search.objectives) or be limited (search.limits).
  *
  * Internally every objective is minimised, f = sense * value, while every file and every table shows the natural value.
+ * Of a building without storeys that yield theirs are not known.
  * What needs forces or the filter is computed where it is asked for (sim.forces, or because it is searched for or
  * limited); elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas:
  * docs/theory.md.
@@ -18,7 +19,7 @@
 #include "sim/sim.h"
 
 /* What a measure needs beside a simulation; a set of bits. */
-enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
+enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2, NEEDS_YIELDING = 4 };
 
 /* id, name, unit, sense (+1: less is better, -1: more is better), needs, value of a SimResult *r, what it is. The first
  * PAPER_OBJECTIVES are those of the paper. */
@@ -61,7 +62,14 @@ enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
     X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FORCES, r->forces.base_rotation_rad,                         \
       "rotation of the core's foundation")                                                                             \
     X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FORCES, r->forces.uplift_ratio,                                            \
-      "overturning moment of the core over the moment at which its foundation begins to lift")
+      "overturning moment of the core over the moment at which its foundation begins to lift")                         \
+    X(DUCTILITY, "ductility", "-", 1, NEEDS_YIELDING, r->ductility, "largest drift of a storey over its yield drift")  \
+    X(PLASTIC_DRIFT, "plastic_drift_ratio", "-", 1, NEEDS_YIELDING, r->plastic_drift_ratio,                            \
+      "largest plastic drift at the end over the height of its storey")                                                \
+    X(RESIDUAL_DRIFT, "residual_drift_ratio", "-", 1, NEEDS_YIELDING, r->residual_drift_ratio,                         \
+      "largest drift of the state of rest over the height of its storey")                                              \
+    X(HYSTERESIS, "ed_hysteresis_pct", "%", 1, NEEDS_YIELDING, r->ed_hysteresis_pct,                                   \
+      "share of the input dissipated by storeys that yield")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,

@@ -98,6 +98,15 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
     return status;
 }
 
+static Status check_yielding(const Tower *t, const Scenario *w, Err *err)
+{
+    return !(measures_need(t->judged) & NEEDS_YIELDING) || scene_building(w->scene)->yields
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA,
+                      "search.objectives, search.limits: ductility, plastic and residual drifts and hysteresis are of "
+                      "storeys that yield; set building.yield_drift, or a column yield_drift of storeys.csv");
+}
+
 static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
 {
     Record *r = &t->record[t->recipe->scene[place % t->recipe->n_scenes].record];
@@ -109,6 +118,8 @@ static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
         const SceneOptions options = settings_scene(s);
         status = scenario_open(w, &options, &s->motion, &r->motion, err);
     }
+    if (status == STATUS_OK && (status = check_yielding(t, w, err)) != STATUS_OK)
+        scenario_close(w);
     free(s);
     return status;
 }

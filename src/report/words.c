@@ -33,6 +33,10 @@ static const Words WORDS[N_MEASURES] = {
     [MEASURE_J3_FILTERED] = {"J3 filtered", "g", 1},
     [MEASURE_BASE_ROTATION] = {"base rotation", "mrad", 1e3},
     [MEASURE_UPLIFT] = {"moment / uplift", "", 1},
+    [MEASURE_DUCTILITY] = {"ductility", "", 1},
+    [MEASURE_PLASTIC_DRIFT] = {"plastic drift", "%", 100},
+    [MEASURE_RESIDUAL_DRIFT] = {"residual drift", "%", 100},
+    [MEASURE_HYSTERESIS] = {"hysteresis share", "%", 1},
 };
 
 Words words_of_measure(int k)

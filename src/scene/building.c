@@ -12,6 +12,7 @@
 #include "scene/building_read.h"
 #include "scene/reduction.h"
 #include "scene/sheets.h"
+#include "scene/yielding.h"
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
@@ -201,13 +202,31 @@ static Status make_floors(Building *b, const BuildingFiles *files, const Buildin
     b->omega = m->omega;
     b->gamma = m->gamma;
     b->zeta = m->zeta;
-    b->storey_m = malloc((size_t)b->n * sizeof *b->storey_m);
+    b->storey_m = calloc(3 * (size_t)b->n, sizeof *b->storey_m);
     if (!b->storey_m)
         return fail(err, STATUS_NO_MEMORY, "building: no memory for %d heights", b->n);
+    b->yield_m = b->storey_m + b->n;
+    b->yield_n_m = b->yield_m + b->n;
     TRY(find_heights(b, files, o, err));
     TRY(find_modes(b, m, NULL, o, err));
     for (int i = 0; i < b->n; i++)
         m->like[i] = i;
+    return STATUS_OK;
+}
+
+/* ---- yielding storeys ----------------------------------------------------------------------------------------- */
+
+static Status find_yielding(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+{
+    b->hardening = o->hardening;
+    for (int j = 0; j < b->n; j++) {
+        const double of_file = files->yield_drift ? files->yield_drift[j] : 0;
+        b->yield_m[j] = b->storey_m[j] * (of_file > 0 ? of_file : o->yield_drift);
+        b->yields |= b->yield_m[j] > 0;
+    }
+    if (b->yields)
+        TRY(yielding_parts(b->n, files->floors.K, b->M, b->K, b->yield_m, &b->hardening, b->yield_n_m, err));
+    b->hardening_raised = b->hardening > o->hardening + 1e-12;
     return STATUS_OK;
 }
 
@@ -242,7 +261,11 @@ static Status take(Building *b, const BuildingFiles *files, const BuildingOption
     b->hash = hash_matrices(&files->full, hash_matrices(&files->floors, HASH_SEED));
     if (files->storey_m)
         b->hash = hash_fnv1a(files->storey_m, (size_t)files->floors.n * sizeof *files->storey_m, b->hash);
+    for (int j = 0; files->yield_drift && j < files->floors.n; j++)
+        if (files->yield_drift[j] > 0)
+            b->hash = hash_fnv1a((double[]){j, files->yield_drift[j]}, 2 * sizeof(double), b->hash);
     TRY(make_floors(b, files, o, err));
+    TRY(find_yielding(b, files, o, err));
     TRY(make_model(b, &files->full, o, err));
     TRY(check_period(b, o, err));
     if (!files->storey_m) /* matrices: their headers say no unit */

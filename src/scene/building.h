@@ -22,6 +22,11 @@
  *
  * P-delta  with building.p_delta = on K loses the geometric stiffness of the weights above: storey j of height h_j
  *          carries W_j = g sum_{k >= j} m_k (m row sums of M), K_j,j-1 block -= W_j / h_j [1 -1; -1 1].
+ * Yield    storeys with a yield drift d_y, of the building's options or a column yield_drift of storeys.csv, times the
+ *          height. Storey stiffness from the first mode without P-delta: with f = K phi_1, V_j = sum_{i >= j} f_i,
+ *          k_j = V_j / (phi_1j - phi_1,j-1). The part c k_j yields, c = 1 - hardening, the rest of K stays linear;
+ *          what is left must carry the building, so that c <= 0.98 / lambda, lambda the largest eigenvalue of
+ *          B' diag(k) B x = lambda K x, B u the drifts.
  * Damping  modal: building.damping mode by mode, the last ratio for the rest; rayleigh: zeta_i = (a / w_i + b w_i) / 2
  *          through its first ratio at the two modes of building.rayleigh_modes
  *
@@ -49,13 +54,18 @@ typedef struct {
 } BuildingModel;
 
 typedef struct {
-    int n;            /* floors */
-    double *K, *M;    /* (n, n) [N/m], [kg] */
-    double *phi;      /* (n, n) column i is mode i [1/sqrt(kg)] */
-    double *omega;    /* (n) [rad/s] ascending */
-    double *gamma;    /* (n) [sqrt(kg)] */
-    double *zeta;     /* (n) [-] damping ratios of the modes */
-    double *storey_m; /* (n) heights */
+    int n;             /* floors */
+    double *K, *M;     /* (n, n) [N/m], [kg] */
+    double *phi;       /* (n, n) column i is mode i [1/sqrt(kg)] */
+    double *omega;     /* (n) [rad/s] ascending */
+    double *gamma;     /* (n) [sqrt(kg)] */
+    double *zeta;      /* (n) [-] damping ratios of the modes */
+    double *storey_m;  /* (n) heights */
+    double *yield_m;   /* (n) [m] drift at which a storey yields; 0: it stays elastic */
+    double *yield_n_m; /* (n) [N/m] the part of its stiffness that then yields */
+    int yields;        /* any storey does */
+    int hardening_raised;
+    double hardening; /* [-] share that is left, as it was asked for or more (see above) */
     uint64_t hash;    /* FNV-1a of the numbers in the files */
     char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
 

@@ -161,14 +161,15 @@ static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err
 static Status allocate(BuildingFiles *b, int n, Err *err)
 {
     TRY(frame_full_make(&b->floors, n, err));
-    b->storey_m = calloc((size_t)n, sizeof *b->storey_m);
+    b->storey_m = calloc(2 * (size_t)n, sizeof *b->storey_m);
+    b->yield_drift = b->storey_m ? b->storey_m + n : NULL;
     return b->storey_m ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
 }
 
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    double height, mass, shear, bending; /* [m], [kg], [N/m], [N m2]; 0: not given */
+    double height, mass, shear, bending, yield_drift; /* [m], [kg], [N/m], [N m2], [-]; 0: not given */
 } Storey;
 
 typedef struct {
@@ -195,6 +196,7 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
     TRY(choose(r, 1, "mass_kg and mass_t", &storey->mass, err));
     TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &storey->shear, err));
     TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));
+    storey->yield_drift = r->x[7];
     if (!(storey->mass > 0))
         return fail(err, STATUS_BAD_DATA, "has no mass_kg or mass_t");
     const Storey *first = all->storey;
@@ -213,7 +215,8 @@ static const SheetForm STOREYS = {"storeys.csv",
                                    {"stiffness_n_m", COLUMN_ABOVE_0, 0},
                                    {"stiffness_kn_m", COLUMN_ABOVE_0, 0},
                                    {"bending_n_m2", COLUMN_ABOVE_0, 0},
-                                   {"bending_kn_m2", COLUMN_ABOVE_0, 0}}};
+                                   {"bending_kn_m2", COLUMN_ABOVE_0, 0},
+                                   {"yield_drift", COLUMN_ABOVE_0, 0}}};
 
 static void shear_building(int n, const Storey storey[], double K[])
 {
@@ -245,6 +248,7 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
     for (int j = 0; j < n; j++) {
         b->floors.M[j * n + j] = all.storey[j].mass;
         b->storey_m[j] = all.storey[j].height;
+        b->yield_drift[j] = all.storey[j].yield_drift;
     }
     return STATUS_OK;
 }

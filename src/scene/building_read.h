@@ -10,11 +10,12 @@
 #include "scene/options.h"
 
 typedef struct {
-    char note[400];   /* Frame.note */
-    FrameFull floors; /* symmetric and positive definite */
-    FrameFull full;   /* of a frame: with building.modes the full model, else the floors with what they miss of the
+    char note[400];      /* Frame.note */
+    FrameFull floors;    /* symmetric and positive definite */
+    FrameFull full;      /* of a frame: with building.modes the full model, else the floors with what they miss of the
                        * ground's motion (scene/frame.h); n = 0: the floors are all */
-    double *storey_m; /* (floors.n); NULL: the files have no heights */
+    double *storey_m;    /* (floors.n); NULL: the files have no heights */
+    double *yield_drift; /* (floors.n) [-] 0: the file has none; NULL: of none */
 } BuildingFiles;
 
 typedef struct {

@@ -25,6 +25,9 @@ typedef enum { BUILDING_UNITS_LIST(CHOICE_NAME) } BuildingUnits;
 #define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh")
 typedef enum { DAMPING_MODEL_LIST(CHOICE_NAME) } DampingModel;
 
+#define HYSTERESIS_LIST(X) X(HYSTERESIS_BILINEAR, "bilinear") X(HYSTERESIS_BOUC_WEN, "bouc_wen")
+typedef enum { HYSTERESIS_LIST(CHOICE_NAME) } Hysteresis;
+
 typedef struct {
     char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder (scene/building.h has its forms) */
     BuildingUnits units;
@@ -35,6 +38,11 @@ typedef struct {
     Switch rigid_floors;       /* of a frame */
     long modes;                /* fixed-interface modes beside the floors; 0: condensed */
     Switch p_delta;
+    double yield_drift; /* [-] of the storey's height; 0: a storey yields only where the files say so */
+    double hardening;   /* [-] share of a storey's stiffness that is left where it has yielded */
+    Hysteresis hysteresis;
+    double bouc_wen_exponent;                           /* [-] */
+    double strength_degradation, stiffness_degradation; /* [-] per energy, sim/storey.h */
 } BuildingOptions;
 
 #define CORE_SECTION_LIST(X) X(CORE_BOX, "box") X(CORE_PLATE, "plate") X(CORE_EFFECTIVE, "effective")

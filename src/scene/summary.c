@@ -72,7 +72,10 @@ static Status summarise_core(SceneSummary *s, const CoreOptions *core, const dou
 
 static void summarise_building(SceneSummary *s, const Building *b)
 {
-    *s = (SceneSummary){.n_floors = b->n, .note = b->note, .top_first = falls_from_row_to_row(b)};
+    *s = (SceneSummary){.n_floors = b->n,
+                        .note = b->note,
+                        .top_first = falls_from_row_to_row(b),
+                        .hardening_raised = b->hardening_raised ? b->hardening : 0};
     summarise_mass(s, b);
     for (int j = 0; j < b->n; j++)
         s->height_m += b->storey_m[j];
@@ -142,6 +145,9 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
     if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
         say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->heaviest,
             s->floor_mass_max_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
+    if (s->hardening_raised > 0)
+        say(w, "building.hardening", "raised to %.3g: with less the building would not stand where all storeys yield",
+            s->hardening_raised);
     if (s->top_first)
         say(w, "building.model", "the first mode is largest at the first row; floors are wanted bottom floor first");
     for (int i = 0; i < 3; i++)

@@ -15,13 +15,14 @@ typedef struct {
     int n_floors;
     double mass_kg, height_m;
     double floor_mass_min_kg, floor_mass_max_kg;
-    int lightest, heaviest; /* floors, from 1 */
-    double period_s[3];     /* the first; 0 where there are fewer */
-    double damping[3];      /* [-] of these modes */
-    double first_mode_mass; /* [-] share of the mass */
-    const char *note;       /* what of an OpenSees model was skipped; empty: nothing */
-    int top_first;          /* the first mode is largest at the first row and falls from row to row */
-    double base_shear;      /* [-] share of the weight */
+    int lightest, heaviest;  /* floors, from 1 */
+    double period_s[3];      /* the first; 0 where there are fewer */
+    double damping[3];       /* [-] of these modes */
+    double first_mode_mass;  /* [-] share of the mass */
+    const char *note;        /* what of an OpenSees model was skipped; empty: nothing */
+    double hardening_raised; /* [-] of storeys that yield, where building.hardening was too little; 0: it was not */
+    int top_first;           /* the first mode is largest at the first row and falls from row to row */
+    double base_shear;       /* [-] share of the weight */
     double core_mass_kg;
     double core_hz, timoshenko_hz, euler_bernoulli_hz; /* the core's first mode by core.theory and by either */
     int core_modes_within;                             /* whose frequency is within the motion's content */

@@ -93,6 +93,17 @@ static const Option OPTIONS[] = {
         "condensed to the floors (Guyan)"),
     CHOICE(building.p_delta, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
            "on: the weights of the storeys soften the building (P-delta)"),
+    REAL(building.yield_drift, "-", "0", 0, 1,
+         "interstorey drift over height at which a storey yields, where storeys.csv has none; 0: none yields"),
+    REAL(building.hardening, "-", "0.05", 0, 0.999,
+         "share of a storey's stiffness that is left where it has yielded; raised, with a warning, where the building "
+         "would not stand"),
+    CHOICE(building.hysteresis, Hysteresis, CHOICE_WORDS(HYSTERESIS_LIST), "bilinear",
+           "of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
+    REAL(building.bouc_wen_exponent, "-", "2", 0.1, 100, "bouc_wen: how sharply a storey yields; large: bilinear"),
+    REAL(building.strength_degradation, "-", "0", 0, 10,
+         "bouc_wen: loss of strength for every 2 elastic energies at yield that went in (docs/theory.md)"),
+    REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, the same way"),
 
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
            "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
@@ -723,6 +734,8 @@ static const struct {
     {"problem.variables problem.objectives problem.variable_names problem.objective_names", "problem.kind", "!tower"},
     {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", "problem.kind", "external"},
     {"building.rayleigh_modes", "building.damping_model", "rayleigh"},
+    {"building.bouc_wen_exponent building.strength_degradation building.stiffness_degradation", "building.hysteresis",
+     "bouc_wen"},
     {"core.width_m design.thickness_m", "core.section", "!effective"},
     {"core.areas_m2 core.inertias_m4 core.shear_areas_m2 core.masses_kg", "core.section", "effective"},
     {"core.foundation_factor", "core.foundation", "!fixed"},

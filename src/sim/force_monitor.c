@@ -27,6 +27,7 @@ typedef struct {
     v8 reach[N_REACHES];
     double *building, *building_squares; /* (nb, 8) a row per mode, its square over w^2; NULL: none of the building */
     double *core, *core_squares;         /* (n, 8) */
+    double *plastic;                     /* (n, 8) of building: of a unit plastic drift of storey j */
     double *force, *ground; /* (n, 8), (8) of a unit force on floor j, of the ground, by the modes left out */
     int of_velocities;      /* building's */
     int rose;               /* a peak, at the last point */
@@ -39,7 +40,7 @@ typedef struct {
 struct ForceMonitor {
     int n, nb;
     int at_both, at_slow, at_velocity, n_groups; /* groups: core from 0, building and core, building, velocities */
-    int core_modes, nc, has_residual, with_storeys;
+    int core_modes, nc, has_residual, with_storeys, yields;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
@@ -67,12 +68,13 @@ static int eights(int n)
 static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_building, int has_core)
 {
     const size_t row = LANES8 * sizeof(double);
-    double *const building = has_building ? carve(c, 2 * nb, row) : NULL;
+    double *const building = has_building ? carve(c, 2 * nb + n, row) : NULL;
     double *const core = has_core ? carve(c, 3 * n + 1, row) : NULL;
     if (!c->base)
         return;
     g->building = building;
     g->building_squares = building ? building + nb * LANES8 : NULL;
+    g->plastic = building ? building + 2 * nb * LANES8 : NULL;
     g->core = core;
     g->core_squares = core ? core + n * LANES8 : NULL;
     g->force = core ? core + 2 * n * LANES8 : NULL;
@@ -147,14 +149,32 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
     }
 }
 
+typedef enum { ROW_BUILDING, ROW_CORE, ROW_PLASTIC } RowKind;
+
 /* Row i of outputs (count) of groups from `at` on. */
-static void put_row(ForceMonitor *m, int at, int i, int count, const double outputs[], int of_core)
+static void put_row(ForceMonitor *m, int at, int i, int count, const double outputs[], RowKind of)
 {
     for (int k = 0; k < count; k++) {
         Group *g = &m->group[at + k / LANES8];
-        (of_core ? g->core : g->building)[i * LANES8 + k % LANES8] = outputs[k];
+        double *rows = of == ROW_CORE ? g->core : of == ROW_BUILDING ? g->building : g->plastic;
+        rows[i * LANES8 + k % LANES8] = outputs[k];
         g->outputs = k % LANES8 + 1;
     }
+}
+
+/* A plastic drift of storey j takes its part of the shear of that storey, and its moment from all feet below. */
+static void set_plastic_rows(ForceMonitor *m, const Building *b)
+{
+    for (int j = 0; j < m->n; j++) {
+        double outputs[FLOORS_MAX + 1] = {0};
+        outputs[1] = -b->yield_n_m[j] * b->storey_m[j];
+        outputs[j > 0 ? j + 1 : 0] = -b->yield_n_m[j];
+        put_row(m, m->at_both, j, 2, outputs, ROW_PLASTIC);
+        put_row(m, m->at_slow, j, m->n + 1, outputs, ROW_PLASTIC);
+    }
+    for (int i = m->at_both; i < m->at_velocity; i++)
+        for (int k = 0; k < LANES8 * m->n; k++)
+            m->group[i].reach[REACH_PLASTIC][k % LANES8] += fabs(m->group[i].plastic[k]);
 }
 
 static void set_building_rows(ForceMonitor *m, const Building *b)
@@ -169,9 +189,9 @@ static void set_building_rows(ForceMonitor *m, const Building *b)
         outputs[0] = base;
         for (int j = 0; j < n; j++)
             velocities[j] = model->phi[j * model->n + i];
-        put_row(m, m->at_both, i, 2, outputs, 0);
-        put_row(m, m->at_slow, i, n + 1, outputs, 0);
-        put_row(m, m->at_velocity, i, n, velocities, 0);
+        put_row(m, m->at_both, i, 2, outputs, ROW_BUILDING);
+        put_row(m, m->at_slow, i, n + 1, outputs, ROW_BUILDING);
+        put_row(m, m->at_velocity, i, n, velocities, ROW_BUILDING);
     }
 }
 
@@ -184,8 +204,8 @@ static void set_core_rows(ForceMonitor *m, const CoreBeam *core)
             storey_forces(m, core->K, core->phi + i, n, outputs, outputs + n);
             outputs[2 * n] = core->phi[(n - 1) * n + i];
         }
-        put_row(m, 0, i, 2 * n + 1, outputs, 1);
-        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], outputs[n]}, 1);
+        put_row(m, 0, i, 2 * n + 1, outputs, ROW_CORE);
+        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], outputs[n]}, ROW_CORE);
     }
 }
 
@@ -226,6 +246,11 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->thickness[1] = core ? thickness[1] : 0;
     set_building_rows(m, b);
     set_core_rows(m, core);
+    m->yields = b->yields;
+    for (int i = 0; i < m->n_groups; i++)
+        memset(&m->group[i].reach[REACH_PLASTIC], 0, sizeof m->group[i].reach[REACH_PLASTIC]);
+    if (b->yields)
+        set_plastic_rows(m, b);
     set_reaches(m, b, core);
 }
 
@@ -331,6 +356,8 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
     v8 now = {0}, more = {0};
     if (g->building)
         ADD_ROWS(m->nb, g->building, g->of_velocities ? p->building_v : p->building_q, now, more);
+    if (m->yields && g->building && p->plastic && !g->of_velocities)
+        ADD_ROWS(m->n, g->plastic, p->plastic, now, more);
     if (g->core)
         ADD_ROWS(m->core_modes, g->core, p->core_q, now, more);
     if (g->core && m->has_residual) {

@@ -4,12 +4,13 @@
  *
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
- * and likewise of the core; overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs
- * belongs to mode i. K is of the floors alone, also where the building's model has more degrees of freedom: what the
- * others carry acts on the floors as statics distribute it. Core modes that an engine left out follow
- * quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j (mode acceleration method). Peaks are taken from points
- * that the engine gives in the order of time, with a parabola through three of them wherever the middle one is the
- * largest: spaced by h they miss (w h)^4 / 400 of a component of frequency w.
+ * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core; overturning
+ * is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
+ * alone, also where the building's model has more degrees of freedom: what the others carry acts on the floors as
+ * statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a +
+ * sum_j R_ij f_j (mode acceleration method). Peaks are taken from points that the engine gives in the order of time,
+ * with a parabola through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of
+ * a component of frequency w.
  *
  *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
  *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
@@ -55,6 +56,7 @@ void force_monitor_start(ForceMonitor *m, int core_modes);
 typedef struct {
     double t, ground;
     const double *building_q, *building_v, *core_q, *force;
+    const double *plastic; /* (n) [m] drifts of storeys that yield; NULL: none does */
     FloorSet in_contact;
 } ForcePoint;
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
@@ -67,10 +69,19 @@ void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
  * and it is sharp where E_i are the largest e_i of the run; the first mode, which swings longest, apart from the
  * others. energies: E_i [2 J] of nb building modes and of the core's, when they have risen. may_rise: can any output
  * exceed its peak by so much? The next points follow those of which it can, up to the next look. */
-enum { REACH_BUILDING_1, REACH_BUILDING, REACH_CORE_1, REACH_CORE, REACH_FORCE, REACH_GROUND, N_REACHES };
+enum {
+    REACH_BUILDING_1,
+    REACH_BUILDING,
+    REACH_CORE_1,
+    REACH_CORE,
+    REACH_FORCE,
+    REACH_GROUND,
+    REACH_PLASTIC,
+    N_REACHES
+};
 typedef struct {
-    double
-        by[N_REACHES]; /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2] */
+    /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2]; [m] plastic drift */
+    double by[N_REACHES];
 } ForceReach;
 void force_monitor_energies(ForceMonitor *m, const double building[], const double core[]);
 int force_monitor_may_rise(ForceMonitor *m, const ForceReach *reach);

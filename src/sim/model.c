@@ -68,6 +68,17 @@ Status model_set_gaps(SimModel *model, const double right[], const double left[]
     return STATUS_OK;
 }
 
+static void set_storeys(SimModel *model, const BuildingOptions *o, const Building *b)
+{
+    model->yields = b->yields;
+    model->storey_law =
+        (StoreyLaw){o->hysteresis, o->bouc_wen_exponent, o->strength_degradation, o->stiffness_degradation};
+    for (int j = 0; j < b->n; j++) {
+        model->yield_m[j] = b->yield_m[j] > 0 ? b->yield_m[j] : 1e300;
+        model->yield_n_m[j] = b->yield_n_m[j];
+    }
+}
+
 Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
                  Err *err)
 {
@@ -96,6 +107,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
             sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + j];
         model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
     }
+    set_storeys(model, &o->building, b);
     model->core_mass_kg = core ? core->mass_kg : 0;
     TRY(contact_make(&model->contact[0], &o->contact, err));
     for (int j = 1; j < n; j++)
@@ -105,6 +117,40 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->middle[j] = 0;
     }
     return core && gaps ? model_set_gaps(model, gaps, gaps, err) : STATUS_OK;
+}
+
+void model_plastic_forces(const SimModel *model, const double p[], double f[])
+{
+    for (int j = 0; j < model->n; j++)
+        f[j] = model->yield_n_m[j] * p[j] - (j + 1 < model->n ? model->yield_n_m[j + 1] * p[j + 1] : 0);
+}
+
+/* The floors at rest under f: sum_i R_ij (R_i f) / w_i^2 over the building's modes. */
+static void floors_at_rest(const SimModel *model, const double f[], double u[])
+{
+    memset(u, 0, (size_t)model->n * sizeof *u);
+    for (int i = 0; i < model->nb; i++) {
+        const double *row = model->R + (size_t)i * (size_t)model->n_pad;
+        double load = 0;
+        for (int j = 0; j < model->n; j++)
+            load += row[j] * f[j];
+        for (int j = 0; j < model->n; j++)
+            u[j] += row[j] * load / (model->omega[i] * model->omega[i]);
+    }
+}
+
+void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
+{
+    double f[FLOORS_MAX], u[FLOORS_MAX];
+    model_plastic_forces(model, p, f);
+    floors_at_rest(model, f, u);
+    r->yields = 1;
+    for (int j = 0; j < model->n; j++) {
+        r->plastic_drift_m[j] = p[j];
+        r->residual_drift_m[j] = u[j] - (j > 0 ? u[j - 1] : 0);
+        if (model->yield_n_m[j] > 0)
+            r->ductility = fmax(r->ductility, r->peak_drift_m[j] / model->yield_m[j]);
+    }
 }
 
 void model_free(SimModel *model)

@@ -4,6 +4,9 @@
  *   w_j  = u_j - v_j = sum_i R_ij q_i                                              j = 0..n-1
  *   f_j  = -s F(p_j, p_j', v0_j),  s = sign(w_j - middle_j),  p_j = |w_j - middle_j| - gap_j
  *
+ * A storey that yields adds k_j p_j to the force between its floors, p_j its plastic drift (sim/storey.h), so that mode
+ * i gets sum_j (R_ij - R_i,j-1) k_j p_j on the right-hand side.
+ *
  * Modes 0..nb-1 are the building's (R_ij = phi_ji; nb may exceed n, scene/building.h), nb..m-1 the core's (R_ij =
  * -phi_ji); u_j = sum_{i<nb} R_ij q_i.
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
@@ -20,6 +23,8 @@
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
+#include "sim/result.h"
+#include "sim/storey.h"
 
 typedef struct {
     int n, nb, nc, m; /* floors, building modes, core modes, nb + nc */
@@ -35,6 +40,9 @@ typedef struct {
     double *mass_eff; /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
     double core_mass_kg;
     Contact contact[FLOORS_MAX]; /* (n) */
+    int yields;                  /* any storey does: */
+    StoreyLaw storey_law;
+    double yield_m[FLOORS_MAX], yield_n_m[FLOORS_MAX]; /* (n) [m], [N/m]; of a storey that stays elastic 1e300, 0 */
     void *store;
 } SimModel;
 
@@ -54,6 +62,13 @@ static inline double penetration(const SimModel *model, int j, int s, double w)
 {
     return s * (w - model->middle[j]) - model->gap[j];
 }
+
+/* f_j (n) [N] on floor j by plastic drifts p (n) [m] of the storeys: B' [k p], k p of its own storey less that of the
+ * storey above. */
+void model_plastic_forces(const SimModel *model, const double p[], double f[]);
+
+/* Fills what SimResult has of storeys that yielded and ended with plastic drifts p (n); energies are the engine's. */
+void model_report_plastic(const SimModel *model, const double p[], SimResult *result);
 
 /* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
 void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);

@@ -73,6 +73,12 @@ typedef struct {
     double peak_displacement_m[FLOORS_MAX], peak_drift_m[FLOORS_MAX], peak_acceleration_g[FLOORS_MAX];
     double drift_ratio[FLOORS_MAX], drift_ratio_max;  /* [-] peak interstorey drift over the storey's height */
     int drift_ratio_storey;                           /* of the largest, from 0 */
+    int yields;                                       /* storeys of the building may: */
+    double hysteresis_j, ed_hysteresis_pct;           /* dissipated by them; of input_energy_j */
+    double ductility;                                 /* [-] largest drift over yield drift */
+    double plastic_drift_m[FLOORS_MAX];               /* of every storey at the end */
+    double residual_drift_m[FLOORS_MAX];              /* of the state of rest that follows */
+    double plastic_drift_ratio, residual_drift_ratio; /* [-] the largest magnitudes over the storey's height */
     double mode_share_pct[FLOORS_MAX];                /* of input_energy_j, dissipated by each building mode */
     double contact_loss_j, contact_stored_j, clamp_j; /* lost in contacts, still stored, removed by the no-tension
                                                          condition */
@@ -111,6 +117,7 @@ typedef struct {
     int n_modes, n_building;
     const double *omega, *q, *v; /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
     const double *force;         /* (n_floors) [N] of the contacts on the floors; NULL: not known */
+    const double *plastic;       /* (n_floors) [m] plastic drifts of the storeys; NULL: none yields */
     const double *u,
         *u_ddot;            /* (n_floors) displacements and absolute accelerations of a linear scene, which has no q, v
                                  and force here; else NULL */

@@ -256,12 +256,17 @@ static void core_nodes(const SimModel *model, const SimSample *s, const double x
 /* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes. */
 static void accelerations(const SimModel *model, const SimSample *s, double out[])
 {
+    double force[FLOORS_MAX] = {0};
+    if (s->plastic)
+        model_plastic_forces(model, s->plastic, force);
+    for (int j = 0; j < model->n && s->force; j++)
+        force[j] += s->force[j];
     memset(out, 0, (size_t)model->n * sizeof *out);
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
         double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
-        for (int j = 0; j < model->n && s->force; j++)
-            pull += row[j] * s->force[j];
+        for (int j = 0; j < model->n; j++)
+            pull += row[j] * force[j];
         for (int j = 0; j < model->n; j++)
             out[j] += row[j] * pull;
     }
@@ -316,6 +321,11 @@ static LinearKind linear_kind(SceneKind kind)
 static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
+    if (w->building->yields) {
+        result->outcome = RUN_ENGINE_FAILED;
+        snprintf(result->reason, sizeof result->reason, "storeys that yield are not followed with this device yet");
+        return STATUS_OK;
+    }
     TRY(engine_linear(linear_kind(kind), w->building, &w->core, &w->device, scene->motion, &w->run, result, err));
     check_result(result, sim_energy_balance_max(&w->options->sim));
     return STATUS_OK;
@@ -366,6 +376,8 @@ static Status filter_floors(SimWorker *w, SimResult *r, Err *err)
 static void set_drift_ratios(const double storey_m[], SimResult *r)
 {
     for (int s = 0; s < r->n_floors; s++) {
+        r->plastic_drift_ratio = fmax(r->plastic_drift_ratio, fabs(r->plastic_drift_m[s]) / storey_m[s]);
+        r->residual_drift_ratio = fmax(r->residual_drift_ratio, fabs(r->residual_drift_m[s]) / storey_m[s]);
         r->drift_ratio[s] = r->peak_drift_m[s] / storey_m[s];
         if (r->drift_ratio[s] > r->drift_ratio_max) {
             r->drift_ratio_max = r->drift_ratio[s];

@@ -17,14 +17,20 @@ double *ode_values(N_Vector v)
     return NV_DATA_S(v);
 }
 
-int ode_size(const Ode *o)
+/* Where the storeys' plastic drifts stand in y, and after them their works. */
+static int storeys_at(const Ode *o)
 {
     return o->with_energies ? 3 * o->model->m + 3 : 2 * o->model->m;
 }
 
+int ode_size(const Ode *o)
+{
+    return storeys_at(o) + (o->model->yields ? 2 * o->model->n : 0);
+}
+
 int ode_n_roots(const Ode *o)
 {
-    return o->model->nc > 0 ? o->model->n : 0;
+    return o->model->yields ? 2 * o->model->n : o->model->nc > 0 ? o->model->n : 0;
 }
 
 /* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
@@ -60,6 +66,8 @@ CLONED int ode_add_loads(Ode *o, double t, const double y[], double dv[], double
     double check = 0;
     *a = ground(o, t);
     *power = contacts_add(&o->contacts, y, y + model->m, dv);
+    if (model->yields)
+        storeys_add(model, y + storeys_at(o), dv);
     for (int i = 0; i < model->m; i++) {
         dv[i] -= model->gamma[i] * *a;
         check += dv[i];
@@ -86,7 +94,31 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
         rest[1] = power.lost;
         rest[2] = power.clamp;
     }
+    if (model->yields) {
+        const double *p = y + storeys_at(o);
+        double d[FLOORS_MAX], d_dot[FLOORS_MAX], *rate = dq + storeys_at(o);
+        storeys_drifts(model, y, d);
+        storeys_drifts(model, v, d_dot);
+        storeys_rates(&o->storeys, d, d_dot, p, p + model->n, rate, rate + model->n);
+    }
     return failed;
+}
+
+/* Of bilinear storeys: beyond yield, rising while they are elastic; the drift's rate, falling while they yield. */
+static double yield_roots(const Ode *o, const double y[], double root[])
+{
+    const SimModel *model = o->model;
+    double d[FLOORS_MAX], d_dot[FLOORS_MAX], check = 0;
+    storeys_drifts(model, y, d);
+    storeys_drifts(model, y + model->m, d_dot);
+    for (int j = 0; j < model->n; j++) {
+        const int side = o->storeys.side[j];
+        root[j] = model->storey_law.kind != HYSTERESIS_BILINEAR || model->yield_n_m[j] == 0 ? -1
+                  : side                                                                    ? side * d_dot[j]
+                         : fabs(d[j] - y[storeys_at(o) + j]) - model->yield_m[j];
+        check += root[j];
+    }
+    return check;
 }
 
 /* One root per floor, its penetration: rising through zero when open, falling when closed. */
@@ -96,6 +128,8 @@ int ode_penetrations(sunrealtype t, N_Vector y, sunrealtype *p, void *user)
     Ode *o = user;
     const SimModel *model = o->model;
     double check = 0, w[FLOORS_MAX];
+    if (model->yields)
+        check = yield_roots(o, ode_values(y), p + model->n);
     floors_from_modes(model, 0, model->m, ode_values(y), w);
     for (int j = 0; j < model->n; j++) {
         const int side = o->contacts.side[j];
@@ -149,6 +183,9 @@ static void set_tolerances(const Ode *o, double level)
     }
     for (int i = 2 * m; i < ode_size(o); i++)
         tolerance[i] = level * momentum * momentum;
+    for (int j = 0; model->yields && j < model->n; j++)
+        if (model->yield_n_m[j] > 0)
+            tolerance[storeys_at(o) + j] = level * model->yield_m[j];
 }
 
 int ode_prepare(Ode *o, const double rtol[3])
@@ -158,6 +195,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     for (int i = 0; i < model->m; i++)
         fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
     o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
+    o->storeys.model = model;
     o->contacts = (Contacts){.model = model, .log = o->options->onsets, .forces = o->options->forces};
     if (o->contacts.forces)
         force_monitor_start(o->contacts.forces, model->nc);
@@ -197,6 +235,7 @@ static void record_forces(Ode *o, double t, const double y[])
                                                           .building_v = y + model->m,
                                                           .core_q = y + model->nb,
                                                           .force = force,
+                                                          .plastic = model->yields ? y + storeys_at(o) : NULL,
                                                           .in_contact = in_contact});
 }
 
@@ -216,6 +255,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
                    .q = y,
                    .v = y + m,
                    .force = force,
+                   .plastic = model->yields ? y + storeys_at(o) : NULL,
                    .input_j = NAN,
                    .contacts_j = NAN};
     if (o->with_energies) {
@@ -252,6 +292,8 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     double contact[MODES_MAX] = {0};
     o->a_sampled = ground(o, t);
     o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
+    if (model->yields)
+        storeys_add(model, y + storeys_at(o), contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
     if (o->contacts.forces)
@@ -281,50 +323,76 @@ static int sample_step(Ode *o, double t_before, double t)
 
 static int start_anew(Ode *o, double t, double t_stop)
 {
-    int directions[FLOORS_MAX];
-    for (int j = 0; j < o->model->n; j++)
+    int directions[2 * FLOORS_MAX];
+    for (int j = 0; j < o->model->n; j++) {
         directions[j] = o->contacts.side[j] ? -1 : 1;
+        directions[o->model->n + j] = o->storeys.side[j] ? -1 : 1;
+    }
     if (o->solver->restart(o, t) || (ode_n_roots(o) > 0 && o->solver->look_for(o, directions)))
         return -1;
     return o->solver->stop_at(o, t_stop);
 }
 
-/* For the approach speeds of gaps that close unseen in the next step. */
-/* Contacts at the end of a step, `found` those whose root was: 1 where the integrator has to start anew. */
-static int switch_contacts(Ode *o, double t, const int found[])
-{
-    const double *y = ode_values(o->y);
-    return o->model->nc > 0 ? contacts_switch(&o->contacts, t, y, y + o->model->m, found) : 0;
-}
-
-/* w from the middle of the gap. */
+/* What the roots are of, at one end of a step: w from the middle of the gap and w' of the floors, then d - p and d' of
+ * the storeys that yield. */
 typedef struct {
-    double w[FLOORS_MAX], w_dot[FLOORS_MAX];
+    double w[2 * FLOORS_MAX], w_dot[2 * FLOORS_MAX];
 } Floors;
 
 static void floors_now(const Ode *o, Floors *f)
 {
     const SimModel *model = o->model;
-    if (model->nc == 0)
-        return;
-    floors_from_modes(model, 0, model->m, ode_values(o->y), f->w);
-    floors_from_modes(model, 0, model->m, ode_values(o->y) + model->m, f->w_dot);
+    const double *y = ode_values(o->y);
+    floors_from_modes(model, 0, model->m, y, f->w);
+    floors_from_modes(model, 0, model->m, y + model->m, f->w_dot);
     for (int j = 0; j < model->n; j++)
         f->w[j] -= model->middle[j];
+    if (!model->yields)
+        return;
+    storeys_drifts(model, y, f->w + model->n);
+    storeys_drifts(model, y + model->m, f->w_dot + model->n);
+    for (int j = 0; j < model->n; j++)
+        f->w[model->n + j] -= y[storeys_at(o) + j];
+}
+
+/* Contacts and yielding at the end of a step, `found` those whose root was: 1 where integration starts anew. */
+static int switch_flags(Ode *o, double t, const Floors *now, const int found[])
+{
+    const SimModel *model = o->model;
+    const double *y = ode_values(o->y);
+    const int contacts = model->nc > 0 && contacts_switch(&o->contacts, t, y, y + model->m, found);
+    return (model->yields && storeys_switch(&o->storeys, now->w + model->n, now->w_dot + model->n, found + model->n)) ||
+           contacts;
+}
+
+/* Root j at a state of dense output: w from the middle of the gap or d - p, or its rate. */
+static double watched(const Ode *o, int j, int rate, const double y[])
+{
+    const SimModel *model = o->model;
+    const double *q = y + (rate ? model->m : 0);
+    double d[FLOORS_MAX];
+    if (j < model->n)
+        return relative_displacement(model, j, q) - (rate ? 0 : model->middle[j]);
+    storeys_drifts(model, q, d);
+    return d[j - model->n] - (rate ? 0 : y[storeys_at(o) + j - model->n]);
+}
+
+/* What its magnitude is compared with. */
+static double bound_of(const Ode *o, int j)
+{
+    return j < o->model->n ? o->model->gap[j] : o->model->yield_m[j - o->model->n];
 }
 
 /* The time in (low, high) where the penetration, or side w' with `speed`, of floor j changes sign, by dense output; the
  * end where it is positive. */
 static double change_of_sign(Ode *o, int j, int side, int speed, double low, double high)
 {
-    const SimModel *model = o->model;
     for (int i = 0; i < 60 && high - low > 1e-15 * high; i++) {
         const double mid = 0.5 * (low + high);
         if (o->solver->interpolate(o, mid, o->between))
             return high;
-        const double *y = ode_values(o->between) + (speed ? model->m : 0);
-        const double w = relative_displacement(model, j, y);
-        const int past = speed ? side * w < 0 : penetration(model, j, side, w) > 0;
+        const double now = side * watched(o, j, speed, ode_values(o->between));
+        const int past = speed ? now < 0 : now > bound_of(o, j);
         *(past ? &high : &low) = mid;
     }
     return high;
@@ -336,16 +404,18 @@ static const double GRAZE = 1e-11;
 /* When the gap of an open floor closed, where its path has turned back within the step; else infinity. */
 static double unseen_closing(Ode *o, int j, double t_before, double t, const Floors *from, const Floors *to)
 {
-    const double gap = o->model->gap[j], third = (t - t_before) / 3;
+    const int n = o->model->n, open = j < n
+                                          ? !o->contacts.side[j]
+                                          : o->model->storey_law.kind == HYSTERESIS_BILINEAR && !o->storeys.side[j - n];
+    const double gap = bound_of(o, j), third = (t - t_before) / 3;
     const int side = to->w[j] > 0 ? 1 : -1;
-    if (o->contacts.side[j] || !(side * from->w_dot[j] > 0 && side * to->w_dot[j] < 0) || side * from->w[j] > gap ||
+    if (!open || !(side * from->w_dot[j] > 0 && side * to->w_dot[j] < 0) || side * from->w[j] > gap ||
         side * to->w[j] > gap || /* the cubic's control points enclose it */
         fmax(side * (from->w[j] + third * from->w_dot[j]), side * (to->w[j] - third * to->w_dot[j])) <= gap)
         return HUGE_VAL;
     const double top = change_of_sign(o, j, side, 1, t_before, t);
     if (o->solver->interpolate(o, top, o->between) ||
-        !(side * (relative_displacement(o->model, j, ode_values(o->between)) - o->model->middle[j]) >
-          gap * (1 + GRAZE)))
+        !(side * watched(o, j, 0, ode_values(o->between)) > gap * (1 + GRAZE)))
         return HUGE_VAL;
     return change_of_sign(o, j, side, 0, t_before, top);
 }
@@ -386,7 +456,7 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         const int flag = o->solver->step(o, t_stop, t);
         if (flag < 0) /* it has tried again with shorter steps before it says so */
             return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;
-        int found[FLOORS_MAX] = {0};
+        int found[2 * FLOORS_MAX] = {0};
         floors_now(o, &to);
         if (go_back(o, t_before, t, &from, &to, found))
             floors_now(o, &to);
@@ -396,7 +466,7 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         if (sample_step(o, t_before, *t) || (o->options->sample && send_samples(o, *t)))
             return RUN_ENGINE_FAILED;
         o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
-        if (switch_contacts(o, *t, found) && start_anew(o, *t, t_stop))
+        if (switch_flags(o, *t, &to, found) && start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }
     return RUN_OK;
@@ -427,7 +497,9 @@ static RunOutcome walk(Ode *o)
 
 static void explain(const Ode *o, double t, SimResult *result)
 {
-    if (result->outcome == RUN_OUT_OF_STEPS)
+    if (o->model->yields && !o->with_energies)
+        snprintf(result->reason, sizeof result->reason, "%s: follows no storeys that yield", o->solver->package);
+    else if (result->outcome == RUN_OUT_OF_STEPS)
         snprintf(result->reason, sizeof result->reason, "t = %.6g s: %ld steps did not reach %g s", t, o->account.steps,
                  o->options->duration);
     else if (result->outcome == RUN_NOT_FINITE)
@@ -443,7 +515,7 @@ Status ode_run(Ode *o, SimResult *result)
     const int m = o->model->m;
     const double *y = ode_values(o->y);
     const unsigned mode = denormal_off();
-    result->outcome = walk(o);
+    result->outcome = o->model->yields && !o->with_energies ? RUN_ENGINE_FAILED : walk(o);
     denormal_restore(mode);
     if (result->outcome != RUN_OK) {
         explain(o, o->account.peaks.count ? o->account.peaks.ring[(o->account.peaks.count + 2) % 3].t : 0, result);
@@ -455,6 +527,14 @@ Status ode_run(Ode *o, SimResult *result)
         o->account.lost = y[3 * m + 1];
         o->account.clamp = y[3 * m + 2];
     }
+    const double *p = y + storeys_at(o);
+    double d[FLOORS_MAX];
+    if (o->model->yields) {
+        storeys_drifts(o->model, y, d);
+        storeys_energies(o->model, d, p, p + o->model->n, result);
+    }
     energy_account_report(&o->account, &o->contacts, o->options, y, y + m, result);
+    if (o->model->yields)
+        model_report_plastic(o->model, p, result);
     return STATUS_OK;
 }

@@ -2,9 +2,11 @@
  *
  *   y = [q (m), q' (m)]                                      energies by Gauss-Lobatto quadrature of dense output
  *   y = [q (m), q' (m), damped (m), input, lost, clamp]      with_energies: integrated beside the motion
+ *       [p (n), W (n)]                                       after them, of storeys that yield: with_energies alone
  *
- * Located contacts: one root per floor; at a root a flag flips and the integrator is reinitialized. Between events the
- * right-hand side is smooth: a floor keeps its flag past the root until the root is found.
+ * Located contacts and yielding: one root per floor, then one per storey that yields; at a root a flag flips and the
+ * integrator is reinitialized. Between events the right-hand side is smooth: a floor keeps its flag past the root until
+ * the root is found.
  *
  * Life cycle  ode_prepare -> (the caller sets up its integrator in Ode.memory) -> ode_run -> ode_release
  * Threads     no state but the struct
@@ -15,6 +17,7 @@
 #include <nvector/nvector_serial.h>
 
 #include "sim/cvode/energy_account.h"
+#include "sim/cvode/storeys.h"
 
 typedef struct Ode Ode;
 
@@ -41,6 +44,7 @@ struct Ode {
     double rtol;
 
     Contacts contacts;
+    Storeys storeys;
     EnergyAccount account;
     long interval;                          /* stop_at_samples: the sampling interval */
     double v_sampled[MODES_MAX], a_sampled; /* at the last point of the quadrature: velocities, ground, contacts */

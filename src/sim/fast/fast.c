@@ -1,5 +1,6 @@
 #include "sim/fast/fast.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -218,6 +219,11 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
                    Err *err)
 {
     FastWork *own = NULL, *work = options->work;
+    if (model->yields) {
+        *result = (SimResult){.outcome = RUN_ENGINE_FAILED, .n_floors = model->n};
+        snprintf(result->reason, sizeof result->reason, "storeys that yield need sim.engine = cvode");
+        return STATUS_OK;
+    }
     if (!work)
         TRY(fast_create(&own, model->n, model->nb, err));
     if (!work)

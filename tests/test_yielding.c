@@ -1,0 +1,312 @@
+/* Storeys that yield: closed forms, reference numbers, energies, and every engine against the other. */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "scene_options.h"
+#include "sim/engine.h"
+
+/* ---- one storey ------------------------------------------------------------------------------------------------- */
+
+/* A mass on a spring whose share c yields at y; no damping. */
+static const double MASS = 2e5, FREQUENCY = 2 * M_PI, SHARE = 0.9, YIELD = 0.02;
+
+static SimModel one_storey(StoreyLaw law)
+{
+    SimModel m;
+    Err err;
+    CHECK_OK(model_create(&m, 1, 1, &err), &err);
+    m.nb = m.m = 1;
+    m.m_pad = 8;
+    memset(m.R, 0, sizeof *m.R * 64);
+    memset(m.RT, 0, sizeof *m.RT * 64);
+    for (int i = 0; i < 8; i++) {
+        m.omega[i] = i ? 1 : FREQUENCY;
+        m.zeta[i] = m.gamma[i] = 0;
+        m.gap[i] = m.mass_eff[i] = 1e300;
+    }
+    m.gamma[0] = sqrt(MASS);
+    m.R[0] = m.RT[0] = 1 / sqrt(MASS);
+    m.yields = 1;
+    m.storey_law = law;
+    m.yield_m[0] = YIELD;
+    m.yield_n_m[0] = SHARE * MASS * FREQUENCY * FREQUENCY;
+    return m;
+}
+
+static const Engine ENGINES[] = {ENGINE_CVODE};
+enum { N_ENGINES = sizeof ENGINES / sizeof ENGINES[0] };
+
+static SimResult run(Engine engine, const SimModel *model, const Motion *motion, double duration)
+{
+    SimResult r;
+    Err err = {0};
+    const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE};
+    CHECK_OK(engine_entry(engine)->run(model, motion, &options, &r, &err), &err);
+    if (r.outcome != RUN_OK)
+        print_error("%s: %s\n", engine_entry(engine)->name, r.reason);
+    assert_int_equal(r.outcome, RUN_OK);
+    assert_less(r.energy_balance_error, 1e-5);
+    return r;
+}
+
+/* Under an acceleration A that sets in at once the mass turns where the work of A is the energy of the spring:
+ * A x = w^2 ((1 - c) x^2 / 2 + c held(x)). Bisection on its first root. */
+typedef double HeldFn(double x);
+static double turning_point(double A, HeldFn *held)
+{
+    double low = 1e-9, high = 1e-9;
+    const double w2 = FREQUENCY * FREQUENCY;
+    do {
+        low = high;
+        high += 1e-5;
+    } while (A * high > w2 * (0.5 * (1 - SHARE) * high * high + SHARE * held(high)));
+    for (int i = 0; i < 60; i++) {
+        const double mid = 0.5 * (low + high);
+        *(A * mid > w2 * (0.5 * (1 - SHARE) * mid * mid + SHARE * held(mid)) ? &low : &high) = mid;
+    }
+    return low;
+}
+
+static double held_bilinear(double x)
+{
+    return x < YIELD ? 0.5 * x * x : YIELD * x - 0.5 * YIELD * YIELD;
+}
+
+/* n = 1: z = y (1 - exp(-x/y)) */
+static double held_bouc_wen(double x)
+{
+    return YIELD * (x - YIELD * (1 - exp(-x / YIELD)));
+}
+
+/* n = 1 with degradation: z' = (1 - (1 + s e) z/y) / (1 + k e), e = int z dx / y^2, by small steps of Heun's method. */
+#define LOSS_OF_STRENGTH  0.3
+#define LOSS_OF_STIFFNESS 0.2
+static double held_degrading(double x)
+{
+    enum { STEPS = 2000 };
+    const double h = x / STEPS;
+    double z = 0, e = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const double s0 = (1 - (1 + LOSS_OF_STRENGTH * e) * z / YIELD) / (1 + LOSS_OF_STIFFNESS * e);
+        const double z1 = z + h * s0, e1 = e + h * z / (YIELD * YIELD);
+        const double s1 = (1 - (1 + LOSS_OF_STRENGTH * e1) * z1 / YIELD) / (1 + LOSS_OF_STIFFNESS * e1);
+        e += 0.5 * h * (z + z1) / (YIELD * YIELD);
+        z += 0.5 * h * (s0 + s1);
+    }
+    return e * YIELD * YIELD;
+}
+
+TEST(a_storey_under_a_sudden_load_turns_where_the_energies_say)
+{
+    static const struct {
+        StoreyLaw law;
+        HeldFn *held;
+    } cases[] = {{{.kind = HYSTERESIS_BILINEAR}, held_bilinear},
+                 {{HYSTERESIS_BOUC_WEN, 1, 0, 0}, held_bouc_wen},
+                 {{HYSTERESIS_BOUC_WEN, 1, LOSS_OF_STRENGTH, LOSS_OF_STIFFNESS}, held_degrading}};
+    const double A = 0.6 * YIELD * FREQUENCY * FREQUENCY;
+    double accel[] = {-A, -A, -A, -A, -A, -A, -A, -A};
+    const Motion m = {.accel = accel, .n = 8, .dt_s = 0.25};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
+        for (int e = 0; e < N_ENGINES; e++) {
+            SimModel model = one_storey(cases[k].law);
+            const SimResult r = run(ENGINES[e], &model, &m, 1); /* Bouc-Wen goes farther when it comes back */
+            const double x = turning_point(A, cases[k].held);
+            assert_less(1.2 * YIELD, x);
+            assert_close(r.j1_m, x, 2e-6);
+            assert_close(r.ductility, x / YIELD, 2e-6);
+            model_free(&model);
+        }
+}
+
+/* Half a sine of PULSE seconds, elastic up to t_y, then on the softer spring w_s = w sqrt(1 - c) about the offset that c
+ * of the stiffness leaves behind: x'' + w_s^2 x = A sin(W t) - c w^2 y (J. M. Biggs, Introduction to Structural Dynamics,
+ * 1964, chapter 2). The mass turns within the pulse. */
+static const double PULSE = 1.3;
+
+typedef struct {
+    double x, v;
+} Motion1;
+
+/* From (x, v) at t0 on the spring w under A sin(W t) + c, exactly. */
+static Motion1 under_sine(double w, double A, double W, double c, double t0, Motion1 start, double t)
+{
+    const double P = A / (w * w - W * W), s = c / (w * w), p0 = P * sin(W * t0) + s, v0 = P * W * cos(W * t0);
+    const double a = start.x - p0, b = (start.v - v0) / w, tau = w * (t - t0);
+    return (Motion1){P * sin(W * t) + s + a * cos(tau) + b * sin(tau),
+                     P * W * cos(W * t) - a * w * sin(tau) + b * w * cos(tau)};
+}
+
+static double biggs(double A)
+{
+    const double W = M_PI / PULSE, w = FREQUENCY, ws = w * sqrt(1 - SHARE), back = -SHARE * w * w * YIELD;
+    double low = 0, high = 0.5;
+    while (high - low > 1e-14) {
+        const double mid = 0.5 * (low + high);
+        *(under_sine(w, A, W, 0, 0, (Motion1){0}, mid).x < YIELD ? &low : &high) = mid;
+    }
+    const double ty = low;
+    const Motion1 at = under_sine(w, A, W, 0, 0, (Motion1){0}, ty);
+    for (low = ty, high = PULSE; high - low > 1e-13;) {
+        const double mid = 0.5 * (low + high);
+        *(under_sine(ws, A, W, back, ty, at, mid).v > 0 ? &low : &high) = mid;
+    }
+    assert_less(low, 0.99 * PULSE);
+    return under_sine(ws, A, W, back, ty, at, low).x;
+}
+
+TEST(a_bilinear_storey_under_half_a_sine_is_as_biggs_says)
+{
+    enum { N = 2001 };
+    static double accel[N];
+    const double A = 0.95 * YIELD * FREQUENCY * FREQUENCY;
+    for (int i = 0; i < N; i++)
+        accel[i] = -A * sin(M_PI * i / (N - 1));
+    const Motion m = {.accel = accel, .n = N, .dt_s = PULSE / (N - 1)};
+    const double x = biggs(A);
+    assert_less(1.5 * YIELD, x);
+    for (int e = 0; e < N_ENGINES; e++) {
+        SimModel model = one_storey((StoreyLaw){.kind = HYSTERESIS_BILINEAR});
+        const SimResult r = run(ENGINES[e], &model, &m, PULSE);
+        assert_close(r.j1_m, x, 3e-6);
+        assert_close(fabs(r.plastic_drift_m[0]), x - YIELD, 1e-5);
+        /* unloading did not yield again: hysteresis is force times way */
+        assert_close(r.hysteresis_j, model.yield_n_m[0] * YIELD * (x - YIELD), 1e-5);
+        model_free(&model);
+    }
+}
+
+/* ---- the tower -------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    Settings settings;
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    double x[22];
+} Tower;
+
+static void tower_open(Tower *t)
+{
+    Err err = {0};
+    const SceneOptions options = settings_scene(&t->settings);
+    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
+    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
+    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
+    for (int j = 0; j < 20; j++)
+        t->x[j] = 0.008 * (j + 1);
+    t->x[20] = 0.030;
+    t->x[21] = 0.0216;
+}
+
+static void tower_close(Tower *t)
+{
+    sim_worker_free(t->worker);
+    scene_free(t->scene);
+    motion_free(&t->motion);
+}
+
+static SimResult tower_run(const Tower *t, SceneKind kind)
+{
+    SimResult r;
+    Err err = {0};
+    CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
+    if (r.outcome != RUN_OK)
+        print_error("%s\n", r.reason);
+    assert_int_equal(r.outcome, RUN_OK);
+    return r;
+}
+
+/* The early window of the reference: Sylmar, 0 to 11 s. */
+static void early_window(Tower *t, Engine engine, double yield_drift)
+{
+    *t = (Tower){0};
+    paper_defaults(&t->settings);
+    snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
+    if (access(t->settings.motion.record, R_OK) != 0) {
+        print_message("skipped: %s is not there\n", t->settings.motion.record);
+        skip();
+    }
+    t->settings.motion.stretch = 3.0;
+    t->settings.sim.duration_s = 11;
+    t->settings.sim.accuracy = ACCURACY_FINE;
+    t->settings.sim.forces = FORCES_YES;
+    t->settings.sim.engine = engine;
+    t->settings.building.yield_drift = yield_drift;
+    tower_open(t);
+}
+
+TEST(a_yielding_tower_has_the_reference_numbers)
+{
+    for (int e = 0; e < N_ENGINES; e++) {
+        Tower t;
+        early_window(&t, ENGINES[e], 0.006);
+        const SimResult bare = tower_run(&t, SCENE_NO_CORE), r = tower_run(&t, SCENE_IMPACT);
+        tower_close(&t);
+        assert_close(bare.j1_m, 0.65372, 1e-4);
+        assert_close(bare.j2_m, 0.081227, 1e-4);
+        assert_close(bare.j3_g, 0.16906, 1e-3);
+        assert_close(bare.ductility, 2.552, 1e-3);
+        assert_close(bare.plastic_drift_ratio, 0.009315, 2e-3);
+        assert_close(bare.input_energy_j, 3.36911e6, 2e-3);
+        assert_close(bare.ed1_pct, 4.267, 2e-3);
+        assert_close(bare.ed_hysteresis_pct, 19.22, 2e-3);
+        assert_close(r.j1_m, 0.363197, 1e-3);
+        assert_close(r.j2_m, 0.033182, 1e-3);
+        assert_close(r.j3_g, 4.9531, 1e-2);
+        assert_close(r.ductility, 1.396, 1e-3);
+        assert_close(r.plastic_drift_ratio, 0.002374, 1e-2);
+        assert_close(r.input_energy_j, 1.24893e6, 2e-3);
+        assert_close(r.ed1_pct, 2.759, 5e-3);
+        assert_close(r.edcs_pct, 1.783, 5e-3);
+        assert_close(r.ed_hysteresis_pct, 1.084, 5e-3);
+        assert_close(r.forces.contact_force_max_n, 10.35e6, 1e-2);
+    }
+}
+
+TEST(storeys_have_the_stiffness_of_the_first_mode)
+{
+    Building b;
+    SceneOptions s = scene_defaults();
+    Err err;
+    s.building.yield_drift = 0.006;
+    CHECK_OK(building_load(&b, &s.building, &err), &err);
+    assert_true(b.yields && !b.hardening_raised);
+    assert_close(b.yield_n_m[0] / 0.95, 123.386e6, 1e-5);
+    assert_close(b.yield_n_m[1] / 0.95, 152.762e6, 1e-5);
+    assert_close(b.yield_n_m[19] / 0.95, 28.0912e6, 1e-5);
+    assert_close(b.yield_m[1], 0.006 * 3.9624, 1e-12);
+    building_free(&b);
+    s.building.hardening = 0;
+    CHECK_OK(building_load(&b, &s.building, &err), &err);
+    assert_true(b.hardening_raised && b.hardening > 0.01 && b.hardening < 0.05);
+    building_free(&b);
+}
+
+/* K u of the forces less the plastic part: the base shear is what the floors' inertia and damping ask for. At the yield
+ * drift of a storey that never unloads the shear is that of two springs in parallel. */
+TEST(the_base_shear_is_that_of_the_storeys_that_yield)
+{
+    for (int e = 0; e < N_ENGINES; e++) {
+        Tower t;
+        early_window(&t, ENGINES[e], 0.006);
+        const SimResult r = tower_run(&t, SCENE_NO_CORE);
+        tower_close(&t);
+        early_window(&t, ENGINES[e], 0);
+        const SimResult linear = tower_run(&t, SCENE_NO_CORE);
+        tower_close(&t);
+        /* the storeys that did not yield in the linear window keep their shear near; the ones that did lose some */
+        for (int j = 0; j < 20; j++)
+            if (r.peak_drift_m[j] > 1.5 * 0.006 * 3.9624)
+                assert_less(r.forces.building_shear_n[j], linear.forces.building_shear_n[j]);
+    }
+}
+
+int main(void)
+{
+    return RUN_TESTS(NULL, NULL);
+}
