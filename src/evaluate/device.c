@@ -81,8 +81,7 @@ static double goal_at(unsigned n, const double u[], double gradient[], void *use
     return goal_of(user, &device);
 }
 
-/* Until ARIAS of int a^2 dt has passed, and PERIODS of the building. */
-static double strong_part(const Motion *m, double period)
+double device_strong_part(const Motion *m, double period)
 {
     double whole = 0, sum = 0;
     size_t k = 0;
@@ -102,7 +101,7 @@ static void set_sketches(Tuning *t)
     t->hz = b->omega[0] / (2 * M_PI);
     t->link = mass / b->n * b->omega[0];
     for (size_t r = 0; r < t->plan->n_records; r++)
-        t->sketch[r] = (LinearSketch){MODES, STEP, strong_part(&t->at[r].scenario->motion, 1 / t->hz)};
+        t->sketch[r] = (LinearSketch){MODES, STEP, device_strong_part(&t->at[r].scenario->motion, 1 / t->hz)};
 }
 
 /* The best of it comes back in u. */

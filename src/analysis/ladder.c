@@ -1,0 +1,222 @@
+#include "analysis/ladder.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/frame.h"
+#include "settings/settings.h"
+
+enum { REPLICATES = 8 };
+static const double GAP_SD_M = 1e-3;
+
+/* Values of a setting with an effect, where it is not set, and without it. NULL: set_values
+ * has it. */
+static const struct {
+    const char *words, *key, *with, *without;
+} EFFECTS[] = {
+    {"between the floors", "building.modes", "100000", "0"},
+    {"shear of the core", "core.theory", "timoshenko", "euler_bernoulli"},
+    {"P-delta", "building.p_delta", "on", "off"},
+    {"ground under the core", "core.foundation", NULL, "fixed"},
+    {"flexibility at contacts", "contact.bumper_stiffness_n_m", "5e8", "0"},
+    {"weak end of the record", "sim.duration_s", NULL, NULL},
+    {"steps, modes of the core", "sim.accuracy", "fine", NULL},
+};
+enum { BETWEEN, SHEAR, P_DELTA, GROUND, FLEXIBILITY, END, STEPS, KINDS };
+
+typedef struct {
+    const Settings *s; /* as given */
+    Settings all;
+    const double *x;
+    double strong_s;
+    int kind[LADDER_MAX]; /* of an effect: its line above */
+    Ladder *out;
+    Measured first[REPLICATES],
+        other[LADDER_MAX][REPLICATES]; /* replicate 0 is the design; the others also tell time */
+} Job;
+
+typedef struct {
+    const char *key;
+    char *value;
+} Wanted;
+
+static void take_value(const char *key, const char *value, void *user)
+{
+    const Wanted *w = user;
+    if (strcmp(key, w->key) == 0)
+        snprintf(w->value, OPTION_TEXT_MAX, "%s", value);
+}
+
+/* -- effects ------------------------------------------------------------------------------------------------------- */
+
+static void set_values(const Job *job, int kind, const char *now, LadderEffect *e)
+{
+    const char *with = EFFECTS[kind].with ? EFFECTS[kind].with : now;
+    const char *without = EFFECTS[kind].without ? EFFECTS[kind].without : now;
+    *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key};
+    e->is_set = kind == STEPS ? strcmp(now, with) == 0 : strcmp(now, without) != 0 || kind == END;
+    snprintf(e->with, sizeof e->with, "%s", e->is_set ? now : with);
+    snprintf(e->without, sizeof e->without, "%s", kind == STEPS && e->is_set ? "standard" : without);
+    if (kind == END)
+        snprintf(e->without, sizeof e->without, "%.6g", job->strong_s);
+    if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core */
+        snprintf(e->with, sizeof e->with, "soil=C radius=%g", job->s->core.width_m);
+}
+
+static int is_there(const Job *job, int kind)
+{
+    const Settings *s = job->s;
+    return kind == BETWEEN ? frame_is(s->building.model)
+                           : kind != END || s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
+}
+
+static Status list_effects(Job *job, Err *err)
+{
+    Ladder *l = job->out;
+    job->all = *job->s;
+    for (int kind = 0; kind < KINDS; kind++) {
+        char now[OPTION_TEXT_MAX] = "";
+        LadderEffect *e = &l->effect[l->n];
+        if (!is_there(job, kind))
+            continue;
+        settings_each(job->s, take_value, &(Wanted){EFFECTS[kind].key, now});
+        set_values(job, kind, now, e);
+        job->kind[l->n++] = kind;
+        TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
+    }
+    return STATUS_OK;
+}
+
+/* -- what each changes --------------------------------------------------------------------------------------------- */
+
+static double change(const Measured *to, const Measured *from, int k)
+{
+    const int is_known = to->outcome == RUN_OK && from->outcome == RUN_OK;
+    return is_known ? to->value[LADDER_MEASURE[k]] / from->value[LADDER_MEASURE[k]] - 1 : NAN;
+}
+
+static int is_within(const double changes[], const double tolerance[])
+{
+    int all = 1;
+    for (int k = 0; k < LADDER_MEASURES; k++)
+        all = all && fabs(changes[k]) <= tolerance[k];
+    return all;
+}
+
+/* Of the simulations that were made: other processes disturb. */
+static double least_seconds(const Measured parts[REPLICATES])
+{
+    double least = parts[0].seconds;
+    for (int i = 1; i < REPLICATES; i++)
+        if (parts[i].seconds > 0)
+            least = fmin(least, parts[i].seconds);
+    return least;
+}
+
+static void conclude(Job *job, const ReplicateSummary *as_built)
+{
+    Ladder *l = job->out;
+    l->all_s = least_seconds(job->first);
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        const double scatter = as_built->sd[LADDER_MEASURE[k]] / as_built->mean[LADDER_MEASURE[k]];
+        l->value[k] = job->first[0].value[LADDER_MEASURE[k]];
+        l->tolerance[k] = fmax(LADDER_TOLERANCE, isfinite(scatter) ? scatter : 0);
+    }
+    for (size_t i = 0; i < l->n; i++) {
+        LadderEffect *e = &l->effect[i];
+        const int is_finer = job->kind[i] == STEPS; /* of which the model with all has the other value */
+        const Measured *with = is_finer ? job->other[i] : job->first, *without = is_finer ? job->first : job->other[i];
+        for (int k = 0; k < LADDER_MEASURES; k++)
+            e->change[k] = change(without, with, k);
+        e->cost_s = least_seconds(with) - least_seconds(without);
+        e->is_needed = e->is_kept = !is_within(e->change, l->tolerance);
+    }
+}
+
+/* Scene 0 has all, the others lack an effect each. */
+static Status leave_out_each(Job *job, Err *err)
+{
+    const Ladder *l = job->out;
+    const char *const record = job->s->motion.record;
+    SceneChange scene[1 + LADDER_MAX] = {{0}};
+    SimTask task[1 + LADDER_MAX];
+    ReplicateSummary as_built;
+    Settings s = job->all;
+    Problem p;
+    s.sim.replicates = REPLICATES;
+    s.sim.gap_tolerance_m = s.sim.gap_tolerance_m > 0 ? s.sim.gap_tolerance_m : GAP_SD_M;
+    for (size_t i = 0; i < l->n; i++)
+        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", l->effect[i].key,
+                 job->kind[i] == STEPS ? l->effect[i].with : l->effect[i].without);
+    TRY(tower_open_scenes(&p, &s, 1, &record, 1 + l->n, scene, err));
+    task[0] = (SimTask){.x = job->x, .n_parts = REPLICATES, .parts = job->first, .summary = &as_built};
+    for (size_t i = 0; i < l->n; i++)
+        task[1 + i] = (SimTask){
+            .x = job->x, .scene = 1 + i, .n_parts = job->kind[i] == STEPS ? 1 : REPLICATES, .parts = job->other[i]};
+    const Status status = tower_run(&p, 1 + l->n, task, NULL, NULL, err);
+    problem_close(&p);
+    if (status == STATUS_OK && job->first[0].outcome != RUN_OK)
+        return fail(err, STATUS_BAD_DATA, "ladder: the model with all effects failed: %s", job->first[0].reason);
+    if (status == STATUS_OK)
+        conclude(job, &as_built);
+    return status;
+}
+
+/* -- the set ------------------------------------------------------------------------------------------------------- */
+
+static Status simulate_set(const Job *job, Measured *out, Err *err)
+{
+    const Ladder *l = job->out;
+    Settings s = *job->s;
+    Problem p;
+    s.sim.replicates = 1;
+    for (size_t i = 0; i < l->n; i++)
+        TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without, err));
+    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
+    const Status status = tower_run(&p, 1, &(SimTask){.x = job->x, .parts = out}, NULL, NULL, err);
+    problem_close(&p);
+    return status;
+}
+
+/* The effect that is left out and changes most, in its tolerances; NULL: none is left out. */
+static LadderEffect *largest_left_out(Ladder *l)
+{
+    LadderEffect *found = NULL;
+    double most = -1;
+    for (size_t i = 0; i < l->n; i++)
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            const double of = fabs(l->effect[i].change[k]) / l->tolerance[k];
+            if (!l->effect[i].is_kept && of > most) {
+                most = of;
+                found = &l->effect[i];
+            }
+        }
+    return found;
+}
+
+static Status shorten(Job *job, Err *err)
+{
+    Ladder *l = job->out;
+    for (LadderEffect *back = NULL;;) {
+        Measured set;
+        const int is_fine = job->kind[l->n - 1] == STEPS && l->effect[l->n - 1].is_kept;
+        TRY(simulate_set(job, &set, err));
+        for (int k = 0; k < LADDER_MEASURES; k++)
+            l->off[k] = change(&set, is_fine ? job->other[l->n - 1] : job->first, k);
+        l->set_s = set.seconds;
+        back = largest_left_out(l);
+        if (!back || is_within(l->off, l->tolerance))
+            return STATUS_OK;
+        back->is_kept = 1;
+    }
+}
+
+Status ladder_find(const Settings *s, const double x[], double strong_s, Ladder *out, Err *err)
+{
+    Job job = {.s = s, .x = x, .strong_s = strong_s, .out = out};
+    *out = (Ladder){0};
+    TRY(list_effects(&job, err));
+    TRY(leave_out_each(&job, err));
+    return shorten(&job, err);
+}

@@ -1,0 +1,48 @@
+/* analysis/ladder.h -- which effects a scene needs: each is left out of a model that has them all.
+ *
+ *   all        the settings with every effect that they have, and by a common value every one that they do not have
+ *   change     measure m without the effect over that with it, less 1
+ *   tolerance  the larger of LADDER_TOLERANCE and the scatter as built: standard deviation over REPLICATES of the model
+ *              with all, whose gaps differ by sim.gap_tolerance_m (0: GAP_SD_M) and by what sim.uncertain says
+ *   needed     a change of J1, of the drift ratio or of J3 exceeds it (or is not known: a simulation failed)
+ *   the set    effects that are needed; where the model with these alone is not within the tolerance of the one with
+ *              all, the largest change that is left out is put back, until it is
+ *
+ * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
+ * core, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps: the
+ * other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all modes of
+ * the core. Under motion.record; impacts.
+ *
+ * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
+#ifndef IMTET_ANALYSIS_LADDER_H
+#define IMTET_ANALYSIS_LADDER_H
+
+#include "evaluate/tower.h"
+
+enum { LADDER_MAX = 8, LADDER_MEASURES = 3 };
+static const MeasureId LADDER_MEASURE[LADDER_MEASURES] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
+
+/* Two digits, which is what such results are read with. */
+static const double LADDER_TOLERANCE = 0.02;
+
+typedef struct {
+    const char *words, *key;
+    char with[OPTION_TEXT_MAX], without[OPTION_TEXT_MAX]; /* values of the setting */
+    int is_set;                                           /* the settings have it */
+    double change[LADDER_MEASURES];                       /* [-] NAN: a simulation failed */
+    double cost_s;                                        /* what it adds to a simulation */
+    int is_needed, is_kept;                               /* by itself; in the set */
+} LadderEffect;
+
+typedef struct {
+    size_t n;
+    LadderEffect effect[LADDER_MAX];
+    double value[LADDER_MEASURES], tolerance[LADDER_MEASURES]; /* with all; [-] */
+    double off[LADDER_MEASURES];                               /* [-] the set from the model with all */
+    double all_s, set_s;                                       /* of a simulation */
+} Ladder;
+
+/* x: the design. strong_s [s]: where the weak end of the record begins. */
+Status ladder_find(const Settings *s, const double x[], double strong_s, Ladder *out, Err *err);
+
+#endif

@@ -1,0 +1,173 @@
+/* Which effects a scene needs (analysis/ladder.h): each change against simulations of the settings that are meant, the set
+ * against the model with all, and effects of which the answer is known beforehand. */
+#include "program.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/ladder.h"
+#include "settings/settings.h"
+
+enum { N = 20 };
+
+static Settings scene_of(const char *const sets[])
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    CHECK_OK(settings_set(&s, "motion.record=builtin:sylmar-like", &err), &err);
+    CHECK_OK(settings_set(&s, "motion.pga_g=0.3", &err), &err);
+    CHECK_OK(settings_set(&s, "motion.stretch=3", &err), &err);
+    CHECK_OK(settings_set(&s, "sim.duration_s=14", &err), &err);
+    for (; *sets; sets++)
+        CHECK_OK(settings_set(&s, *sets, &err), &err);
+    return s;
+}
+
+static void design_with(double gap, double x[N + 2])
+{
+    for (int j = 0; j < N; j++)
+        x[j] = gap * (j + 1);
+    x[N] = 0.03;
+    x[N + 1] = 0.0216;
+}
+
+static Ladder *found(const Settings *s, const double x[], double strong_s)
+{
+    Ladder *l = malloc(sizeof *l);
+    Err err = {0};
+    CHECK_OK(ladder_find(s, x, strong_s, l, &err), &err);
+    return l;
+}
+
+static const LadderEffect *effect(const Ladder *l, const char *key)
+{
+    for (size_t i = 0; i < l->n; i++)
+        if (strcmp(l->effect[i].key, key) == 0)
+            return &l->effect[i];
+    return NULL;
+}
+
+static SimResult simulated(const Settings *s, const double x[])
+{
+    Problem p;
+    SimResult r;
+    Err err = {0};
+    CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
+    problem_close(&p);
+    return r;
+}
+
+/* The settings with the value that each effect has with it (with[i]) or without. */
+static Settings composed(const Settings *s, const Ladder *l, int (*has)(const LadderEffect *e))
+{
+    Settings out = *s;
+    Err err = {0};
+    for (size_t i = 0; i < l->n; i++)
+        CHECK_OK(
+            settings_put(&out, l->effect[i].key, has(&l->effect[i]) ? l->effect[i].with : l->effect[i].without, &err),
+            &err);
+    return out;
+}
+
+static int all_but_steps(const LadderEffect *e)
+{
+    return strcmp(e->key, "sim.accuracy") != 0;
+}
+
+static int kept(const LadderEffect *e)
+{
+    return e->is_kept;
+}
+
+TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
+{
+    double x[N + 2];
+    Err err = {0};
+    const Settings s = scene_of((const char *const[]){NULL});
+    design_with(0.008, x);
+    Ladder *l = found(&s, x, 12);
+    const Settings all = composed(&s, l, all_but_steps);
+    const SimResult with = simulated(&all, x);
+    assert_same_number(l->value[0], with.j1_m);
+    for (size_t i = 0; i < l->n; i++) {
+        const LadderEffect *e = &l->effect[i];
+        Settings other = all;
+        const int is_finer = strcmp(e->key, "sim.accuracy") == 0;
+        CHECK_OK(settings_put(&other, e->key, is_finer ? e->with : e->without, &err), &err);
+        const SimResult r = simulated(&other, x);
+        const double ratio = r.j1_m / with.j1_m;
+        assert_less(fabs(e->change[0] - ((is_finer ? 1 / ratio : ratio) - 1)), 1e-9);
+        int exceeds = 0;
+        for (int k = 0; k < LADDER_MEASURES; k++)
+            exceeds |= fabs(e->change[k]) > l->tolerance[k];
+        assert_int_equal(e->is_needed, exceeds);
+        assert_true(e->is_kept >= e->is_needed);
+    }
+    const Settings set = composed(&s, l, kept);
+    const SimResult r = simulated(&set, x);
+    assert_at_most(fabs(r.j1_m / with.j1_m - 1), l->tolerance[0]);
+    assert_at_most(fabs(r.drift_ratio_max / with.drift_ratio_max - 1), l->tolerance[1]);
+    assert_at_most(fabs(r.j3_g / with.j3_g - 1), l->tolerance[2]);
+    free(l);
+}
+
+/* Gaps that never close: nothing of the core or its contacts matters, and what is left is the building alone. */
+TEST(without_contact_nothing_of_the_core_is_needed)
+{
+    static const char *const OF_CORE[] = {"core.theory", "core.foundation", "contact.bumper_stiffness_n_m"};
+    double x[N + 2];
+    const Settings s = scene_of((const char *const[]){"sim.duration_s=25", NULL});
+    design_with(9, x);
+    Ladder *l = found(&s, x, 12);
+    for (int i = 0; i < 3; i++) {
+        const LadderEffect *e = effect(l, OF_CORE[i]);
+        assert_non_null(e);
+        assert_true(!e->is_needed && !e->is_kept && fabs(e->change[0]) < 1e-9);
+    }
+    assert_true(effect(l, "building.p_delta")->is_needed);
+    free(l);
+}
+
+TEST(what_the_settings_have_stays_as_they_have_it)
+{
+    double x[N + 2];
+    const Settings s = scene_of(
+        (const char *const[]){"core.foundation=rotation=5.5e11", "sim.accuracy=fine", "sim.duration_s=11", NULL});
+    design_with(0.008, x);
+    Ladder *l = found(&s, x, 12);
+    const LadderEffect *ground = effect(l, "core.foundation"), *steps = effect(l, "sim.accuracy");
+    assert_true(ground->is_set && steps->is_set);
+    assert_string_equal(ground->with, "rotation=5.5e11");
+    assert_string_equal(steps->without, "standard");
+    assert_null(effect(l, "sim.duration_s")); /* the run ends before the strong part does */
+    free(l);
+}
+
+TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
+{
+    double x[N + 2];
+    const Settings s = scene_of((const char *const[]){"sim.replicates=2", "sim.gap_tolerance_m=0.03", NULL});
+    design_with(0.008, x);
+    Ladder *l = found(&s, x, 12);
+    assert_less(LADDER_TOLERANCE, l->tolerance[0]);
+    assert_less(LADDER_TOLERANCE, l->tolerance[2]);
+    free(l);
+}
+
+TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
+{
+    json_t *o = json_of("check configs/quick.ini --json --ladder --set sim.duration_s=30"),
+           *ladder = json_object_get(o, "ladder");
+    assert_true(json_array_size(json_object_get(ladder, "effects")) >= 6);
+    const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));
+    assert_true(strcmp(theory, "timoshenko") == 0 || strcmp(theory, "euler_bernoulli") == 0);
+    json_decref(o);
+    expect(65, "--ladder: problem.kind is no tower", "check configs/quick.ini --ladder --set problem.kind=dtlz2");
+}
+
+int main(void)
+{
+    return RUN_TESTS(make_place, clear_place);
+}
