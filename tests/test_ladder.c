@@ -164,6 +164,9 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));
     assert_true(strcmp(theory, "timoshenko") == 0 || strcmp(theory, "euler_bernoulli") == 0);
     json_decref(o);
+    char *sound = output_of("check configs/engineer.ini");
+    assert_non_null(strstr(sound, "everything is in order"));
+    free(sound);
     expect(65, "--ladder: problem.kind is no tower", "check configs/quick.ini --ladder --set problem.kind=dtlz2");
 }
 
