@@ -392,7 +392,8 @@ static Status answer(const Args *args, const Settings *s, const Problem *p, Job 
     TRY(lay_out_job(args, job, scene_design(w->scene), err));
     TRY(check_history(args, job, w, err));
     TRY(simulate(p, job, err));
-    TRY(estimate(p, s, job, err));
+    if (args_has(args, "--json") || !args_has(args, "--csv")) /* the only form that has no errors */
+        TRY(estimate(p, s, job, err));
     TRY(print(args, job, s, tower_of(p), err));
     TRY(write_times(args, job, w, err));
     return job->n > 1 || job->results[0].outcome == RUN_OK

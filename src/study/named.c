@@ -8,21 +8,30 @@
 #include "base/stat.h"
 #include "evaluate/adapter.h"
 
-/* Times that the steps are doubled; copies of a design; designs looked at together, then the front is formed again; how
- * often, so that names which move again and again come to an end. */
-enum { LEVELS = 4, COPIES = 2, TOGETHER = 4, ROUNDS = 32 };
+/* Times that the steps are doubled; copies of a design, first and where those disagree; designs looked at together,
+ * before the front is formed again; how often, so that names which move again and again come to an end. */
+enum { LEVELS = 4, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 4, ROUNDS = 32 };
 
 /* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
 static const double PROMISE[N_MEASURES] = {[MEASURE_J1] = 1e-3,  [MEASURE_J2] = 3e-3,     [MEASURE_J3] = 1e-2,
                                            [MEASURE_ED1] = 1e-2, [MEASURE_ED5_10] = 1e-2, [MEASURE_EDCS] = 1e-2};
 static const double SHARE_MIN = 0.1; /* [%] */
 
+/* Shares of the promise: runs that differ by less end the doubling of the steps; no likely error is below, for two runs
+ * agree by chance too. */
+static const double AGREED = 1.0 / 3.0, LEAST = 1.0 / 30.0;
+
+/* Three times so many deviations of a design and its first copies, or of a design and its others: one run in a hundred
+ * differs more from another, by Student's distribution, sqrt(2) t / 3. docs/measured/named.csv has what this covers. */
+static const double STUDENT_FIRST = 4.68, STUDENT = 1.75;
+
 /* Values in the order of the schema: objectives, then the others. */
 typedef struct {
     size_t row; /* of the run */
     double as_set[N_MEASURES], value[N_MEASURES], error[N_MEASURES], sd[N_MEASURES];
     double violation, seconds;
-    size_t level; /* at which it was simulated last */
+    double student; /* sd times that is an error */
+    size_t level;   /* at which it was simulated last */
     int is_known;
 } Named;
 
@@ -116,15 +125,19 @@ static double answer(const Evaluation *e, const Schema *s, size_t k)
     return e->outcome != OUTCOME_OK ? (double)NAN : k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
 }
 
+static double promised(const Schema *s, size_t k, double value)
+{
+    const int id = s->order.of[k];
+    const int is_share = id == MEASURE_ED1 || id == MEASURE_ED5_10 || id == MEASURE_EDCS;
+    return PROMISE[id] * fmax(fabs(value), is_share ? SHARE_MIN : 0.0);
+}
+
 /* Of the promised measures every one is within that part of its promise. What is not known is not promised either. */
 static int is_within(const Schema *s, double part, const double value[], const double error[])
 {
     int within = 1;
-    for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
-        const int id = s->order.of[k];
-        const double least = id == MEASURE_ED1 || id == MEASURE_ED5_10 || id == MEASURE_EDCS ? SHARE_MIN : 0.0;
-        within &= PROMISE[id] == 0.0 || !(error[k] > part * PROMISE[id] * fmax(fabs(value[k]), least));
-    }
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
+        within &= PROMISE[s->order.of[k]] == 0.0 || !(error[k] > part * promised(s, k, value[k]));
     return within;
 }
 
@@ -140,7 +153,7 @@ static void compare(const Schema *s, Named *d, const Evaluation *finer, size_t l
     }
     d->violation = finer->violation;
     d->level = level;
-    d->is_known = is_within(s, 1.0 / 3.0, d->value, d->error);
+    d->is_known = is_within(s, AGREED, d->value, d->error);
 }
 
 static Status climb(Work *w, Err *err)
@@ -168,51 +181,56 @@ static Status climb(Work *w, Err *err)
 static void change_gaps(const Schema *s, size_t copy, double x[])
 {
     for (size_t j = 0; j < (size_t)s->design.n_gaps; j++)
-        x[j] += __builtin_popcountl((j + 1) & (copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M;
+        x[j] = fmax(0.0, x[j] + (__builtin_popcountl((j + 1) & (copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M));
 }
 
-/* Of the design's own value and those of its copies. */
-static double deviation(const Evaluation copies[], double own, const Schema *s, size_t k)
+/* Of the design's own value and those of n copies. */
+static double deviation(size_t n, const Evaluation copies[], double own, const Schema *s, size_t k)
 {
     double v[1 + COPIES] = {own}, mean, sd;
-    for (size_t c = 0; c < COPIES; c++)
+    for (size_t c = 0; c < n; c++)
         v[1 + c] = answer(&copies[c], s, k);
-    mean_and_sd_of(1 + COPIES, v, &mean, &sd);
+    mean_and_sd_of(1 + n, v, &mean, &sd);
     return sd;
 }
 
-/* Of the n designs in w->asked, by copies at that level. */
-static Status spread(Work *w, size_t level, size_t n, Err *err)
+/* Of the n designs in w->asked, by so many copies at that level, the patterns from `first` on. */
+static Status spread(Work *w, size_t level, size_t n, size_t n_copies, size_t first, Err *err)
 {
     const Schema *s = &w->run.schema;
-    for (size_t i = 0; i < n * COPIES; i++) {
-        memcpy(w->X + i * s->n_var, run_x(&w->run, w->asked[i / COPIES]->row), s->n_var * sizeof *w->X);
-        change_gaps(s, i % COPIES, w->X + i * s->n_var);
+    for (size_t i = 0; i < n * n_copies; i++) {
+        memcpy(w->X + i * s->n_var, run_x(&w->run, w->asked[i / n_copies]->row), s->n_var * sizeof *w->X);
+        change_gaps(s, first + i % n_copies, w->X + i * s->n_var);
     }
-    TRY(simulate(w, level, n * COPIES, err));
+    TRY(simulate(w, level, n * n_copies, err));
     for (size_t i = 0; i < n; i++) {
         Named *d = w->asked[i];
-        const Evaluation *copies = w->answers.row + i * COPIES;
+        const Evaluation *copies = w->answers.row + i * n_copies;
+        d->student = first > 0 ? STUDENT : STUDENT_FIRST;
         for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
-            d->sd[k] = deviation(copies, level == 0 ? d->as_set[k] : d->value[k], s, k);
-        for (size_t c = 0; c < COPIES; c++)
+            d->sd[k] = deviation(n_copies, copies, level == 0 ? d->as_set[k] : d->value[k], s, k);
+        for (size_t c = 0; c < n_copies; c++)
             d->seconds += copies[c].seconds;
     }
     return STATUS_OK;
 }
 
+/* More copies of those whose first ones disagree, by the steps that the design needs; where no steps agree, by few. */
 static Status spread_all(Work *w, Err *err)
 {
     for (size_t i = 0; i < w->n; i++)
         w->asked[i] = &w->named[i];
-    TRY(spread(w, 0, w->n, err));
-    for (size_t level = 1; level <= LEVELS; level++) {
+    TRY(spread(w, 0, w->n, COPIES_FIRST, 0, err));
+    for (size_t level = 0; level <= LEVELS; level++) {
         size_t n = 0;
-        for (size_t i = 0; i < w->n; i++)
-            if (w->named[i].level == level && !is_within(&w->run.schema, 1.0, w->named[i].value, w->named[i].sd))
-                w->asked[n++] = &w->named[i];
+        for (size_t i = 0; i < w->n; i++) {
+            Named *d = &w->named[i];
+            const int is_told = is_within(&w->run.schema, AGREED / STUDENT_FIRST, d->value, d->sd);
+            if (d->is_known ? d->level == level && !is_told : level == 0)
+                w->asked[n++] = d;
+        }
         if (n > 0)
-            TRY(spread(w, level, n, err));
+            TRY(spread(w, level, n, COPIES, COPIES_FIRST, err));
     }
     return STATUS_OK;
 }
@@ -223,8 +241,12 @@ static Evaluation record_of(const Work *w, Named *d)
 {
     const Schema *s = &w->run.schema;
     const int is_predictable = d->is_known && is_within(s, 1.0, d->value, d->sd);
-    for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
-        d->error[k] = fmax(d->error[k], d->sd[k]);
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
+        const double apart = d->student * d->sd[k];
+        d->error[k] = isnan(d->error[k]) || isnan(apart) ? fmax(d->error[k], apart) : hypot(d->error[k], apart);
+        if (d->error[k] < LEAST * promised(s, k, d->value[k]))
+            d->error[k] = LEAST * promised(s, k, d->value[k]);
+    }
     return (Evaluation){.id = w->run.table.row[d->row].id,
                         .kind = KIND_UNFINISHED,
                         .level = (long)d->level,
