@@ -53,8 +53,6 @@ static Status run_command(int argc, char *argv[], Err *err)
         command_help(command, stdout);
     else if (status == STATUS_OK)
         status = command->run(&args, err);
-    if (status == STATUS_MISSING)
-        args_suggest(&args, err);
     args_free(&args);
     return status;
 }

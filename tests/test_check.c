@@ -143,12 +143,10 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
             "motion.records=builtin:sylmar-like,builtin:sylmar-like",
             COMMANDS[i]);
         assert_int_equal(s.code, 0);
-        assert_int_equal(times(s.err, "warning: search.fidelity: has no effect: it screens"), 1);
         assert_int_equal(times(s.err, "warning: building.model: the first period"), 1);
         assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like is there twice"), 1);
         if (i == 0) {
             assert_int_equal(times(s.err, "mm.csv:2: gap_05_m is 50 m and does not close; gaps are in metres"), 1);
-            assert_int_equal(times(s.err, "t_top_m 0.02 is thicker than"), 1);
             json_t *o = json_loads(s.out, 0, &why);
             assert_int_equal(json_array_size(o), 2);
             json_decref(o);

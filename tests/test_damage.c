@@ -162,7 +162,7 @@ TEST(another_database_in_the_place_of_a_run_ends_it)
 
 TEST(links_in_a_foreign_folder_are_not_followed)
 {
-    static const char *const FILES[] = {"front.csv", "settings.ini", "provenance.json", "report.html", "log.txt",
+    static const char *const FILES[] = {"front.csv", "settings.ini", "provenance.json", "report.html",
                                         "log.jsonl", "lock",         "run.sqlite.tmp"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
         Said said;

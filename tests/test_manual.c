@@ -64,7 +64,6 @@ TEST(the_nearest_is_suggested_everywhere)
 {
     expect(65, "did you mean builtin:kobe-like?", "spectrum builtin:koobe-like");
     expect(66, "did you mean builtin:kobe-like?", "spectrum bulitin:kobe-like");
-    expect(66, "did you mean configs/quick.ini?", "check configs/quik.ini");
     expect(65, "did you mean cvode?", "building configs/quick.ini --set sim.engine=cvodee");
     expect(65, "did you mean search.limits?", "building configs/quick.ini --set search.limit=none");
     expect(65, "did you mean f1?", "optimize @/two.ini --out @/no --set 'search.limits=f11<=3'");

@@ -279,11 +279,8 @@ TEST(the_end_of_a_study_names_gaps_that_never_close)
 {
     write_in_place("tower.ini", TOWER);
     char *said = output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005");
-    assert_non_null(strstr(said,
-                           "spread over the front, by floor: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, "
-                           "17, 18, 19, 20\n"));
-    assert_non_null(strstr(said, "\n0 of "));
-    assert_non_null(strstr(said, "designs of the front are beyond the contact law"));
+    assert_non_null(strstr(said, "never_closing            1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20\n"));
+    assert_non_null(strstr(said, "beyond_contact_law       0\n"));
     free(said);
     json_t *o = json_of("status @/calm --json"), *review = json_object_get(o, "front_review");
     assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);

@@ -11,7 +11,6 @@
 #include "moga/dominance.h"
 #include "moga/search.h"
 #include "searches.h"
-#include "study/study_log.h"
 
 enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
 
@@ -322,21 +321,6 @@ TEST(penalties_whose_squares_overflow_do_not_end_a_search_with_levels)
         assert_less(3 * LEVEL_PAIRS, other.n_screened);
         forget(&other_world, &other);
     }
-}
-
-TEST(an_agreement_that_is_not_known_is_said_to_be_so)
-{
-    char text[SCREENING_WORDS];
-    StudySummary sum = {.n_simulated = 154, .n_screened = 129, .n_evaluations = 59, .max_evals = 60};
-    sum.level_agreement = NAN;
-    screening_words(&sum, text);
-    assert_non_null(strstr(text, "129 designs"));
-    assert_non_null(strstr(text, " 25 finished"));
-    assert_non_null(strstr(text, "59 of 60 evaluations; too few"));
-    assert_null(strstr(text, "tau"));
-    sum.level_agreement = 0.947;
-    screening_words(&sum, text);
-    assert_non_null(strstr(text, "a Kendall's tau of 0.95"));
 }
 
 TEST(without_a_cheap_level_nothing_is_screened)

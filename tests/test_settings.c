@@ -551,37 +551,6 @@ TEST(notes_switches_and_arrays_over_several_lines_are_read_as_in_toml)
     assert_int_equal(read_text(&ini, "[building]\nheights_m = [3,\n4\np_delta = on\n", &err), STATUS_BAD_DATA);
 }
 
-static void note_key(const char *key, const char *text, void *user)
-{
-    snprintf(user, 200, "%s %s", key, text);
-}
-
-TEST(a_setting_that_does_nothing_because_of_another_is_named)
-{
-    static const struct {
-        const char *idle, *said, *wakes;
-    } CASES[] = {{"core.masses_kg=3", "core.masses_kg has no effect: it is read where core.section = effective",
-                  "core.section=effective"},
-                 {"core.areas_m2=1", "core.section = effective", "core.section=effective"},
-                 {"motion.sa_period_s=2", "motion.sa_g is not 0", "motion.sa_g=0.3"},
-                 {"problem.lower=1", "problem.kind = external", "problem.kind=external"},
-                 {"problem.variables=3", "problem.kind is not tower", "problem.kind=dtlz2"}};
-    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        Settings before, s;
-        Err err = {0};
-        char said[200] = "";
-        settings_defaults(&s);
-        before = s;
-        CHECK_OK(settings_set(&s, CASES[i].idle, &err), &err);
-        settings_idle(&before, &s, note_key, said);
-        assert_non_null(strstr(said, CASES[i].said));
-        CHECK_OK(settings_set(&s, CASES[i].wakes, &err), &err);
-        said[0] = 0;
-        settings_idle(&before, &s, note_key, said);
-        assert_string_equal(said, "");
-    }
-}
-
 TEST(fidelity_needs_replicates_that_average_no_noise)
 {
     Settings s;

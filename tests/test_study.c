@@ -231,7 +231,7 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
     Said s;
     run(&s, "%s",
         SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
-                             "while ! grep -qs 'generation 2' @/killed/log.txt && [ $n -lt 1200 ]; do n=$((n+1)); "
+                             "while ! grep -qs 'number.: 2,' @/killed/log.jsonl && [ $n -lt 1200 ]; do n=$((n+1)); "
                              "sleep 0.05; done; "
                              "kill -9 $! && ! wait $!");
     if (s.code != 0)

@@ -34,8 +34,7 @@ typedef enum {
     SUB_EMPTY,     /* ... of no bytes */
     SUB_RAGGED,    /* a line of a table with another number of cells than those above */
     SUB_NO_NUMBER, /* a cell that is no number */
-    SUB_NO_RECORD, /* a file that holds no acceleration */
-    SUB_SUGGESTS   /* the sentence says already what may have been meant */
+    SUB_NO_RECORD  /* a file that holds no acceleration */
 } ErrSub;
 
 typedef struct {

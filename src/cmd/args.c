@@ -1,6 +1,5 @@
 #include "cmd/args.h"
 
-#include <dirent.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,35 +62,6 @@ Status args_moved(const Args *args, RecordPaths *moved, Err *err)
         moved->records = records ? records : moved->records;
     }
     return STATUS_OK;
-}
-
-static int is_visible(const struct dirent *e)
-{
-    return e->d_name[0] != '.';
-}
-
-void args_suggest(const Args *args, Err *err)
-{
-    enum { NAMES_MAX = 1000 };
-    const char *path = args->operand, *slash = path ? strrchr(path, '/') : NULL, *names[NAMES_MAX];
-    const int length = slash ? (int)(slash - path + 1) : 0;
-    char folder[512];
-    struct stat there;
-    struct dirent **entries;
-    if (!path || lstat(path, &there) == 0 || err->sub == SUB_SUGGESTS) /* a link that leads nowhere is there */
-        return;
-    snprintf(folder, sizeof folder, "%.*s", length ? length : 1, length ? path : ".");
-    const int n = scandir(folder, &entries, is_visible, alphasort);
-    for (int i = 0; i < n && i < NAMES_MAX; i++)
-        names[i] = entries[i]->d_name;
-    const char *near = n > 0 ? nearest_word(path + length, names, n < NAMES_MAX ? n : NAMES_MAX) : NULL;
-    const size_t used = strlen(err->text);
-    if (near)
-        snprintf(err->text + used, sizeof err->text - used, "; did you mean %.*s%s?", length, path, near);
-    for (int i = 0; i < n; i++)
-        free(entries[i]);
-    if (n >= 0)
-        free(entries);
 }
 
 static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
@@ -278,15 +248,8 @@ static void count_fault(FILE *faults, int *n_faults, const char *text)
         ++*n_faults;
 }
 
-static void tell_idle(const char *key, const char *text, void *user)
-{
-    (void)user;
-    fprintf(stderr, "note: %s %s\n", key, text);
-}
-
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
 {
-    const Settings before = *s;
     Status first = STATUS_OK;
     for (int i = 0; i < args->n_given; i++) {
         Err e = {0};
@@ -301,7 +264,6 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     }
     if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
         return first;
-    settings_idle(&before, s, tell_idle, NULL);
     linalg_use(s->search.blas);
     return outputs_spare(args, s, err);
 }

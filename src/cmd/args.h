@@ -36,9 +36,6 @@ void args_free(Args *args);
 /* Of --set motion.record=PATH and motion.records=PATHS; nothing else may be set. */
 Status args_moved(const Args *args, RecordPaths *moved, Err *err);
 
-/* Behind a message about an operand that is not there: the nearest name in its folder, if there is one. */
-void args_suggest(const Args *args, Err *err);
-
 /* "unknown WHAT WORD; did you mean ...?" */
 Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err);
 
@@ -46,7 +43,7 @@ Status args_unknown(const char *what, const char *word, const char *const known[
  * every fault is written there and counted, else the first one ends it. */
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
-/* Only the options, over what s holds. Without `faults` a setting that changes nothing is named on standard error. */
+/* Only the options, over what s holds. */
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
 /* Options of several commands. */

@@ -18,7 +18,6 @@
 #include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
-#include "study/study_log.h"
 
 typedef struct {
     int terminal, has_line, has_warned;
@@ -119,42 +118,20 @@ static void print_front(const Run *run, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
-/* The gaps, or without a schema the floors, that at least `least` designs have so, behind a heading; nothing where
- * there is none. */
-static void print_gaps(const char *heading, const Schema *schema, size_t n, const size_t count[], size_t least)
+/* Of a study with screened designs: how many, what they cost, and how far the cheap level agrees. */
+static void print_screening(const StudySummary *sum)
 {
-    size_t n_named = 0;
-    for (size_t j = 0; j < n; j++)
-        if (count[j] >= least) {
-            printf("%s", n_named++ ? ", " : heading);
-            if (schema)
-                printf("%s", schema_variable(schema, j)->name);
-            else
-                printf("%zu", j + 1);
-        }
-    if (n_named > 0)
-        putchar('\n');
-}
-
-static void print_review(const Schema *schema, const FrontReview *r)
-{
-    if (r->n_gaps == 0)
+    if (sum->n_screened == 0)
         return;
-    putchar('\n');
-    const size_t half = (r->n_front + 1) / 2;
-    size_t never[FLOORS_MAX];
-    char heading[100];
-    for (size_t j = 0; j < r->n_floors; j++)
-        never[j] = r->n_simulated - r->closes[j];
-    print_gaps("on the lower bound of design.gap_m in half of the front or more: ", schema, r->n_gaps, r->at_smallest,
-               half);
-    print_gaps("on the upper bound of design.gap_m in half of the front or more: ", schema, r->n_gaps, r->at_largest,
-               half);
-    snprintf(heading, sizeof heading,
-             "gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
-    print_gaps(heading, NULL, r->n_floors, never, r->n_simulated);
-    printf("%zu of %zu designs of the front are beyond the contact law (indentation_ratio above %g)\n", r->n_beyond,
-           r->n_front, INDENTATION_RATIO_MAX);
+    printf(
+        "%zu designs were screened by their first replicate (search.fidelity), and %zu finished or simulated at once, "
+        "as much as %zu of %ld evaluations; ",
+        sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    if (isnan(sum->level_agreement))
+        puts("too few were finished to know how well the first replicate ranks designs\n");
+    else
+        printf("the first replicate ranks designs as all do by a Kendall's tau of %.2f%s\n\n", sum->level_agreement,
+               sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 
 static void print_nearest(const Run *run, size_t n, const size_t rows[])
@@ -207,14 +184,14 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     if (run->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
                run->n_repeats);
-    if (summary->n_screened > 0) {
-        char text[SCREENING_WORDS];
-        screening_words(summary, text);
-        printf("%s\n\n", text);
-    }
+    print_screening(summary);
     print_front(run, summary);
-    if (summary->has_baselines)
-        print_review(&run->schema, &summary->review);
+    if (summary->has_baselines && summary->review.n_gaps > 0) {
+        json_t *review = json_review(&summary->review);
+        puts("\nthe front, gap by gap: designs on a bound of the search, floors whose gap never closes");
+        figures_list(2, review);
+        json_decref(review);
+    }
     char named[160];
     const NamedCost cost = named_cost(run);
     named_words(&cost, named);

@@ -95,42 +95,6 @@ static json_t *json_failures(const Run *run)
     return o;
 }
 
-/* Floors whose gap closes in none of the designs that were simulated again. */
-static void add_never_closing(json_t *o, const FrontReview *r)
-{
-    json_t *floors = json_array();
-    for (size_t j = 0; j < r->n_floors; j++)
-        if (r->closes[j] == 0)
-            json_array_append_new(floors, json_integer((json_int_t)j + 1));
-    json_object_set_new(o, "designs_simulated", json_integer((json_int_t)r->n_simulated));
-    json_object_set_new(o, "never_closing", floors);
-}
-
-/* Of a finished run: some designs of the front are simulated, which a run under way has no time for. */
-static void review_closings(json_t *o, const Run *run)
-{
-    FrontReview r;
-    Err err = {0};
-    if (front_review_of_run(run, &r, &err) == STATUS_OK) {
-        add_never_closing(o, &r);
-        return;
-    }
-    json_object_set_new(o, "never_closing", json_null());
-    json_object_set_new(o, "never_closing_unknown", json_words(err.text));
-}
-
-/* By floor: designs of the front whose gap is on a bound of the search; and those beyond the contact law. */
-static json_t *json_review(const FrontReview *r)
-{
-    json_t *smallest = json_array(), *largest = json_array();
-    for (size_t j = 0; j < r->n_gaps; j++) {
-        json_array_append_new(smallest, json_integer((json_int_t)r->at_smallest[j]));
-        json_array_append_new(largest, json_integer((json_int_t)r->at_largest[j]));
-    }
-    return json_pack("{s:I, s:o, s:o}", "beyond_contact_law", (json_int_t)r->n_beyond, "gaps_on_smallest", smallest,
-                     "gaps_on_largest", largest);
-}
-
 static json_t *describe(const char *folder, const Run *run, const Standing *s)
 {
     json_t *o = json_pack(
@@ -157,12 +121,17 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s)
 /* What people read in tables, or wait for: designs of the front are simulated. */
 static void describe_more(json_t *o, const Run *run, const Standing *s)
 {
-    const FrontReview review = front_review(run);
+    FrontReview review = front_review(run);
+    Err err = {0};
     json_object_set_new(o, "generations", json_generations(run));
     json_object_set_new(o, "sessions", json_sessions(run));
+    if (review.n_gaps > 0 && s->state == RUN_FINISHED) /* a run under way has no time for it */
+        front_review_of_run(run, &review, &err);
     json_object_set_new(o, "front_review", review.n_gaps > 0 ? json_review(&review) : json_null());
-    if (review.n_gaps > 0 && s->state == RUN_FINISHED)
-        review_closings(json_object_get(o, "front_review"), run);
+    if (err.code != STATUS_OK) {
+        json_object_set_new(json_object_get(o, "front_review"), "never_closing", json_null());
+        json_object_set_new(json_object_get(o, "front_review"), "never_closing_unknown", json_words(err.text));
+    }
 }
 
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */

@@ -58,35 +58,6 @@ static json_t *describe(const Job *job, size_t i)
     return o;
 }
 
-static void put_peaks(json_t *row, const char *what, double reduced, double full)
-{
-    const double values[MODELS] = {reduced, full};
-    char name[48], text[24];
-    for (int m = 0; m < MODELS; m++) {
-        snprintf(name, sizeof name, "%s, %s", what, WORDS[m]);
-        figures_put(row, name, values[m], NAN, NAN);
-    }
-    snprintf(text, sizeof text, "%.2f %%", 100 * relative(reduced, full));
-    snprintf(name, sizeof name, "error of %s", what);
-    json_object_set_new(row, name, json_string(text));
-}
-
-static void print_peaks(const Job *job, size_t i)
-{
-    const SimResult *r = &job->found.result[REDUCED][i], *f = &job->found.result[FULL][i];
-    json_t *table = json_array();
-    for (int j = job->found.n_floors - 1; j >= 0; j--) {
-        json_t *row = figures_row(table);
-        json_object_set_new(row, "floor", json_integer(j + 1));
-        json_object_set_new(row, "z_m", json_real(job->found.z[j]));
-        put_peaks(row, "u_m", r->peak_displacement_m[j], f->peak_displacement_m[j]);
-        put_peaks(row, "drift_m", r->peak_drift_m[j], f->peak_drift_m[j]);
-        put_peaks(row, "accel_g", r->peak_acceleration_g[j], f->peak_acceleration_g[j]);
-    }
-    puts("\npeaks");
-    figures_print(table);
-}
-
 static void add_design(json_t *table, const Job *job, const char *word, size_t i)
 {
     char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX] = "no core", text[24];
@@ -116,8 +87,6 @@ static void print_table(const Job *job, const char *word)
     for (size_t i = 0; i < job->n; i++)
         add_design(table, job, word, i);
     figures_print(table);
-    if (job->n == 1)
-        print_peaks(job, 0);
     putchar('\n');
 }
 

@@ -491,6 +491,25 @@ void figures_design(json_t *table, const char *label, long id, const Schema *sch
                     NAN);
 }
 
+json_t *json_review(const FrontReview *r)
+{
+    json_t *smallest = json_array(), *largest = json_array(), *never = json_array();
+    for (size_t j = 0; j < r->n_gaps; j++) {
+        json_array_append_new(smallest, json_integer((json_int_t)r->at_smallest[j]));
+        json_array_append_new(largest, json_integer((json_int_t)r->at_largest[j]));
+    }
+    for (size_t j = 0; j < r->n_floors; j++)
+        if (r->closes[j] == 0)
+            json_array_append_new(never, json_integer((json_int_t)j + 1));
+    json_t *o = json_pack("{s:I, s:o, s:o}", "beyond_contact_law", (json_int_t)r->n_beyond, "gaps_on_smallest",
+                          smallest, "gaps_on_largest", largest);
+    if (r->n_simulated > 0)
+        json_object_update_new(
+            o, json_pack("{s:I, s:O}", "designs_simulated", (json_int_t)r->n_simulated, "never_closing", never));
+    json_decref(never);
+    return o;
+}
+
 /* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth; none
  * that the baseline does not have, such as the mass of a core where there is none. */
 static void print_better(const char *verb, const Schema *schema, double sign, const double natural[], const Baseline *b)

@@ -11,6 +11,7 @@
 #include "analysis/baselines.h"
 #include "base/json.h"
 #include "evaluate/schema.h"
+#include "study/front_review.h"
 
 json_t *figures_row(json_t *table); /* a further one */
 
@@ -61,6 +62,10 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
  * what is limited of the further results (n_extra) or NULL. */
 void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
                     const double error[], const double sd[], const double extra[]);
+
+/* Of a front: designs beyond the contact law; by floor those whose gap is on a bound of the search; floors whose gap
+ * closes in none of the designs that were simulated again, where some were. */
+json_t *json_review(const FrontReview *r);
 
 /* "against viscous links (...): impacts win in ...; lose in ..." by more than a thousandth; natural values of a
  * design with impacts. */

@@ -12,11 +12,10 @@ typedef struct Settings Settings;
 /* "warning: KEY: TEXT"; user is not read. */
 void warn_on_stderr(const char *key, const char *text, void *user);
 
-/* Of a tower: deviations and tolerances that are taken for something else, a record that counts twice. Of an external
- * problem: a cheap level that costs more than half of an evaluation. */
+/* Of a tower: a record that counts twice. */
 void warn_of_settings(const Settings *s, WarnFn warn, void *user);
 
-/* Designs of --design: gaps that do not close, cores that are thicker at the top; the first of each kind. */
+/* Designs of --design: the first gap that does not close. */
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user);
 
 #endif

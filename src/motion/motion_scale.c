@@ -305,8 +305,7 @@ static Status load(Motion *m, const char *source, const MotionHow *how, Err *err
     const Status status = motion_read(m, source, how, err);
     const char *near =
         status == STATUS_MISSING ? nearest_word(source, MOTIONS, sizeof MOTIONS / sizeof MOTIONS[0]) : NULL;
-    return near ? fail_sub(err, status, SUB_SUGGESTS, "%s: there is no such file; did you mean %s?", source, near)
-                : status;
+    return near ? fail(err, status, "%s: there is no such file; did you mean %s?", source, near) : status;
 }
 
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)

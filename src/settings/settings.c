@@ -723,59 +723,6 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
     }
 }
 
-/* ---- settings that do nothing because of another one's value ----------------------------------------------------- */
-
-/* keys, parted by blanks: one that ends in . stands for its section. They are read where `other` has the value, with !
- * in front of it where it has any other. */
-static const struct {
-    const char *keys, *other, *value;
-} WAITING[] = {
-    {"building. core. contact. motion. sim. design. search.objectives", "problem.kind", "tower"},
-    {"problem.variables problem.objectives problem.variable_names problem.objective_names", "problem.kind", "!tower"},
-    {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", "problem.kind", "external"},
-    {"building.rayleigh_modes", "building.damping_model", "rayleigh"},
-    {"building.bouc_wen_exponent building.strength_degradation building.stiffness_degradation", "building.hysteresis",
-     "bouc_wen"},
-    {"core.width_m design.thickness_m", "core.section", "!effective"},
-    {"core.areas_m2 core.inertias_m4 core.shear_areas_m2 core.masses_kg", "core.section", "effective"},
-    {"core.foundation_factor", "core.foundation", "!fixed"},
-    {"motion.sa_period_s", "motion.sa_g", "!0"},
-};
-
-static int names_key(const char *keys, const char *key)
-{
-    for (const char *p = keys; *p; p += strspn(p, " ")) {
-        const size_t n = strcspn(p, " ");
-        if (strncmp(p, key, n) == 0 && (!key[n] || p[n - 1] == '.'))
-            return 1;
-        p += n;
-    }
-    return 0;
-}
-
-void settings_idle(const Settings *was, const Settings *is, SettingFn idle, void *user)
-{
-    char before[OPTION_TEXT_MAX], now[OPTION_TEXT_MAX], text[160];
-    int other;
-    for (int i = 0; i < N_OPTIONS; i++)
-        for (size_t k = 0; k < sizeof WAITING / sizeof WAITING[0]; k++) {
-            const int is_other = WAITING[k].value[0] == '!';
-            const char *wanted = WAITING[k].value + is_other;
-            format_value(was, &OPTIONS[i], before);
-            format_value(is, &OPTIONS[i], now);
-            if (!names_key(WAITING[k].keys, OPTIONS[i].key) || strcmp(before, now) == 0 ||
-                table_find(WAITING[k].other, &other, NULL) != STATUS_OK)
-                continue;
-            format_value(is, &OPTIONS[other], now);
-            if ((strcmp(now, wanted) == 0) != is_other)
-                continue;
-            snprintf(text, sizeof text, "has no effect: it is read where %s %s %s", WAITING[k].other,
-                     is_other ? "is not" : "=", wanted);
-            idle(OPTIONS[i].key, text, user);
-            break;
-        }
-}
-
 int settings_screens(const Settings *s)
 {
     const SearchOptions *search = &s->search;

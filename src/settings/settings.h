@@ -54,10 +54,6 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 
-/* Calls `idle` for every setting that is not the same in both and does nothing in `is` because of another one's
- * value; the text says which. */
-void settings_idle(const Settings *was, const Settings *is, SettingFn idle, void *user);
-
 /* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or
  * levels. */
 int settings_screens(const Settings *s);

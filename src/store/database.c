@@ -1,7 +1,6 @@
 #include "store/database.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -240,8 +239,23 @@ static int is_shared(const char *path)
     return i < sizeof KINDS / sizeof KINDS[0];
 }
 
-static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
+/* SQLite does not follow a path that goes up beyond the root: it gets the folder's real one. Where there is none, path
+ * itself, for SQLite to say what is wrong. */
+static const char *real_path(const char *path, char real[PATH_MAX])
 {
+    char folder[PATH_MAX], found[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    if (!slash || slash == path || slash - path >= PATH_MAX)
+        return path;
+    snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+    return realpath(folder, found) && snprintf(real, PATH_MAX, "%s%s", found, slash) < PATH_MAX ? real : path;
+}
+
+/* vfs NULL: the one of the system. */
+static Status open_file(Database **out, const char *path, int flags, const char *vfs, Err *err)
+{
+    char real[PATH_MAX];
+    const char *name = real_path(path, real);
     Database *d = calloc(1, sizeof *d);
     *out = NULL;
     if (!d || snprintf(d->path, sizeof d->path, "%s", path) >= (int)sizeof d->path) {
@@ -249,7 +263,7 @@ static Status open_file(Database **out, const char *path, const char *name, int 
         return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
                     path);
     }
-    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_NOMUTEX, NULL);
+    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_NOMUTEX, vfs);
     if (code != SQLITE_OK) {
         const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
         sqlite3_close(d->db);
@@ -263,18 +277,6 @@ static Status open_file(Database **out, const char *path, const char *name, int 
     sqlite3_db_config(d->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
     *out = d;
     return STATUS_OK;
-}
-
-/* SQLite does not follow a path that goes up beyond the root: it gets the folder's real one. Where there is none, path
- * itself, for SQLite to say what is wrong. */
-static const char *real_path(const char *path, char real[PATH_MAX])
-{
-    char folder[PATH_MAX], found[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    if (!slash || slash == path || slash - path >= PATH_MAX)
-        return path;
-    snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
-    return realpath(folder, found) && snprintf(real, PATH_MAX, "%s%s", found, slash) < PATH_MAX ? real : path;
 }
 
 static Status take_word(sqlite3_stmt *row, void *user, Err *err)
@@ -347,63 +349,18 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
     return check(d, err);
 }
 
-static Status copy_file(const char *from, const char *to, Err *err)
+/* A folder that may not be written to has no place for the memory by which processes share a journal: it is read
+ * without, and without locks, for nobody writes there. */
+static Status open_without_locks(Database **out, const char *path, Err *err)
 {
-    char bytes[1 << 16];
-    ssize_t n;
-    const int in = open(from, O_RDONLY | O_CLOEXEC), out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    while ((n = read(in, bytes, sizeof bytes)) > 0 && write(out, bytes, (size_t)n) == n)
-        ;
-    const int why = errno;
-    close(in); /* of one that is not open: nothing */
-    close(out);
-    return n == 0 ? STATUS_OK
-                  : fail(err, STATUS_IO, "%s: its folder is read-only, and it cannot be copied to %s: %s", from, to,
-                         strerror(why));
-}
-
-static void remove_copy(const char *folder)
-{
-    static const char *const NAMES[] = {"copy", "copy-wal", "copy-shm", "copy-journal"};
-    char path[PATH_MAX + 16];
-    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, NAMES[i]);
-        unlink(path);
-    }
-    rmdir(folder);
-}
-
-/* A folder that may not be written to has no place for the files that readers share: a copy is read, journal and all.
- * The copy has no name any more when it is open and ends with the program, however that ends. */
-static Status open_copy(Database **out, const char *path, Err *err)
-{
-    static const char *const PARTS[] = {"-wal", "-journal", ""};
-    char folder[PATH_MAX], to[PATH_MAX + 16], part[PATH_MAX + 16];
-    const char *place = getenv("TMPDIR");
-    Status status = STATUS_OK;
-    snprintf(folder, sizeof folder, "%s/imtet-XXXXXX", place && *place ? place : "/tmp");
-    if (!mkdtemp(folder))
-        return fail(err, STATUS_IO, "%s: its folder is read-only, and a copy has no place: %s: %s", path, folder,
-                    strerror(errno));
-    for (size_t i = 0; status == STATUS_OK && i < sizeof PARTS / sizeof PARTS[0]; i++) {
-        snprintf(part, sizeof part, "%s%s", path, PARTS[i]);
-        snprintf(to, sizeof to, "%s/copy%s", folder, PARTS[i]);
-        if (access(part, F_OK) == 0 || !PARTS[i][0])
-            status = copy_file(part, to, err);
-    }
-    if (status == STATUS_OK)
-        status = open_file(out, path, to, SQLITE_OPEN_READWRITE, err);
-    if (status == STATUS_OK) {
-        bound_rows(*out);
-        status = check(*out, err);
-    }
-    remove_copy(folder);
-    return status;
+    TRY(open_file(out, path, SQLITE_OPEN_READONLY, "unix-none", err));
+    bound_rows(*out);
+    TRY(database_do(*out, err, "PRAGMA locking_mode=EXCLUSIVE", ""));
+    return check(*out, err);
 }
 
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
 {
-    char real[PATH_MAX];
     struct stat there;
     *out = NULL;
     if (stat(path, &there) != 0)
@@ -412,17 +369,13 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
         return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
         return fail_sub(err, STATUS_IO, SUB_EMPTY, "%s: is empty, no database of a run", path);
-    TRY(open_file(out, path, real_path(path, real),
-                  mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
+    TRY(open_file(out, path, mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, NULL, err));
     bound_rows(*out);
     Status status = prepare(*out, mode, err);
-    if (status != STATUS_OK && mode == DATABASE_READ) {
-        const int code = sqlite3_errcode((*out)->db) & 0xff;
-        if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
-            database_close(*out);
-            *out = NULL;
-            status = open_copy(out, path, err);
-        }
+    const int code = sqlite3_errcode((*out)->db) & 0xff;
+    if (status != STATUS_OK && mode == DATABASE_READ && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY)) {
+        database_close(*out);
+        status = open_without_locks(out, path, err);
     }
     if (status != STATUS_OK) {
         database_close(*out);
@@ -477,8 +430,8 @@ Status database_check_place(Database *d, Err *err)
 
 Status database_create(Database **out, const char *path, Err *err)
 {
-    char sql[128], real[PATH_MAX];
-    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
+    char sql[128];
+    TRY(open_file(out, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, err));
     snprintf(sql, sizeof sql, "PRAGMA synchronous=FULL; PRAGMA application_id=%d; PRAGMA user_version=%d",
              DATABASE_APPLICATION, DATABASE_FORMAT);
     const Status status = database_do(*out, err, sql, "");

@@ -40,8 +40,8 @@ int folder_is_run(const char *path)
 
 int folder_keeps(const char *path)
 {
-    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.txt",     "log.jsonl",
-                                        "lock",         "front.csv",       "nearest.csv", "run.sqlite"};
+    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl", "lock",
+                                        "front.csv",    "nearest.csv",     "run.sqlite"};
     char real[PATH_MAX];
     if (!realpath(path, real))
         snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);

@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -222,7 +221,6 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
 {
     folder_note(&store->folder, store->n_stored);
     TRY(write_origin(store, used, provenance, err));
-    TRY(folder_append(&store->folder, "log.txt", "", err));
     TRY(folder_append(&store->folder, "log.jsonl", "", err));
     store->is_ready = 1;
     return STATUS_OK;
@@ -539,31 +537,6 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
 
-static Status append(RunStore *store, const char *name, char *text, Err *err)
-{
-    const Status status = !store->is_ready ? STATUS_OK
-                          : text           ? folder_append(&store->folder, name, text, err)
-                                           : fail(err, STATUS_NO_MEMORY, "%s: no memory for a line", name);
-    free(text);
-    return status;
-}
-
-Status store_log(RunStore *store, Err *err, const char *format, ...)
-{
-    char clock[32], *words = NULL, *line = NULL;
-    struct tm parts;
-    va_list args;
-    const time_t now = time(NULL);
-    localtime_r(&now, &parts);
-    strftime(clock, sizeof clock, "%F %T", &parts);
-    va_start(args, format);
-    if (vasprintf(&words, format, args) < 0 || asprintf(&line, "%s  %s\n", clock, words) < 0)
-        line = NULL;
-    va_end(args);
-    free(words);
-    return append(store, "log.txt", line, err);
-}
-
 Status store_event(RunStore *store, json_t *event, Err *err)
 {
     char time[24], *line = NULL;
@@ -574,7 +547,11 @@ Status store_event(RunStore *store, json_t *event, Err *err)
         line = NULL;
     free(words);
     json_decref(event);
-    return append(store, "log.jsonl", line, err);
+    const Status status = !store->is_ready ? STATUS_OK
+                          : line           ? folder_append(&store->folder, "log.jsonl", line, err)
+                                           : fail(err, STATUS_NO_MEMORY, "log.jsonl: no memory for a line");
+    free(line);
+    return status;
 }
 
 Status store_read(RunStore *store, Run *run, Err *err)

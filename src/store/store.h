@@ -4,7 +4,7 @@
  *   settings.ini      the settings as used, defaults filled in, paths absolute; provenance.json: program, libraries,
  *                     machine, seed, hashes
  *   front.csv         the nondominated designs, written whenever a session ends in good order
- *   log.txt           what happened when; log.jsonl: the same for programs
+ *   log.jsonl         what happened when
  *   lock              which process works on it (store/folder.h)
  *
  * One evaluation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
@@ -74,8 +74,7 @@ Status store_flush(RunStore *store, Err *err); /* commits what waits */
 Status store_generation(RunStore *store, const SearchView *view, double seconds, double session, Err *err);
 double store_hypervolume(const RunStore *store); /* of the last generation; NAN: none */
 
-/* A line of log.txt, the local time in front; an object of log.jsonl, "time" (UTC) added, which is taken over. */
-__attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err, const char *format, ...);
+/* A line of log.jsonl, "time" (UTC) added; the event is taken over. */
 Status store_event(RunStore *store, json_t *event, Err *err);
 
 /* One more design of the finished search has been tried to polish, n_tried of a search of n_simulated; `better` (NULL:

@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include "base/clock.h"
+#include "base/json.h"
 #include "evaluate/cluster.h"
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
@@ -157,9 +158,6 @@ static void take_view(StudySummary *sum, const SearchView *view)
 {
     sum->n_front = view->n_front;
     sum->n_repeats = view->n_replicates;
-    sum->search_s = view->seconds;
-    sum->waited_s = view->waited_s;
-    sum->surrogate_s = view->surrogate_s;
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
@@ -394,7 +392,7 @@ static Status finish(Study *study, Err *err)
         sum->stopped = STOP_FAILURES;
     const char *why = why_stopped(study);
     sum->seconds = study->seconds_before + session;
-    TRY(study_log_end(study->store, sum, adapter_threads(study->adapter), is_final, err));
+    TRY(study_log_end(study->store, sum, is_final, err));
     RunStore *store = study->store;
     study->store = NULL;
     TRY(store_close(store, why, is_final, session, is_final ? study->options->run : NULL, err));
@@ -491,7 +489,8 @@ static Status work(Study *study, Err *err)
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
     tell_records(study);
-    TRY(study_log_start(study->store, study->adapter, &study->used.search, study->summary->n_before, err));
+    TRY(study_log_start(study->store, adapter_threads(study->adapter), &study->used.search, study->summary->n_before,
+                        err));
     TRY(run_search(study, err));
     TRY(study->status);
     if (study->summary->stopped == STOP_ASKED)
@@ -530,7 +529,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what is returned */
         store_flush(study.store, &ignored);
-        store_log(study.store, &ignored, "failed: %s", err->text);
+        store_event(study.store, json_pack("{s:s, s:o}", "event", "fails", "why", json_words(err->text)), &ignored);
     }
     store_free(study.store);
     adapter_close(study.adapter);

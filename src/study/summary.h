@@ -15,8 +15,8 @@ typedef struct {
     size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
     size_t n_before;                      /* simulations that the run had when this session began */
     long max_evals;
-    double seconds;                                 /* of all sessions */
-    double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
+    double seconds;       /* of all sessions */
+    double busy_s;        /* of this session in simulations, all threads added */
     size_t n_screened;    /* as in SearchView, of this session's last generation; 0: none, or not known */
     size_t n_evaluations; /* with n_screened: of max_evals */
     double level_agreement;
