@@ -80,7 +80,6 @@ static void expect_fault(const char *wanted, const char *arguments)
 TEST(deviations_and_objectives_that_make_no_sense_are_noticed)
 {
     write_building(1, 1, 0);
-    expect_warnings("sim.gap_tolerance_m", "--set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
     expect_warnings("search.objectives", "--set search.objectives=j1_m,bumper_strain");
     expect_warnings("", "--set search.objectives=j1_m,bumper_strain --set contact.bumper_stiffness_n_m=1e8");
     expect_warnings("motion.records",
@@ -90,6 +89,7 @@ TEST(deviations_and_objectives_that_make_no_sense_are_noticed)
     expect_fault("design.variables: gaps stands there twice", "--set design.variables=gaps,gaps,thickness");
     expect_fault("search.limits: j3_g<=-1: no design has less than 0", "--set 'search.limits=j3_g<=-1'");
     expect_fault("search.limits: '<=5' is not NAME<=NUMBER", "--set 'search.limits=<=5'");
+    expect(65, "1 fault\n", "check configs/quick.ini --pga 0 --set motion.target=nonsense");
 }
 
 TEST(a_sound_building_is_in_order_with_its_figures)
@@ -318,14 +318,6 @@ TEST(the_time_of_a_study_counts_its_search_and_its_baselines)
     print_message("%.3f s expected (simulations %.3f s), %.3f s taken\n", expected, simulated, took);
     assert_less(took / 4, expected);
     assert_less(expected, 4 * took);
-}
-
-TEST(a_core_as_wide_as_the_building_is_asked_about)
-{
-    write_building(1, 1, 0);
-    expect_warnings("core.width_m", "--set core.width_m=9"); /* 21 m high, its plan not known */
-    expect(0, "is 49 % of the building's width of 30.48 m", "check configs/quick.ini --set core.width_m=15");
-    expect(65, "1 fault\n", "check configs/quick.ini --pga 0 --set motion.target=nonsense");
 }
 
 TEST(a_study_of_the_most_floors_ends_with_its_baselines)

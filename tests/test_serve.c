@@ -525,24 +525,6 @@ static void test_questions_that_are_none_are_refused(void **state)
     }
 }
 
-static void test_an_earlier_question_of_a_page_gives_way(void **state)
-{
-    (void)state;
-    Table front = table_of("runs/a/front.csv");
-    json_t *x = numbers_of_row(&front, 0, 1, 22);
-    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:O}", "page", 7, "turn", 5, "x", x)));
-    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:O}", "page", 8, "turn", 1, "x", x)));
-    json_t *late = json_pack("{s:i, s:i, s:o}", "page", 7, "turn", 4, "x", x);
-    char length[64], *body = json_dumps(late, 0);
-    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
-    char *answer = ask("POST", "/%T/0/what-if", length, body);
-    assert_int_equal(code_of(answer), 409);
-    free(answer);
-    free(body);
-    json_decref(late);
-    table_free(&front);
-}
-
 static void test_two_runs_are_measured_in_one_box(void **state)
 {
     (void)state;
@@ -756,17 +738,17 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
     assert_ptr_equal(first.look, again.look);
-    watch_give(w, &again);
+    watch_give(&again);
     rest(0.7);
     CHECK_OK(watch_take(w, 0, 60, &again, &err), &err);
     assert_less(first.version, again.version);
     assert_same_number(first.look->run.n_front, again.look->run.n_front); /* whoever holds it has it */
-    watch_give(w, &first);
-    watch_give(w, &again);
+    watch_give(&first);
+    watch_give(&again);
     rest(0.7);
     CHECK_OK(watch_take(w, 0, 60, &first, &err), &err);
     assert_int_equal(first.version, again.version); /* kept for a minute */
-    watch_give(w, &first);
+    watch_give(&first);
     watch_close(w);
 }
 
@@ -911,7 +893,6 @@ int main(void)
         cmocka_unit_test(test_what_if_under_another_motion_is_what_simulate_prints),
         cmocka_unit_test(test_what_if_of_a_run_of_several_simulations_is_one_of_them),
         cmocka_unit_test(test_questions_that_are_none_are_refused),
-        cmocka_unit_test(test_an_earlier_question_of_a_page_gives_way),
         cmocka_unit_test(test_two_runs_are_measured_in_one_box),
         cmocka_unit_test(test_the_page_is_the_report_with_live_parts),
         cmocka_unit_test(test_nothing_of_a_run_is_written),

@@ -14,8 +14,6 @@
 #include "report/report_json.h"
 #include "settings/settings.h"
 
-enum { PAGES_MAX = 64 };
-
 /* What a scene is opened with. */
 typedef struct {
     double pga_g, stretch, restitution; /* pga_g 0: scaled as the run's */
@@ -31,10 +29,7 @@ struct OnDemand {
     Settings settings; /* of the run, as is the provenance; neither changes */
     char *provenance;
     const RecordPaths *moved;
-    pthread_mutex_t pages; /* of the next four */
-    int n_users;
-    long page[PAGES_MAX], turn[PAGES_MAX];
-    size_t next_page;
+    atomic_int n_users;
     pthread_mutex_t designs; /* of the next two */
     KnownDesign design[DESIGNS_KEPT];
     size_t next_design;
@@ -50,7 +45,7 @@ struct OnDemand {
 };
 
 typedef struct {
-    long page, turn;
+    long turn;
     Ground ground;
     double x[DESIGN_VARIABLES_MAX];
 } Question;
@@ -67,7 +62,6 @@ Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, 
         *out = NULL;
         return fail(err, STATUS_NO_MEMORY, "no memory for a run");
     }
-    pthread_mutex_init(&o->pages, NULL);
     pthread_mutex_init(&o->designs, NULL);
     pthread_mutex_init(&o->scene, NULL);
     o->n_users = 1;
@@ -79,26 +73,18 @@ Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, 
 
 OnDemand *on_demand_share(OnDemand *o)
 {
-    pthread_mutex_lock(&o->pages);
-    o->n_users++;
-    pthread_mutex_unlock(&o->pages);
+    atomic_fetch_add(&o->n_users, 1);
     return o;
 }
 
 void on_demand_close(OnDemand *o)
 {
-    if (!o)
-        return;
-    pthread_mutex_lock(&o->pages);
-    const int n_users = --o->n_users;
-    pthread_mutex_unlock(&o->pages);
-    if (n_users > 0)
+    if (!o || atomic_fetch_sub(&o->n_users, 1) > 1)
         return;
     if (o->is_open)
         problem_close(&o->problem);
     for (size_t i = 0; i < DESIGNS_KEPT; i++)
         free(o->design[i].text);
-    pthread_mutex_destroy(&o->pages);
     pthread_mutex_destroy(&o->designs);
     pthread_mutex_destroy(&o->scene);
     free(o->provenance);
@@ -303,8 +289,7 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
         {"pga_g", own->pga_g / PGA_SHARE, own->pga_g * PGA_SHARE, 0, &q->ground.pga_g},
         {"stretch", own->stretch / STRETCH_SHARE, own->stretch * STRETCH_SHARE, own->stretch, &q->ground.stretch},
         {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
-    *q = (Question){.page = (long)json_integer_value(json_object_get(given, "page")),
-                    .turn = (long)json_integer_value(json_object_get(given, "turn"))};
+    *q = (Question){.turn = (long)json_integer_value(json_object_get(given, "turn"))};
     Status status = json_is_object(given) ? take_design(o, given, q->x, err)
                                           : fail(err, STATUS_BAD_DATA, "the question is no JSON object");
     for (size_t i = 0; status == STATUS_OK && i < sizeof numbers / sizeof numbers[0]; i++)
@@ -312,25 +297,6 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
                              numbers[i].value, err);
     json_decref(given);
     return status;
-}
-
-/* Notes the turn; 0: a later one of the same page is there. The oldest page gives its place to a new one. */
-static int is_latest(OnDemand *o, const Question *q)
-{
-    pthread_mutex_lock(&o->pages);
-    size_t i = 0;
-    while (i < PAGES_MAX && o->page[i] != q->page)
-        i++;
-    if (i == PAGES_MAX) {
-        i = o->next_page++ % PAGES_MAX;
-        o->page[i] = q->page;
-        o->turn[i] = q->turn;
-    }
-    const int latest = q->turn >= o->turn[i];
-    if (latest)
-        o->turn[i] = q->turn;
-    pthread_mutex_unlock(&o->pages);
-    return latest;
 }
 
 /* -- the answer ---------------------------------------------------------------------------------------------------- */
@@ -383,15 +349,10 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
 Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size_t n, json_t **answer, Err *err)
 {
     Question q;
-    Status status = STATUS_OK;
     TRY(prepare(o, run, err));
     TRY(take_question(o, question, n, &q, err));
-    is_latest(o, &q);
     pthread_mutex_lock(&o->scene);
-    if (!is_latest(o, &q))
-        status = fail(err, STATUS_STOPPED, "a later question of this page is there");
-    if (status == STATUS_OK)
-        status = open_scene(o, &q.ground, err);
+    Status status = open_scene(o, &q.ground, err);
     if (status == STATUS_OK)
         status = tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_IMPACT, .x = q.x}, &o->result, err);
     if (status == STATUS_OK)

@@ -5,16 +5,15 @@
  *          searched for anew for each core. The last DESIGNS_KEPT are kept
  * What if  a design changed a little: gaps, thicknesses, strength and length of the motion, restitution
  *
- *   question  {"page": P, "turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R}      the last three
+ *   question  {"turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R}      the last three
  *             null or left out: as in the run; x within the bounds of the search, the others within those of
  *             on_demand_bounds
  *   answer    {"turn", "outcome", "reason", "objectives": [n_obj] or null, "dominated_by": n, "dominates": n (designs
  *             of the front; null where the front is of another motion or of several simulations), "gap_m", "peaks" and
  *             "no_core": result_json (report/report_json.h), "beyond_law", "seconds"}
  *
- * It is one simulation of the first record, the very one of `imtet simulate --design`. The latest wins: of one page
- * P, a question with a smaller turn than the latest is not simulated (STATUS_STOPPED). The scene is kept while the
- * motion and the restitution stay.
+ * It is one simulation of the first record, the very one of `imtet simulate --design`. A page asks one
+ * question at a time; its number T comes back. The scene is kept while the motion and the restitution stay.
  *
  * Life cycle  on_demand_open -> on_demand_share ... -> on_demand_close, once for each of both
  * Threads     any; one design and one what-if are simulated at a time, on one thread each

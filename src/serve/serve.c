@@ -119,8 +119,6 @@ static unsigned code_of(Status status)
         return MHD_HTTP_NOT_FOUND;
     case STATUS_BAD_DATA:
         return MHD_HTTP_BAD_REQUEST;
-    case STATUS_STOPPED:
-        return MHD_HTTP_CONFLICT;
     default:
         return MHD_HTTP_INTERNAL_SERVER_ERROR;
     }
@@ -246,7 +244,7 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     const Look *const look[2] = {v->view.look, other.look};
     const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
     const Status status = answer_against(look, name, &both, err);
-    watch_give(w, &other);
+    watch_give(&other);
     return status == STATUS_OK ? answer_json(both, 6, a, err) : status;
 }
 
@@ -264,7 +262,7 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
         if (watch_take(w, i, GLANCE_S, &view, &why) != STATUS_OK)
             view.why = why;
         json_t *one = answer_status(&view, watch_name(w, i));
-        watch_give(w, &view);
+        watch_give(&view);
         json_object_set_new(one, "at", json_integer((json_int_t)i));
         list = json_append(list, one);
     }
@@ -287,7 +285,7 @@ static size_t newest_run(Server *s)
             snprintf(latest, sizeof latest, "%s", started);
             newest = i;
         }
-        watch_give(s->watch, &view);
+        watch_give(&view);
     }
     return newest;
 }
@@ -325,7 +323,7 @@ static ssize_t read_events(void *user, uint64_t position, char *out, size_t room
     e->seen = view.version;
     free(text);
     json_decref(status);
-    watch_give(w, &view);
+    watch_give(&view);
     return sent;
 }
 
@@ -381,7 +379,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = watch_take(s->watch, v.run, PAGE_S, &v.view, &err);
     if (status == STATUS_OK)
         status = show(&v, &a, &err);
-    watch_give(s->watch, &v.view);
+    watch_give(&v.view);
     if (status != STATUS_OK)
         a = refusal(code_of(status), err.text);
     if (a.stream && strcmp(method, "HEAD") == 0) { /* libmicrohttpd would send the end of its chunks */

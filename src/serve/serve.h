@@ -11,8 +11,8 @@
  *   GET  /TOKEN/RUN/against/OTHER   two runs
  *
  * HEAD is GET without the body; /TOKEN and /TOKEN/RUN lead to the addresses with a slash. Nothing here writes to a
- * run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405, 409 a later
- * question is there, 413. A run that was made anew in the place of another is served as it is now.
+ * run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405,
+ * 413. A run that was made anew in the place of another is served as it is now.
  *
  * Bounds    PEERS_MAX connections, fewer where few files may be open; of those that wait for a request half as many,
  *           for each further one the one that has waited longest goes; HEAD_MAX bytes of headers, BODY_MAX of body

@@ -8,13 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 #include "base/clock.h"
 #include "store/folder.h"
 #include "store/run_read.h"
 
 enum { RUNS_MAX = 500 };
-static const double POLL_S = 0.2, IDLE_S = 60, READ_SHARE = 10, AGAIN_S = 2;
+static const double POLL_S = 0.2, READ_SHARE = 10, AGAIN_S = 2;
 
 /* What changes with a run; all of its bytes are compared. */
 typedef struct {
@@ -25,20 +26,19 @@ typedef struct {
 
 typedef struct {
     char folder[PATH_MAX], name[NAME_MAX + 1];
-    View view;      /* the newest; its look NULL: none */
-    Stamp stamp;    /* of that look */
-    double next;    /* of the clock, before which it is not read again */
-    double kept_to; /* of the clock, after which it is released unless a reading is waited for */
-    int n_waiting;
+    pthread_mutex_t mutex; /* of the rest, held while the run is read */
+    View view;             /* the newest; its look NULL: none */
+    Stamp stamp;           /* of that look */
+    double next;           /* of the clock, before which it is not read again */
+    double kept_to;        /* of the clock, after which it is released */
 } Watched;
 
 struct Watch {
     char folder[PATH_MAX];
     const RecordPaths *moved;
-    int is_run, stops;
-    pthread_mutex_t mutex; /* of all below */
-    pthread_cond_t changed, wanted;
-    pthread_t thread;
+    int is_run;
+    atomic_int stops;
+    pthread_mutex_t mutex; /* of the next two */
     size_t n;
     Watched *run[RUNS_MAX];
 };
@@ -65,7 +65,7 @@ static void stamp_of(const Watched *r, Stamp *s)
 
 static void release(Look *look)
 {
-    if (look && --look->n_users == 0) {
+    if (look && atomic_fetch_sub(&look->n_users, 1) == 1) {
         on_demand_close(look->on_demand);
         run_free(&look->run);
         free(look);
@@ -103,16 +103,20 @@ static Status look_at(const Watch *w, const char *folder, const Look *before, Lo
     return status;
 }
 
-/* The mutex is held before and after, not while the run is read; this thread alone replaces a look. */
-static void read_again(Watch *w, Watched *r, const Stamp *stamp)
+/* Where it has changed, and not sooner than a tenth of a processor allows. The mutex is held. */
+static void read_again(const Watch *w, Watched *r)
 {
     View *v = &r->view;
+    Stamp stamp;
     Err err = {0};
     Look *fresh;
+    if (clock_seconds() < r->next && (v->look || v->why.code != STATUS_OK))
+        return;
+    stamp_of(r, &stamp);
+    if (v->look && v->why.code == STATUS_OK && memcmp(&stamp, &r->stamp, sizeof stamp) == 0)
+        return;
     const double start = worked_s();
-    pthread_mutex_unlock(&w->mutex);
     const Status status = look_at(w, r->folder, v->look, &fresh, &err);
-    pthread_mutex_lock(&w->mutex);
     r->next = clock_seconds() + (status == STATUS_OK ? READ_SHARE * (worked_s() - start) : AGAIN_S);
     err.code = status;
     v->version += status == STATUS_OK || v->why.code == STATUS_OK;
@@ -120,51 +124,8 @@ static void read_again(Watch *w, Watched *r, const Stamp *stamp)
     if (fresh) {
         release(v->look);
         v->look = fresh;
-        r->stamp = *stamp;
+        r->stamp = stamp;
     }
-    pthread_cond_broadcast(&w->changed);
-}
-
-static void wait_for(pthread_cond_t *cond, pthread_mutex_t *mutex, double seconds)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    const long long ns = until.tv_nsec + (long long)(1e9 * seconds);
-    until.tv_sec += (time_t)(ns / 1000000000);
-    until.tv_nsec = (long)(ns % 1000000000);
-    pthread_cond_timedwait(cond, mutex, &until);
-}
-
-/* The mutex is held. 0: nobody waits for this run. */
-static int look_after(Watch *w, Watched *r)
-{
-    Stamp stamp;
-    const double now = clock_seconds();
-    if (now > r->kept_to && r->n_waiting == 0) {
-        release(r->view.look);
-        r->view.look = NULL;
-        return 0;
-    }
-    if (now >= r->next || (!r->view.look && r->view.why.code == STATUS_OK)) {
-        stamp_of(r, &stamp);
-        if (!r->view.look || r->view.why.code != STATUS_OK || memcmp(&stamp, &r->stamp, sizeof stamp) != 0)
-            read_again(w, r, &stamp);
-    }
-    return 1;
-}
-
-static void *watch(void *user)
-{
-    Watch *w = user;
-    pthread_mutex_lock(&w->mutex);
-    while (!w->stops) {
-        int n_kept = 0;
-        for (size_t i = 0; i < w->n && !w->stops; i++)
-            n_kept += look_after(w, w->run[i]);
-        wait_for(&w->wanted, &w->mutex, n_kept > 0 ? POLL_S : IDLE_S);
-    }
-    pthread_mutex_unlock(&w->mutex);
-    return NULL;
 }
 
 /* -- which runs ---------------------------------------------------------------------------------------------------- */
@@ -179,6 +140,7 @@ static void add(Watch *w, const char *folder, const char *name)
         return;
     snprintf(r->folder, sizeof r->folder, "%s", folder);
     snprintf(r->name, sizeof r->name, "%s", name);
+    pthread_mutex_init(&r->mutex, NULL);
     w->run[w->n++] = r;
 }
 
@@ -231,130 +193,95 @@ static Status find_runs(Watch *w, const char *folder, Err *err)
 
 static Status start(Watch *w, const char *folder, Err *err)
 {
-    struct stat s;
-    pthread_condattr_t monotonic;
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&w->mutex, NULL);
-    pthread_cond_init(&w->changed, &monotonic);
-    pthread_cond_init(&w->wanted, &monotonic);
-    pthread_condattr_destroy(&monotonic);
-    if (!realpath(folder, w->folder) || stat(w->folder, &s) != 0)
-        return fail(err, STATUS_MISSING, "%s: %s", folder, strerror(errno));
-    TRY(find_runs(w, folder, err));
-    return pthread_create(&w->thread, NULL, watch, w) == 0 ? STATUS_OK
-                                                           : fail(err, STATUS_NO_MEMORY, "no thread to watch a run");
+    return realpath(folder, w->folder) ? find_runs(w, folder, err)
+                                       : fail(err, STATUS_MISSING, "%s: %s", folder, strerror(errno));
 }
 
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)
 {
-    Watch *w = calloc(1, sizeof *w);
-    *out = NULL;
+    Watch *w = *out = calloc(1, sizeof *w);
     if (!w)
         return fail(err, STATUS_NO_MEMORY, "no memory to watch a run");
     w->moved = moved;
     const Status status = start(w, folder, err);
-    if (status == STATUS_OK) {
-        *out = w;
-        return STATUS_OK;
+    if (status != STATUS_OK) {
+        watch_close(w);
+        *out = NULL;
     }
-    for (size_t i = 0; i < w->n; i++)
-        free(w->run[i]);
-    free(w);
     return status;
 }
 
 void watch_stop(Watch *w)
 {
-    pthread_mutex_lock(&w->mutex);
-    w->stops = 1;
-    pthread_cond_broadcast(&w->changed);
-    pthread_cond_broadcast(&w->wanted);
-    pthread_mutex_unlock(&w->mutex);
+    atomic_store(&w->stops, 1);
 }
 
 int watch_is_stopped(Watch *w)
 {
-    pthread_mutex_lock(&w->mutex);
-    const int stops = w->stops;
-    pthread_mutex_unlock(&w->mutex);
-    return stops;
+    return atomic_load(&w->stops);
 }
 
 void watch_close(Watch *w)
 {
-    watch_stop(w);
-    pthread_join(w->thread, NULL);
     for (size_t i = 0; i < w->n; i++) {
         release(w->run[i]->view.look);
+        pthread_mutex_destroy(&w->run[i]->mutex);
         free(w->run[i]);
     }
-    pthread_cond_destroy(&w->changed);
-    pthread_cond_destroy(&w->wanted);
     pthread_mutex_destroy(&w->mutex);
     free(w);
 }
 
 /* -- looking ------------------------------------------------------------------------------------------------------- */
 
-/* The mutex is held. */
-static void keep(Watch *w, Watched *r, double seconds)
+/* Runs that nobody has asked for in time; one that is being read is left alone. */
+static void release_idle(Watch *w)
 {
-    r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);
-    pthread_cond_broadcast(&w->wanted);
-}
-
-/* The mutex is held. */
-static void take(Watched *r, View *view)
-{
-    *view = r->view;
-    view->look->n_users++;
+    for (size_t i = 0, n = watch_n(w); i < n; i++) {
+        Watched *r = w->run[i];
+        if (pthread_mutex_trylock(&r->mutex) != 0)
+            continue;
+        if (clock_seconds() > r->kept_to) {
+            release(r->view.look);
+            r->view.look = NULL;
+        }
+        pthread_mutex_unlock(&r->mutex);
+    }
 }
 
 Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err)
 {
-    Status status = STATUS_OK;
-    *view = (View){0};
-    pthread_mutex_lock(&w->mutex);
     Watched *r = w->run[i];
-    if (!r->view.look && clock_seconds() >= r->next)
-        r->view.why.code = STATUS_OK;
-    keep(w, r, seconds);
-    r->n_waiting++;
-    while (!r->view.look && r->view.why.code == STATUS_OK && !w->stops)
-        wait_for(&w->changed, &w->mutex, 1);
-    r->n_waiting--;
-    keep(w, r, seconds);
+    *view = (View){0};
+    release_idle(w);
+    pthread_mutex_lock(&r->mutex);
+    read_again(w, r);
+    r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);
     if (r->view.look) {
-        take(r, view);
+        *view = r->view;
+        atomic_fetch_add(&view->look->n_users, 1);
     } else {
         *err = r->view.why;
-        status = w->stops ? STATUS_STOPPED : r->view.why.code;
     }
-    pthread_mutex_unlock(&w->mutex);
-    return status;
+    pthread_mutex_unlock(&r->mutex);
+    return view->look ? STATUS_OK : err->code;
 }
 
-void watch_give(Watch *w, View *view)
+void watch_give(View *view)
 {
-    pthread_mutex_lock(&w->mutex);
     release(view->look);
     view->look = NULL;
-    pthread_mutex_unlock(&w->mutex);
 }
 
 View watch_next(Watch *w, size_t i, long seen, double seconds)
 {
-    View view = {.version = seen};
-    const double end = clock_seconds() + seconds;
-    pthread_mutex_lock(&w->mutex);
-    Watched *r = w->run[i];
-    keep(w, r, seconds);
-    for (double left = seconds; !w->stops && left > 0 && !(r->view.look && r->view.version > seen);
-         left = end - clock_seconds())
-        wait_for(&w->changed, &w->mutex, left);
-    if (!w->stops && r->view.look && r->view.version > seen)
-        take(r, &view);
-    pthread_mutex_unlock(&w->mutex);
-    return view;
+    View view;
+    for (double end = clock_seconds() + seconds; !watch_is_stopped(w) && clock_seconds() < end;) {
+        if (watch_take(w, i, seconds, &view, &(Err){0}) == STATUS_OK && view.version > seen)
+            return view;
+        watch_give(&view);
+        nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * POLL_S)}, NULL);
+    }
+    return (View){.version = seen};
 }

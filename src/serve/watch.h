@@ -1,14 +1,16 @@
 /* serve/watch.h -- the runs that are served, each as it is now: read again when its files have changed.
  *
- * One thread reads, as `imtet status` does; it writes nothing and keeps no lock, so that the run does not know of it.
- * It looks every POLL_S for changes of the runs that are asked for and spends a tenth of a processor at most on
- * reading one; a run that is not asked for again in time is released, and what was simulated of it with it.
+ * It is read, as `imtet status` does, by whoever asks for it where its files have changed since then; nothing is written
+ * and no lock kept, so that the run does not know of it. A tenth of a processor at most is spent on reading one; a run
+ * that is not asked for again in time is released with the next question, and what was simulated of it with it.
  *
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
  * Ownership   a Look is shared and read-only; it is released by the last watch_give
  * Threads     any */
 #ifndef IMTET_SERVE_WATCH_H
 #define IMTET_SERVE_WATCH_H
+
+#include <stdatomic.h>
 
 #include "serve/on_demand.h"
 #include "study/progress.h"
@@ -19,7 +21,7 @@ typedef struct {
     Run run;
     Standing standing;
     OnDemand *on_demand; /* the same for all readings of one run */
-    int n_users;         /* the watch's */
+    atomic_int n_users;
 } Look;
 
 typedef struct {
@@ -30,7 +32,7 @@ typedef struct {
 
 /* folder: a run, or a folder that holds runs; moved: borrowed. */
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err);
-void watch_stop(Watch *w); /* whoever waits goes on without */
+void watch_stop(Watch *w); /* watch_next waits no more */
 void watch_close(Watch *w);
 
 /* Runs keep their numbers; those of a folder that came since then are found by watch_find. */
@@ -38,10 +40,10 @@ void watch_find(Watch *w);
 size_t watch_n(Watch *w);
 const char *watch_name(Watch *w, size_t i);
 
-/* Waits for the first reading; the run is kept for so many seconds more. One that could not be read is tried again
+/* The run as it is now, kept for so many seconds more. One that could not be read is tried again
  * after AGAIN_S; until then the reason is the answer, or stands beside the look before. */
 Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err);
-void watch_give(Watch *w, View *view); /* one without a look is fine */
+void watch_give(View *view); /* one without a look is fine */
 
 /* A view later than version `seen`, within so many seconds, for which the run is kept too; else without a look. */
 View watch_next(Watch *w, size_t i, long seen, double seconds);

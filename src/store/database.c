@@ -251,11 +251,9 @@ static const char *real_path(const char *path, char real[PATH_MAX])
     return realpath(folder, found) && snprintf(real, PATH_MAX, "%s%s", found, slash) < PATH_MAX ? real : path;
 }
 
-/* vfs NULL: the one of the system. */
-static Status open_file(Database **out, const char *path, int flags, const char *vfs, Err *err)
+/* name: of it for SQLite. */
+static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
 {
-    char real[PATH_MAX];
-    const char *name = real_path(path, real);
     Database *d = calloc(1, sizeof *d);
     *out = NULL;
     if (!d || snprintf(d->path, sizeof d->path, "%s", path) >= (int)sizeof d->path) {
@@ -263,7 +261,7 @@ static Status open_file(Database **out, const char *path, int flags, const char 
         return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
                     path);
     }
-    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_NOMUTEX, vfs);
+    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_NOMUTEX, NULL);
     if (code != SQLITE_OK) {
         const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
         sqlite3_close(d->db);
@@ -271,7 +269,7 @@ static Status open_file(Database **out, const char *path, int flags, const char 
         return status;
     }
     sqlite3_extended_result_codes(d->db, 1);
-    d->is_shared = is_shared(name);
+    d->is_shared = is_shared(path);
     sqlite3_busy_timeout(d->db, d->is_shared ? SHARED_BUSY_MS : BUSY_MS);
     sqlite3_db_config(d->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(d->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
@@ -350,10 +348,16 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
 }
 
 /* A folder that may not be written to has no place for the memory by which processes share a journal: it is read
- * without, and without locks, for nobody writes there. */
+ * without, and without locks, for nobody writes there; with no journal the file is all. */
 static Status open_without_locks(Database **out, const char *path, Err *err)
 {
-    TRY(open_file(out, path, SQLITE_OPEN_READONLY, "unix-none", err));
+    char real[PATH_MAX], journal[PATH_MAX + 8], uri[3 * PATH_MAX + 40] = "file:";
+    size_t n = strlen(uri);
+    for (const char *c = real_path(path, real); *c; c++)
+        n += (size_t)sprintf(uri + n, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned)(unsigned char)*c);
+    snprintf(journal, sizeof journal, "%s-wal", path);
+    strcpy(uri + n, access(journal, F_OK) == 0 ? "?vfs=unix-none" : "?immutable=1");
+    TRY(open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err));
     bound_rows(*out);
     TRY(database_do(*out, err, "PRAGMA locking_mode=EXCLUSIVE", ""));
     return check(*out, err);
@@ -361,6 +365,7 @@ static Status open_without_locks(Database **out, const char *path, Err *err)
 
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
 {
+    char real[PATH_MAX];
     struct stat there;
     *out = NULL;
     if (stat(path, &there) != 0)
@@ -369,7 +374,8 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
         return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
         return fail_sub(err, STATUS_IO, SUB_EMPTY, "%s: is empty, no database of a run", path);
-    TRY(open_file(out, path, mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, NULL, err));
+    TRY(open_file(out, path, real_path(path, real),
+                  mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
     bound_rows(*out);
     Status status = prepare(*out, mode, err);
     const int code = sqlite3_errcode((*out)->db) & 0xff;
@@ -430,8 +436,8 @@ Status database_check_place(Database *d, Err *err)
 
 Status database_create(Database **out, const char *path, Err *err)
 {
-    char sql[128];
-    TRY(open_file(out, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL, err));
+    char sql[128], real[PATH_MAX];
+    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
     snprintf(sql, sizeof sql, "PRAGMA synchronous=FULL; PRAGMA application_id=%d; PRAGMA user_version=%d",
              DATABASE_APPLICATION, DATABASE_FORMAT);
     const Status status = database_do(*out, err, sql, "");

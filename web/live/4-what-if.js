@@ -2,7 +2,6 @@
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
 
 const GROUND = [["pga_g", "peak", "g"], ["stretch", "time \u00d7", ""], ["restitution", "restitution", ""]];
-const PAGE_NUMBER = crypto.getRandomValues(new Uint32Array(1))[0];
 let startWhatIf = () => {};
 
 function whatIfPart() {
@@ -53,11 +52,11 @@ function whatIfPart() {
     since = undefined;
     isAsking = true;
     part.dataset.busy = "yes";
-    const said_ = await ask("what-if", { page: PAGE_NUMBER, turn: ++turn, x: design, ...asked }).catch((error) => error);
+    const said_ = await ask("what-if", { turn: ++turn, x: design, ...asked }).catch((error) => error);
     isAsking = false;
     if (since !== undefined) next();
     if (said_ instanceof Error) {
-      if (said_.code !== 409) said.textContent = `Not simulated: ${said_.message}`;
+      said.textContent = `Not simulated: ${said_.message}`;
     } else {
       answer = { ...said_, x: design, ground: asked };
       showAnswer();
