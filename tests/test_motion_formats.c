@@ -124,8 +124,8 @@ static const struct {
     {"text.sac", "sac", {.unit = UNIT_M_S2}, 0, "HNN", 1e-6},
     {"simcenter.json", "simcenter", {.channel = "1"}, 0, "SYN-1 x", 1e-9},
     {"simcenter.json", "simcenter", {.channel = "SYN-1 y"}, 1, "SYN-1 y", 1e-9},
-    {"knet.tar.gz", "knet", {.channel = "EW"}, 1, "E-W, SYN0010101010000.EW", 1e-5},
-    {"knet.tar.gz", "knet", {.channel = "3"}, 2, "U-D, SYN0010101010000.UD", 1e-5},
+    {"knet.tar.gz", "knet", {.channel = "EW"}, 1, "E-W, knet/SYN0010101010000.EW", 1e-5},
+    {"knet.tar.gz", "knet", {.channel = "3"}, 2, "U-D, knet/SYN0010101010000.UD", 1e-5},
     {"cesmd.zip", "csmip", {.channel = "90 deg"}, 1, "90 Deg, SYN01.V2, syn_event.zip", 1e-9},
 };
 enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
@@ -441,7 +441,7 @@ TEST(counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name)
     refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.unit (--unit) to counts=VALUE");
     refused("little.sac", &(MotionHow){0}, "set motion.unit (--unit) to counts=VALUE");
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
-    refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, SYN0010101010000.NS'");
+    refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, knet/SYN0010101010000.NS'");
     assert_int_equal(motion_parse(&m, "a.evt", EVT, sizeof EVT, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "a.evt: Kinemetrics EVT without a header of 2040 bytes"));
     Text t = read_specimen("knet.tar.gz");
@@ -515,8 +515,7 @@ TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_fo
     free(twins.text);
 }
 
-/* Names of members that differ in their middle only are shown as long as that shows. */
-TEST(the_channels_of_an_archive_are_listed_by_names_that_differ)
+TEST(of_many_channels_of_an_archive_the_first_are_listed_and_how_many_there_are)
 {
     enum { N = 26 };
     static char names[N][64];
@@ -529,8 +528,7 @@ TEST(the_channels_of_an_archive_are_listed_by_names_that_differ)
     Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "a.tar", all.text, all.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "holds 26 channels: 1 'N-S"));
-    assert_non_null(strstr(err.text, "A.20160224"));
-    assert_non_null(strstr(err.text, "B.20160224"));
+    assert_non_null(strstr(err.text, "3 'N-S"));
     assert_non_null(strstr(err.text, "... 26; choose one by motion.channel (--set motion.channel=NAME)"));
     free(one.text);
     free(all.text);

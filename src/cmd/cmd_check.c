@@ -269,7 +269,7 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
     const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
                                                                : here > 0            ? here
                                                                                      : 1;
-    const long records = 1 + (long)(strcmp(s->motion.records, "none") == 0 ? 0 : list_count(s->motion.records));
+    const long records = (long)motion_n_records(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     expected_times(p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")),
                    &search_s, &baselines_s, &all_s);

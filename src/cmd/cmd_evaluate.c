@@ -191,53 +191,34 @@ static void print_motion(const Evaluations *e, size_t i)
     }
 }
 
-/* With the device that was found for it. */
-static void add_case(json_t *table, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
+/* name: of the record, empty where there is one. With the device that was found for it. */
+static void add_case(json_t *table, const char *name, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
 {
-    char label[160] = "", device[DEVICE_TEXT_MAX] = "";
+    char label[400], device[DEVICE_TEXT_MAX] = "";
     if (c == EVALUATED_TMD || c == EVALUATED_LINKS)
         baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c].device, device);
-    snprintf(label, sizeof label, "%s%s%s%s", EVALUATION_CASES[c].word, *device ? " (" : "", device,
-             *device ? ")" : "");
+    snprintf(label, sizeof label, "%s%s%s%s%s%s", name, *name ? "  " : "", EVALUATION_CASES[c].word,
+             *device ? " (" : "", device, *device ? ")" : "");
     const int is_known = c == EVALUATED_DESIGN && run->error_known;
     figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
     if (c == EVALUATED_DESIGN && run->replicates.n_replicates > 0)
         figures_replicates(table, order, &run->replicates, is_known ? run->error : NULL);
 }
 
-/* The records that were named, each under its motion. */
-static void print_named(const Evaluations *e, const MeasureOrder *order)
-{
-    for (size_t i = 0; i < e->n_records; i++) {
-        json_t *table = json_array();
-        if (!e->record[i].from_folder)
-            print_motion(e, i);
-        for (size_t c = 0; !e->record[i].from_folder && c < evaluated_cases(e, &e->run[i]); c++)
-            add_case(table, order, &e->run[i], c);
-        if (json_array_size(table) > 0 && e->replicates > 0)
-            puts("replicates are of the design with impacts; the other lines are as designed");
-        figures_print(table);
-        if (!e->record[i].from_folder)
-            putchar('\n');
-    }
-}
-
-/* Those of a folder in one table, the name of the record before each row. */
-static void print_folder(const Evaluations *e, const MeasureOrder *order)
+/* In one table, the motions of those that were named above it. */
+static void print_records(const Evaluations *e, const MeasureOrder *order)
 {
     json_t *table = json_array();
-    for (size_t i = 0; i < e->n_records; i++)
-        for (size_t c = 0; c < N_EVALUATED && e->record[i].from_folder && e->record[i].readable == STATUS_OK; c++) {
-            char label[400];
-            const size_t first = json_array_size(table);
-            add_case(table, order, &e->run[i], c);
-            for (size_t r = first; r < json_array_size(table); r++) {
-                json_t *row = json_array_get(table, r);
-                snprintf(label, sizeof label, "%s  %s", evaluated_name(&e->record[i]),
-                         json_string_value(json_object_get(row, "")));
-                json_object_set_new(row, "", json_words(label));
-            }
-        }
+    for (size_t i = 0; i < e->n_records; i++) {
+        if (e->record[i].readable != STATUS_OK)
+            continue;
+        if (!e->record[i].from_folder)
+            print_motion(e, i);
+        for (size_t c = 0; c < (e->record[i].from_folder ? N_EVALUATED : evaluated_cases(e, &e->run[i])); c++)
+            add_case(table, e->n_records > 1 ? evaluated_name(&e->record[i]) : "", order, &e->run[i], c);
+    }
+    if (e->replicates > 0)
+        puts("replicates are of the design with impacts; the other lines are as designed");
     figures_print(table);
 }
 
@@ -258,10 +239,8 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
         printf("design %s by the settings of %s\n\n", c->word, args->operand);
     if (e->level)
         ida_print(e, order);
-    else {
-        print_named(e, order);
-        print_folder(e, order);
-    }
+    else
+        print_records(e, order);
     print_refused(stdout, e);
 }
 
@@ -284,10 +263,8 @@ static Status add_own(Evaluations *e, Settings *s, Err *err)
 {
     char path[OPTION_TEXT_MAX];
     TRY(record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err));
-    TRY(evaluations_add(e, s->motion.record, 0, err));
-    for (size_t i = 0; strcmp(s->motion.records, "none") != 0 && i < list_count(s->motion.records); i++) {
-        if (!list_item(s->motion.records, i, path, sizeof path))
-            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
+        TRY(motion_record(&s->motion, i, path, err));
         TRY(evaluations_add(e, path, 0, err));
     }
     return STATUS_OK;

@@ -7,6 +7,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "motion/builtin.h"
+#include "motion/motion_scale.h"
 #include "report/report.h"
 #include "settings/options.h"
 #include "store/run_read.h"
@@ -24,17 +25,18 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
 {
     static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
-    const size_t further = list_is_given(run->motion.records) ? list_count(run->motion.records) : 0;
+    const size_t n = motion_n_records(&run->motion);
     for (int i = 0; r->n < RECORDS_MAX && (path = args_next(args, "--record", &i));)
         r->path[r->n++] = path;
     const int is_given = r->n > 0;
     if (r->n == RECORDS_MAX)
         return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
-    for (size_t i = 0; i < further && !is_given && r->n < RECORDS_MAX; i++, r->n++) {
-        list_item(run->motion.records, i, r->own[r->n], sizeof r->own[0]);
+    for (size_t i = 1; i < n && !is_given && r->n < RECORDS_MAX; i++) {
+        TRY(motion_record(&run->motion, i, r->own[r->n], err));
         r->path[r->n] = r->own[r->n];
+        r->n++;
     }
-    for (size_t i = 0; !is_given && further == 0 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
+    for (size_t i = 0; !is_given && n == 1 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
             r->path[r->n++] = BUILT_IN[i];
     return STATUS_OK;

@@ -16,6 +16,7 @@
 #include "analysis/sensitivity.h"
 #include "evaluate/tower.h"
 #include "store/output.h"
+#include "motion/motion_scale.h"
 #include "settings/options.h"
 
 typedef struct {
@@ -35,7 +36,7 @@ static Status choose_parts(const Args *args, const Settings *s, Job *job, Err *e
     if (job->kind != SCENE_IMPACT && args_gives(args, "sim.replicates"))
         return fail(err, STATUS_USAGE,
                     "--replicates perturbs gaps: it needs a design with gaps, neither none nor --rigid");
-    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
+    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);
     return STATUS_OK;
 }
 

@@ -13,32 +13,22 @@
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
-/* What front.csv and nearest.csv have beside the variables: results, as err_NAME and NAME_sd too. */
-static int is_result(const char *name)
+/* Of a table of a run the columns of variables alone, in their order; one that is not there is named later. */
+static void drop_results(Table *t, const DesignSpace *space)
 {
-    static const char *const OTHERS[] = {"id", "replicates", "violation"};
-    const char *of = name + (strncmp(name, "err_", 4) == 0 ? 4 : 0);
-    const size_t length = strlen(of), n = length > 3 && strcmp(of + length - 3, "_sd") == 0 ? length - 3 : length;
-    int found = 0;
-    for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
-        found |= strcmp(name, OTHERS[i]) == 0;
-    for (int k = 0; k < N_MEASURES; k++)
-        found |= strlen(measure(k)->name) == n && strncmp(of, measure(k)->name, n) == 0;
-    return found;
-}
-
-/* The variables alone, in their order. */
-static void drop_results(Table *t)
-{
-    size_t kept = 0, from[1024];
-    for (size_t j = 0; j < t->n_cols && kept < sizeof from / sizeof from[0]; j++)
-        if (!is_result(t->names[j]))
-            from[kept++] = j;
+    size_t kept = 0;
+    char name[TABLE_NAME_MAX];
+    for (int v = 0; v < space->n_var; v++) {
+        design_variable_name(space, v, name);
+        const int from = table_column(t, name);
+        if (from < (int)kept)
+            continue;
+        for (size_t i = 0; i < t->n_rows; i++)
+            t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + (size_t)from];
+        snprintf(t->names[kept++], TABLE_NAME_MAX, "%s", name);
+    }
     for (size_t i = 0; i < t->n_rows; i++)
-        for (size_t j = 0; j < kept; j++)
-            t->values[i * kept + j] = t->values[i * t->n_cols + from[j]];
-    for (size_t j = 0; j < kept; j++)
-        memmove(t->names[j], t->names[from[j]], sizeof *t->names);
+        memmove(t->values + i * kept, t->values + i * t->n_cols, kept * sizeof *t->values);
     t->n_cols = kept;
 }
 
@@ -94,7 +84,7 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
     TRY(there);
     Status status = take_ids(&t, &ids, err);
     if (status == STATUS_OK && ids)
-        drop_results(&t);
+        drop_results(&t, space);
     if (status == STATUS_OK)
         status = design_of_table(d, &t, path, space, err);
     table_free(&t);

@@ -3,8 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/list.h"
-#include "moga/constants.h"
+#include "motion/motion_scale.h"
 #include "settings/settings.h"
 
 void warn_on_stderr(const char *key, const char *text, void *user)
@@ -16,19 +15,16 @@ void warn_on_stderr(const char *key, const char *text, void *user)
 /* Every record counts as often as it is listed. */
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
-    const int is_tower = s->problem.kind == PROBLEM_TOWER;
-    const size_t n = is_tower && list_is_given(s->motion.records) ? list_count(s->motion.records) : 0;
+    const MotionOptions *m = &s->motion;
     char name[OPTION_TEXT_MAX], other[OPTION_TEXT_MAX], text[OPTION_TEXT_MAX + 80];
-    for (size_t i = 0; i < n; i++) {
-        int is_twin = list_item(s->motion.records, i, name, sizeof name) && strcmp(name, s->motion.record) == 0;
-        for (size_t j = 0; j < i && !is_twin; j++)
-            is_twin = list_item(s->motion.records, j, other, sizeof other) && strcmp(name, other) == 0;
-        if (is_twin) {
-            snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", name);
-            warn("motion.records", text, user);
-            return;
-        }
-    }
+    for (size_t i = 1; s->problem.kind == PROBLEM_TOWER && i < motion_n_records(m); i++)
+        for (size_t j = 0; j < i; j++)
+            if (motion_record(m, i, name, NULL) == STATUS_OK && motion_record(m, j, other, NULL) == STATUS_OK &&
+                strcmp(name, other) == 0) {
+                snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", name);
+                warn("motion.records", text, user);
+                return;
+            }
 }
 
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user)

@@ -127,12 +127,6 @@ const Column *schema_extra(const Schema *schema, size_t k)
     return &schema->column[schema->n_var + schema->n_obj + k];
 }
 
-void schema_limited(const Schema *schema, const double extra[], double values[])
-{
-    for (size_t i = 0; i < schema->n_limited; i++)
-        values[i] = extra[schema->limited[i]];
-}
-
 size_t schema_find_objective(const Schema *schema, const char *name)
 {
     size_t k = 0;

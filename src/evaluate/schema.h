@@ -41,9 +41,6 @@ const Column *schema_variable(const Schema *schema, size_t j);
 const Column *schema_objective(const Schema *schema, size_t k);
 const Column *schema_extra(const Schema *schema, size_t k);
 
-/* Of the further results (n_extra) of a design those that are limited: values (n_limited). */
-void schema_limited(const Schema *schema, const double extra[], double values[]);
-
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);
 

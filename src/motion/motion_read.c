@@ -95,27 +95,11 @@ static int is_acceleration(const Channel *c)
 
 enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
 
-/* Do names that are shortened to so many bytes still differ where they did? */
-static int tells_apart(const Record *r, size_t room)
-{
-    char a[CHANNEL_NAME_MAX + 1], b[CHANNEL_NAME_MAX + 1];
-    for (size_t i = 0; i < r->n_channels; i++)
-        for (size_t k = 0; k < i; k++) {
-            name_shorten(a, room, r->channel[i].name);
-            name_shorten(b, room, r->channel[k].name);
-            if (strcmp(a, b) == 0 && strcmp(r->channel[i].name, r->channel[k].name) != 0)
-                return 0;
-        }
-    return 1;
-}
-
-/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message, as far as they stay apart. */
+/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message. */
 static void list_channels(const Record *r, char list[LIST_MAX])
 {
     const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
-    int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 14 ? (int)each - 8 : 6;
-    while (shown < CHANNEL_NAME_MAX && !tells_apart(r, (size_t)shown))
-        shown++;
+    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 24 ? (int)each - 8 : 16;
     size_t used = 0;
     list[0] = 0;
     for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
@@ -476,18 +460,6 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
     return status;
 }
 
-/* Files of one name in several folders. */
-static void tell_folders_apart(Record *r)
-{
-    int twin[CHANNELS_MAX] = {0};
-    for (size_t i = 0; i < r->n_channels; i++)
-        for (size_t k = 0; k < r->n_channels; k++)
-            twin[i] |= k != i && strcmp(r->channel[i].name, r->channel[k].name) == 0;
-    for (size_t i = 0; i < r->n_channels; i++)
-        if (twin[i])
-            memcpy(r->channel[i].name, r->channel[i].full, sizeof r->channel[i].name);
-}
-
 static Status read_archive(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
                            Err *err)
 {
@@ -495,7 +467,6 @@ static Status read_archive(Record *r, const char *path, const char *bytes, size_
     if (deep == ARCHIVES_DEEP)
         return fail(err, STATUS_BAD_DATA, "%s: an archive in an archive in an archive", path);
     TRY(archive_each(path, bytes, n, take_member, &members, err));
-    tell_folders_apart(r);
     return r->n_channels > 0 ? STATUS_OK
                              : fail(err, STATUS_BAD_DATA, "%s: no member of this archive is a record: %.300s", path,
                                     members.first.text[0] ? members.first.text : "it is empty");

@@ -8,6 +8,7 @@
 
 #include "base/filter.h"
 #include "base/keyed.h"
+#include "base/list.h"
 #include "base/units.h"
 #include "motion/builtin.h"
 #include "motion/motion_read.h"
@@ -311,6 +312,20 @@ static Status load(Motion *m, const char *source, const MotionHow *how, Err *err
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
 {
     return load(m, source, &(MotionHow){.unit = unit}, err);
+}
+
+size_t motion_n_records(const MotionOptions *o)
+{
+    return 1 + (list_is_given(o->records) ? list_count(o->records) : 0);
+}
+
+Status motion_record(const MotionOptions *o, size_t i, char path[OPTION_TEXT_MAX], Err *err)
+{
+    if (i == 0)
+        memcpy(path, o->record, OPTION_TEXT_MAX);
+    else if (!list_item(o->records, i - 1, path, OPTION_TEXT_MAX))
+        return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i);
+    return STATUS_OK;
 }
 
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "motion/motion_scale.h"
 #include "settings/options.h"
 
 /* The chosen design simulated with the run's own settings, its records where they are now. */
@@ -21,7 +22,7 @@ Report report_brief(const Run *run)
     const int is_tower = s->problem.kind == PROBLEM_TOWER;
     return (Report){.run = run,
                     .has_detail = is_tower,
-                    .is_robust = is_tower && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0)};
+                    .is_robust = is_tower && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1)};
 }
 
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)

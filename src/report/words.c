@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/list.h"
+#include "motion/motion_scale.h"
 #include "settings/options.h"
 
 /* A measure without a line here is shown by its name in its own unit. */
@@ -58,7 +58,7 @@ Words words_of_objective(const Schema *schema, size_t k)
 void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX])
 {
     static const char *const RULES[] = {ROBUST_LIST(CHOICE_WORD)};
-    const size_t n = 1 + (list_is_given(s->motion.records) ? list_count(s->motion.records) : 0);
+    const size_t n = motion_n_records(&s->motion);
     const long each = s->sim.replicates;
     char rule[40], spread[40] = "";
     if (s->sim.quantile > 0)

@@ -117,31 +117,17 @@ static int is_period(double per_storey)
     return per_storey >= PERIOD_PER_STOREY_MIN_S && per_storey <= PERIOD_PER_STOREY_MAX_S;
 }
 
-/* Which unit would explain it? A period goes with the root of mass over stiffness. */
-static const char *unit_guess(double per_storey, int light)
-{
-    if (is_period(per_storey))
-        return light ? "; are stiffness and mass in kN/m and t? They are read as N/m and kg" : "";
-    if (is_period(per_storey / sqrt(1000)))
-        return "; is the stiffness in kN/m? It is read as N/m";
-    if (is_period(per_storey * sqrt(1000)))
-        return "; is the mass in t? It is read as kg";
-    return "";
-}
-
 static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
-    const int light = s->floor_mass_min_kg < FLOOR_MASS_MIN_KG;
-    const char *guess = unit_guess(per_storey, light);
     if (s->note[0])
         say(w, "building.model", "skipped:%s", s->note);
     if (!is_period(per_storey))
-        say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g%s",
-            s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S, guess);
-    if (light)
-        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g%s", s->lightest,
-            s->floor_mass_min_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG, guess);
+        say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g",
+            s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S);
+    if (s->floor_mass_min_kg < FLOOR_MASS_MIN_KG)
+        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->lightest,
+            s->floor_mass_min_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
     if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
         say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->heaviest,
             s->floor_mass_max_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);

@@ -198,7 +198,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
         return fail(err, STATUS_MISSING, "%s: is no run of the tower: nothing to change", run->folder);
     o->used = o->settings;
     o->used.search.threads = 1;
-    o->is_single = o->used.sim.replicates == 1 && strcmp(o->used.motion.records, "none") == 0;
+    o->is_single = o->used.sim.replicates == 1 && motion_n_records(&o->used.motion) == 1;
     o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution};
     TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
     TRY(open_scene(o, &o->own, err));

@@ -34,110 +34,68 @@ static const Part PARTS[][8] = {
     [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERR},
 };
 
-static void put_names(FILE *f, const char *begin, size_t n, const Column columns[], const char *end)
-{
-    for (size_t c = 0; c < n; c++)
-        fprintf(f, ",%s%s%s", begin, columns[c].name, end);
-}
+/* Numbers of a design, each behind a comma. */
+typedef struct {
+    size_t n;
+    const Column *column;    /* (n) */
+    const double *value;     /* (n) NULL: not known */
+    const char *begin, *end; /* of their names; NULL: nothing */
+    const size_t *of;        /* (n) these columns and values; NULL: in their order */
+} Numbers;
 
-/* Of a tower alone: errors of others are not known. */
-static size_t n_errors(const Schema *s, Part part)
+/* f: its objectives as means over repeats. Errors are known of a tower alone. */
+static Numbers numbers_of(const Schema *s, const Evaluation *e, const double f[], Part part)
 {
-    return s->order.n_obj == 0 ? 0 : part == PART_ERR ? s->n_obj : s->n_extra;
-}
-
-static void put_errors(FILE *f, const Schema *s, const Evaluation *e, Part part)
-{
-    double unknown[N_MEASURES];
-    for (size_t k = 0; k < N_MEASURES; k++)
-        unknown[k] = NAN;
-    print_cells(f, n_errors(s, part), !e->err ? unknown : part == PART_ERR ? e->err : e->err + s->n_obj);
+    const Column *objectives = schema_objective(s, 0), *others = s->column + s->n_var + s->n_obj;
+    const int is_tower = s->order.n_obj > 0;
+    switch (part) {
+    case PART_X:
+        return (Numbers){s->n_var, s->column, e->x, .begin = ""};
+    case PART_F:
+        return (Numbers){s->n_obj, objectives, e->f, .begin = ""};
+    case PART_MEANS:
+        return (Numbers){s->n_obj, objectives, f, .begin = ""};
+    case PART_LIMITED:
+        return (Numbers){s->n_limited, others, e->extra, .of = s->limited};
+    case PART_EXTRA:
+        return (Numbers){s->n_extra, others, e->extra, .begin = ""};
+    case PART_SD:
+        return (Numbers){s->has_spread ? s->n_obj : 0, objectives, e->sd, .end = "_sd"};
+    case PART_ERR:
+        return (Numbers){is_tower ? s->n_obj : 0, objectives, e->err, .begin = "err_"};
+    case PART_ERR_EXTRA:
+        return (Numbers){is_tower ? s->n_extra : 0, others, e->err ? e->err + s->n_obj : NULL, .begin = "err_"};
+    default:
+        return (Numbers){0};
+    }
 }
 
 static void put_heads(FILE *f, const Schema *s, Part part)
 {
-    switch (part) {
-    case PART_ID:
-        fputs("id", f);
-        break;
-    case PART_ORIGIN:
-        fputs(",generation,kind,outcome,reason", f);
-        break;
-    case PART_VIOLATION:
-        fputs(",violation", f);
-        break;
-    case PART_X:
-        put_names(f, "", s->n_var, s->column, "");
-        break;
-    case PART_F:
-    case PART_MEANS:
-        put_names(f, "", s->n_obj, schema_objective(s, 0), "");
-        break;
-    case PART_LIMITED:
-        for (size_t k = 0; k < s->n_limited; k++)
-            put_names(f, "", 1, schema_extra(s, s->limited[k]), "");
-        break;
-    case PART_EXTRA:
-        put_names(f, "", s->n_extra, schema_extra(s, 0), "");
-        break;
-    case PART_SD:
-        put_names(f, "", s->has_spread ? s->n_obj : 0, schema_objective(s, 0), "_sd");
-        fputs(s->has_spread ? ",replicates" : "", f);
-        break;
-    case PART_ERR:
-        put_names(f, "err_", n_errors(s, part), schema_objective(s, 0), "");
-        break;
-    case PART_ERR_EXTRA:
-        put_names(f, "err_", n_errors(s, part), schema_extra(s, 0), "");
-        break;
-    case PART_END:
-        break;
-    }
+    static const char *const WORDS[] = {
+        [PART_ID] = "id", [PART_ORIGIN] = ",generation,kind,outcome,reason", [PART_VIOLATION] = ",violation"};
+    const Numbers n = numbers_of(s, &(Evaluation){0}, NULL, part);
+    fputs(part <= PART_VIOLATION ? WORDS[part] : "", f);
+    for (size_t i = 0; i < n.n; i++)
+        fprintf(f, ",%s%s%s", n.begin ? n.begin : "", n.column[n.of ? n.of[i] : i].name, n.end ? n.end : "");
+    fputs(part == PART_SD && s->has_spread ? ",replicates" : "", f);
 }
 
 static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 {
-    const Schema *s = &run->schema;
+    const double none = NAN;
     const Evaluation *e = &run->table.row[row];
-    double values[N_MEASURES];
-    switch (part) {
-    case PART_ID:
+    const Numbers n = numbers_of(&run->schema, e, run_f(run, row), part);
+    if (part == PART_ID)
         fprintf(f, "%ld", e->id);
-        break;
-    case PART_ORIGIN:
+    if (part == PART_ORIGIN)
         fprintf(f, ",%ld,%s,%s,%s", e->generation, kind_word(e->kind), outcome_word(e->outcome), e->reason);
-        break;
-    case PART_VIOLATION:
+    if (part == PART_VIOLATION)
         print_cells(f, 1, &e->violation);
-        break;
-    case PART_X:
-        print_cells(f, s->n_var, e->x);
-        break;
-    case PART_F:
-        print_cells(f, s->n_obj, e->f);
-        break;
-    case PART_MEANS:
-        print_cells(f, s->n_obj, run_f(run, row));
-        break;
-    case PART_LIMITED:
-        schema_limited(s, e->extra, values);
-        print_cells(f, s->n_limited, values);
-        break;
-    case PART_EXTRA:
-        print_cells(f, s->n_extra, e->extra);
-        break;
-    case PART_SD:
-        print_cells(f, s->has_spread ? s->n_obj : 0, e->sd);
-        if (s->has_spread)
-            print_cells(f, 1, &(double){e->replicates > 0 ? (double)e->replicates : (double)NAN});
-        break;
-    case PART_ERR:
-    case PART_ERR_EXTRA:
-        put_errors(f, s, e, part);
-        break;
-    case PART_END:
-        break;
-    }
+    for (size_t i = 0; i < n.n; i++)
+        print_cells(f, 1, n.value ? &n.value[n.of ? n.of[i] : i] : &none);
+    if (part == PART_SD && n.n > 0)
+        print_cells(f, 1, e->replicates > 0 ? &(double){(double)e->replicates} : &none);
 }
 
 static void put_list(FILE *f, const char *key, size_t n, const double values[])

@@ -105,21 +105,25 @@ uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash)
     return (so_far ^ file_hash) * HASH_PRIME;
 }
 
-uint64_t provenance_hash(const char *provenance, const char *input)
+/* Its word in that part; empty: none. */
+static void word_of(const char *provenance, const char *part, const char *key, char word[32])
 {
     json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
-    const char *text = json_string_value(json_object_get(json_object_get(all, "inputs"), input));
-    const uint64_t hash = text ? strtoull(text, NULL, 16) : 0;
+    const char *text = json_string_value(json_object_get(json_object_get(all, part), key));
+    snprintf(word, 32, "%s", text ? text : "");
     json_decref(all);
-    return hash;
+}
+
+uint64_t provenance_hash(const char *provenance, const char *input)
+{
+    char word[32];
+    word_of(provenance, "inputs", input, word);
+    return strtoull(word, NULL, 16);
 }
 
 void provenance_blas(const char *provenance, char name[32])
 {
-    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
-    const char *text = json_string_value(json_object_get(json_object_get(all, "machine"), "blas"));
-    snprintf(name, 32, "%s", text ? text : "");
-    json_decref(all);
+    word_of(provenance, "machine", "blas", name);
 }
 
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)

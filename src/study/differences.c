@@ -15,19 +15,7 @@ typedef struct {
     char first[sizeof((Err *)0)->text];   /* of the others, else of the limits */
 } Differences;
 
-enum { SHOWN = 120, BEFORE = 40 }; /* bytes of a long value, and of them before where two differ */
-
-/* The part of a value around that byte. */
-static void show_part(char out[SHOWN + 8], const char *value, size_t at)
-{
-    const size_t length = strlen(value);
-    size_t from = length <= SHOWN || at < BEFORE ? 0 : at - BEFORE;
-    while (from > 0 && ((unsigned char)value[from] & 0xc0) == 0x80)
-        from--;
-    const int n = visible_cut(value + from, SHOWN);
-    snprintf(out, SHOWN + 8, "%s%.*s%s", from > 0 ? "..." : "", n, value + from,
-             from + (size_t)n < length ? "..." : "");
-}
+enum { SHOWN = 120 }; /* bytes of a long value in the message; the lines have all of it */
 
 /* A limit of 0, or a word, is none. That of hours is of one session, and takes nothing from a run. */
 static int is_lower(const char *key, const char *is, const char *was)
@@ -38,14 +26,9 @@ static int is_lower(const char *key, const char *is, const char *was)
 
 static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
 {
-    char before[SHOWN + 8], now[SHOWN + 8];
-    size_t at = 0;
-    while (was[at] && was[at] == is[at])
-        at++;
-    show_part(before, was, at);
-    show_part(now, is, at);
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
-        snprintf(d->first, sizeof d->first, "%s is %s there, now %s", key, before, now);
+        snprintf(d->first, sizeof d->first, "%s is %.*s there, now %.*s", key, visible_cut(was, SHOWN), was,
+                 visible_cut(is, SHOWN), is);
     d->n_limits += is_limit;
     d->n_lowered += is_limit && is_lower(key, is, was);
     d->n_others += !is_limit;

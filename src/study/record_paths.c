@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/list.h"
 #include "motion/builtin.h"
 #include "motion/motion_scale.h"
 #include "settings/options.h"
@@ -20,12 +19,11 @@ static Status check_is_there(const char *path, const char *key, Err *err)
 
 static Status check_all_there(const Settings *s, Err *err)
 {
-    char item[OPTION_TEXT_MAX];
-    const char *list = s->motion.records;
-    TRY(check_is_there(s->motion.record, "record=PATH", err));
-    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++)
-        if (list_item(list, i, item, sizeof item))
-            TRY(check_is_there(item, "records=PATH,... (all of them, in their order)", err));
+    char path[OPTION_TEXT_MAX];
+    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
+        TRY(motion_record(&s->motion, i, path, err));
+        TRY(check_is_there(path, i == 0 ? "record=PATH" : "records=PATH,... (all of them, in their order)", err));
+    }
     return STATUS_OK;
 }
 
@@ -42,15 +40,13 @@ static Status hash_record(const MotionOptions *s, const char *path, uint64_t *ha
 
 static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, Err *err)
 {
-    char item[OPTION_TEXT_MAX];
-    const char *list = s->motion.records;
+    char path[OPTION_TEXT_MAX];
     uint64_t hash;
-    TRY(hash_record(&s->motion, s->motion.record, record, err));
-    *records = provenance_add_hash(0, *record);
-    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
-        if (!list_item(list, i, item, sizeof item))
-            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
-        TRY(hash_record(&s->motion, item, &hash, err));
+    *record = *records = 0;
+    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
+        TRY(motion_record(&s->motion, i, path, err));
+        TRY(hash_record(&s->motion, path, &hash, err));
+        *record = i == 0 ? hash : *record;
         *records = provenance_add_hash(*records, hash);
     }
     return STATUS_OK;

@@ -94,17 +94,12 @@ Status record_append(Record *r, const Record *from, const char *path, const char
     for (size_t k = 0; k < from->n_channels; k++) {
         Channel *c = NULL;
         char own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
-        const char *slash = strrchr(member, '/');
         TRY(record_channel(r, &l, &c, err));
         *c = from->channel[k];
         c->first += offset;
         name_shorten(own, sizeof own - 1, c->name);
-        for (int with_folder = 1; with_folder >= 0; with_folder--) {
-            name_shorten(of, sizeof of - 4 - strlen(own), with_folder || !slash ? member : slash + 1);
-            channel_named(c, "%s%s%s", own, own[0] ? ", " : "", of);
-            if (with_folder)
-                memcpy(c->full, c->name, sizeof c->full);
-        }
+        name_shorten(of, sizeof of - 4 - strlen(own), member);
+        channel_named(c, "%s%s%s", own, own[0] ? ", " : "", of);
     }
     return STATUS_OK;
 }

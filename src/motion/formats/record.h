@@ -20,7 +20,6 @@ typedef struct {
 
 typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
-    char full[CHANNEL_NAME_MAX]; /* in an archive: the name with the folder of its file; else empty */
     MotionUnit unit;             /* UNIT_FROM_FILE: none that is known */
     char stated[UNIT_SHOWN];     /* a unit that is not known; else empty */
     int counts;                  /* numbers of a recorder: motion.unit must say what they are */
@@ -101,8 +100,8 @@ __attribute__((format(printf, 2, 3))) void channel_named(Channel *c, const char 
 /* The name in `room` bytes and a NUL: what is too long loses its middle, for beginning and end tell names apart. */
 void name_shorten(char *out, size_t room, const char *name);
 
-/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names, without folders in name and with
- * them in full, the member shortened to fit. */
+/* Channels and rows of `from` behind those of r; ", MEMBER" with its folders is added to their names, shortened to
+ * fit. */
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
 /* The unit that from..to begins with, as "g/10." or "gal. DCoffset"; one that is not known, up to a comma, a bracket
