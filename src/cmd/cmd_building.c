@@ -7,7 +7,6 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "cmd/warnings.h"
 #include "scene/building_svg.h"
 #include "settings/settings.h"
 #include "store/output.h"

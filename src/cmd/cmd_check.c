@@ -12,7 +12,6 @@
 #include "cmd/designs.h"
 #include "cmd/selftest.h"
 #include "cmd/show.h"
-#include "cmd/warnings.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
 #include "settings/settings.h"

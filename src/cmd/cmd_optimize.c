@@ -10,7 +10,6 @@
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
-#include "cmd/warnings.h"
 #include "report/words.h"
 #include "settings/settings.h"
 #include "store/export.h"

@@ -10,7 +10,6 @@
 #include "cmd/outputs.h"
 #include "cmd/show.h"
 #include "cmd/time_files.h"
-#include "cmd/warnings.h"
 #include "analysis/estimate.h"
 #include "analysis/horizon.h"
 #include "analysis/sensitivity.h"

@@ -11,7 +11,11 @@
 #include "analysis/baselines.h"
 #include "base/json.h"
 #include "evaluate/schema.h"
+#include "scene/design.h"
+#include "scene/summary.h"
 #include "study/front_review.h"
+
+typedef struct Settings Settings;
 
 json_t *figures_row(json_t *table); /* a further one */
 
@@ -73,5 +77,16 @@ void show_verdicts(const Schema *schema, const double natural[], const Baseline 
 
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);
+
+/* ---- what is implausible but no fault ----------------------------------------------------------------------------- */
+
+/* "warning: KEY: TEXT" on standard error; user is not read. */
+void warn_on_stderr(const char *key, const char *text, void *user);
+
+/* Of a tower: a record that counts twice. */
+void warn_of_settings(const Settings *s, WarnFn warn, void *user);
+
+/* Designs of --design: the first gap that does not close. */
+void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user);
 
 #endif
