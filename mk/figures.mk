@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise named pages paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures ladder bench promise named pages paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -60,6 +60,10 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-variables.jpg '#which-variables-matter' 600
 	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
+
+ladder: $(PROGRAM) ## docs/ladder.md: which effects five scenes need
+	@scripts/ladder $(ARGS)
+	@scripts/tables ladder
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)

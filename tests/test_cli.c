@@ -351,8 +351,12 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
         char *copy = strdup(names), *left = copy, *name;
         for (strsep(&left, ","); strcmp(name = strsep(&left, ","), "outcome") != 0;) {
             const json_t *value = json_object_get(o, name);
-            const double cell = strtod(strsep(&line, ","), NULL);
-            assert_true(json_is_boolean(value) ? cell == json_is_true(value) : cell == number(o, name));
+            const char *text = strsep(&line, ",");
+            const double cell = strtod(text, NULL);
+            if (json_is_null(value)) /* what the scene does not have */
+                assert_string_equal(text, "");
+            else
+                assert_true(json_is_boolean(value) ? cell == json_is_true(value) : cell == number(o, name));
         }
         free(copy);
         assert_string_equal(line, "ok");

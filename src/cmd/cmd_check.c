@@ -204,11 +204,12 @@ static void scene_json(Check *c, const CheckedScene *p)
                                   json_numbers(n_periods, f->period_s), "first_mode_mass_share", f->first_mode_mass,
                                   "base_shear_share", f->base_shear));
     json_object_set_new(c->out, "core",
-                        json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "theory",
-                                  core_theory_word(s->core.theory), "mass_kg", f->core_mass_kg, "t_base_m",
-                                  p->design.t_base, "t_top_m", p->design.t_top, "first_mode_hz", f->core_hz,
-                                  "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz,
-                                  "modes_within_motion", f->core_modes_within));
+                        json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "foundation",
+                                  s->core.foundation, "theory", core_theory_word(s->core.theory), "mass_kg",
+                                  f->core_mass_kg, "t_base_m", p->design.t_base, "t_top_m", p->design.t_top,
+                                  "first_mode_hz", f->core_hz, "clamped_hz", f->clamped_hz, "timoshenko_hz",
+                                  f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz, "modes_within_motion",
+                                  f->core_modes_within));
     json_object_set_new(c->out, "motion",
                         json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s}", "record", s->motion.record,
                                   "samples", (json_int_t)p->motion.n, "duration_s", duration(&p->motion),

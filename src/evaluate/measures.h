@@ -19,7 +19,7 @@
 #include "sim/sim.h"
 
 /* What a measure needs beside a simulation; a set of bits. */
-enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2, NEEDS_YIELDING = 4 };
+enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2, NEEDS_YIELDING = 4, NEEDS_GROUND = 8 };
 
 /* id, name, unit, sense (+1: less is better, -1: more is better), needs, value of a SimResult *r, what it is. The first
  * PAPER_OBJECTIVES are those of the paper. */
@@ -59,9 +59,9 @@ enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2, NEEDS_YIELDING = 4
     X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FORCES, r->forces.base_shear_n, "base shear of building and core")     \
     X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER, r->j3_filtered_g,                                            \
       "largest floor acceleration behind a low-pass of sim.filter_hz")                                                 \
-    X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FORCES, r->forces.base_rotation_rad,                         \
+    X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FORCES | NEEDS_GROUND, r->forces.base_rotation_rad,          \
       "rotation of the core's foundation")                                                                             \
-    X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FORCES, r->forces.uplift_ratio,                                            \
+    X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FORCES | NEEDS_GROUND, r->forces.uplift_ratio,                             \
       "overturning moment of the core over the moment at which its foundation begins to lift")                         \
     X(DUCTILITY, "ductility", "-", 1, NEEDS_YIELDING, r->ductility, "largest drift of a storey over its yield drift")  \
     X(PLASTIC_DRIFT, "plastic_drift_ratio", "-", 1, NEEDS_YIELDING, r->plastic_drift_ratio,                            \

@@ -98,9 +98,15 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
     return status;
 }
 
-static Status check_yielding(const Tower *t, const Scenario *w, Err *err)
+/* Is there what is judged? */
+static Status check_scene(const Tower *t, const Scenario *w, Err *err)
 {
-    return !(measures_need(t->judged) & NEEDS_YIELDING) || scene_building(w->scene)->yields
+    const unsigned needs = measures_need(t->judged);
+    if ((needs & NEEDS_GROUND) && strcmp(w->options.core.foundation, "fixed") == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "search.objectives, search.limits: base rotation and uplift are of a core on the ground; set "
+                    "core.foundation");
+    return !(needs & NEEDS_YIELDING) || scene_building(w->scene)->yields
                ? STATUS_OK
                : fail(err, STATUS_BAD_DATA,
                       "search.objectives, search.limits: ductility, plastic and residual drifts and hysteresis are of "
@@ -118,7 +124,7 @@ static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
         const SceneOptions options = settings_scene(s);
         status = scenario_open(w, &options, &s->motion, &r->motion, err);
     }
-    if (status == STATUS_OK && (status = check_yielding(t, w, err)) != STATUS_OK)
+    if (status == STATUS_OK && (status = check_scene(t, w, err)) != STATUS_OK)
         scenario_close(w);
     free(s);
     return status;

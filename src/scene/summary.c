@@ -56,6 +56,9 @@ static Status summarise_core(SceneSummary *s, const CoreOptions *core, const dou
     const int n = s->n_floors;
     TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, n, storey_m, t_base, t_top, &s->timoshenko_hz, err));
     TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, n, storey_m, t_base, t_top, &s->euler_bernoulli_hz, err));
+    CoreOptions clamped = *core;
+    snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
+    TRY(core_beam_first_hz(&clamped, core->theory, n, storey_m, t_base, t_top, &s->clamped_hz, err));
     CoreBeam *beam = malloc(sizeof *beam);
     if (!beam)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);

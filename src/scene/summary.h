@@ -25,6 +25,7 @@ typedef struct {
     double base_shear;       /* [-] share of the weight */
     double core_mass_kg;
     double core_hz, timoshenko_hz, euler_bernoulli_hz; /* the core's first mode by core.theory and by either */
+    double clamped_hz;                                 /* the same on ground that does not give way */
     int core_modes_within;                             /* whose frequency is within the motion's content */
     double content_hz;
 } SceneSummary;
