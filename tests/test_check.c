@@ -96,6 +96,8 @@ TEST(a_sound_building_is_in_order_with_its_figures)
 {
     write_building(1, 1, 0);
     expect_warnings("", "");
+    expect_warnings("core.width_m", "--set core.width_m=14");
+    expect_text("is there room for such a core?", "--set core.width_m=14");
     char *text = output_of("check @/six.ini");
     assert_non_null(strstr(text, "everything is in order"));
     free(text);

@@ -320,6 +320,24 @@ TEST(the_histories_reach_the_figures_of_the_motion)
     json_decref(o);
 }
 
+TEST(the_picture_of_a_motion_is_whole_or_not_there)
+{
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        free(output_of("spectrum tests/motion/one.esm --svg @/motion.svg"));
+        char *svg = read_in_place("motion.svg");
+        assert_non_null(strstr(svg, "tests/motion/one.esm, HNE: 0.126 g"));
+        assert_non_null(strstr(svg, "</svg>"));
+        free(svg);
+    }
+    assert_int_equal(setenv("IMTET_PATH", getenv("PATH"), 1), 0);
+    setenv("PATH", "/nowhere", 1);
+    expect(66, "gnuplot, which draws it, cannot be started; install it", "spectrum builtin:kobe-like --svg @/none.svg");
+    setenv("PATH", getenv("IMTET_PATH"), 1);
+    char *path = in_place("none.svg");
+    assert_int_equal(access(path, F_OK), -1);
+    free(path);
+}
+
 /* A short stretch of shaking: enough for some hundred impacts, short enough for a test. */
 #define SHORT " --set motion.stretch=1 --set sim.duration_s=8 "
 
@@ -383,7 +401,7 @@ TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
 TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
 {
     static const char *const FOLDERS[] = {"held", "records", "tower"};
-    static const char *const OPTIONS[] = {"--csv", "--history"};
+    static const char *const OPTIONS[] = {"--csv", "--svg", "--history"};
     for (size_t i = 0; i < sizeof FOLDERS / sizeof FOLDERS[0]; i++) {
         char *folder = in_place(FOLDERS[i]);
         assert_int_equal(mkdir(folder, 0777), 0);

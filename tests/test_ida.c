@@ -131,19 +131,27 @@ TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
     free(three);
 }
 
-TEST(the_table_shows_the_three_scenes)
+TEST(the_table_and_the_picture_show_the_three_scenes)
 {
     char *table = output_of(RANGE);
     static const char *const WORDS[] = {"with core, 2 records: median", "rigidly connected, 2 records", "no core, 2"};
     for (int i = 0; i < 3; i++)
         assert_non_null(strstr(table, WORDS[i]));
     free(table);
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        free(output_of(RANGE "--svg @/ida.svg"));
+        char *svg = read_in_place("ida.svg");
+        assert_non_null(strstr(svg, "rigidly connected: median, 16 and 84 %"));
+        assert_non_null(strstr(svg, "</svg>"));
+        free(svg);
+    }
 }
 
 TEST(a_range_does_not_go_with_another_scaling)
 {
     expect(2, "motion.sa_g does not go with it", RANGE "--set motion.sa_g=0.5");
     expect(2, "a range is FROM:STEP:TO", "evaluate @/run --design knee --pga 0.1:0.1");
+    expect(2, "--svg draws an incremental dynamic analysis", "evaluate @/run --design knee --svg @/no.svg");
     expect(65, "motion.pga_g", "evaluate @/run --design knee --pga 0.3 --set motion.factor=2");
 }
 

@@ -401,6 +401,16 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
     }
     table_free(&t);
     free(path);
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        snprintf(arguments, sizeof arguments,
+                 "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL);
+        free(output_of(arguments));
+        char *svg = read_in_place("all.svg");
+        static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
+        for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
+            assert_non_null(strstr(svg, WORDS[i]));
+        free(svg);
+    }
     expect(2, "--history is of one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
 }
 

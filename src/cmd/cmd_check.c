@@ -14,6 +14,7 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
+#include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/tables.h"
 #include "evaluate/adapter.h"
@@ -164,6 +165,39 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     return 1;
 }
 
+/* Width of a plane frame [m], else the height of the building, whose plan is not known. */
+static double plan_width(const CheckedScene *p, const char **what)
+{
+    Frame f = {0};
+    double least = INFINITY, most = -INFINITY;
+    *what = "width";
+    if (frame_is(p->s->building.model) && frame_read(&f, &p->s->building, &(Err){0}) == STATUS_OK)
+        for (int i = 0; i < f.n[FRAME_NODES]; i++) {
+            least = fmin(least, f.node[i].x);
+            most = fmax(most, f.node[i].x);
+        }
+    frame_free(&f);
+    if (most > least)
+        return most - least;
+    *what = "height (its plan is not known)";
+    return p->summary.height_m;
+}
+
+/* Share of the plan's width that is asked about. */
+static const double PLAN_SHARE_MAX = 0.4;
+
+static void ask_about_plan(Check *c, const CheckedScene *p)
+{
+    const char *what;
+    const double side = p->design.side > 0 ? p->design.side : p->s->core.width_m, width = plan_width(p, &what);
+    char text[160];
+    if (p->s->core.section == CORE_EFFECTIVE || !(side > PLAN_SHARE_MAX * width))
+        return;
+    snprintf(text, sizeof text, "%.4g m is %.0f %% of the building's %s of %.4g m: is there room for such a core?",
+             side, 100 * side / width, what, width);
+    warn("core.width_m", text, c);
+}
+
 static int summarise(Check *c, CheckedScene *p)
 {
     Err e = {0};
@@ -176,6 +210,7 @@ static int summarise(Check *c, CheckedScene *p)
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
+    ask_about_plan(c, p);
     if (!note(c, condensation_warnings(&p->building, &p->s->building, warn, c, &e), "building.model", &e))
         return 0;
     if (p->motion.warning[0])

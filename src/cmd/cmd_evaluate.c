@@ -14,6 +14,7 @@
 #include "cmd/full_model.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
+#include "report/gnuplot.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
 
@@ -84,6 +85,84 @@ static json_t *ida_json(const Evaluations *e)
         json_object_set_new(o, EVALUATION_CASES[c].key, one);
     }
     return o;
+}
+
+typedef struct {
+    const Evaluations *e;
+    const MeasureOrder *order;
+} Picture;
+
+/* Intensity and objectives, of record r (fractile < 0) or of a fractile of a case. */
+static void write_block(FILE *script, const Picture *p, size_t r, int which, int fractile)
+{
+    const Evaluations *e = p->e;
+    for (size_t l = 0; l < e->n_levels; l++) {
+        fprintf(script, "%.6g ", e->level[l]);
+        for (int k = 0; k < n_shown(p->order); k++)
+            gnuplot_number(script,
+                           fractile < 0
+                               ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
+                               : ida_fractile(e, l, (EvaluatedCase)which, p->order->of[k], IDA_FRACTILE[fractile]));
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+/* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. */
+static void write_blocks(FILE *script, const Picture *p)
+{
+    for (size_t r = 0; r < p->e->n_records; r++)
+        if (p->e->record[r].readable == STATUS_OK) {
+            fprintf(script, "$R%zu << EOD\n", r);
+            write_block(script, p, r, 0, -1);
+        }
+    for (int c = 0; c < N_EVALUATED; c++)
+        for (int i = 0; i < IDA_FRACTILES; i++) {
+            fprintf(script, "$F%d%d << EOD\n", c, i);
+            write_block(script, p, 0, c, i);
+        }
+}
+
+static void write_panel(FILE *script, const Picture *p, int k)
+{
+    static const char *const COLOURS[N_EVALUATED] = {"#0072b2", "#8a6d00", "#d55e00"};
+    const Evaluations *e = p->e;
+    const Measure *of = measure(p->order->of[k]);
+    fprintf(script, "set xlabel '%s [%s]'\nset %s\nplot ", of->what, of->unit, k == 0 ? "key" : "key off");
+    for (size_t r = 0; r < e->n_records; r++)
+        if (e->record[r].readable == STATUS_OK)
+            fprintf(script, "$R%zu using %d:1 with lines lc '#b8c8d8' notitle, ", r, k + 2);
+    for (int c = 0; c < N_EVALUATED; c++)
+        for (int i = 0; i < IDA_FRACTILES; i++) {
+            fprintf(script, "$F%d%d using %d:1 with lines lc '%s' %s ", c, i, k + 2, COLOURS[c],
+                    i == 1 ? "lw 2.5" : "lw 1.2 dt (6,4)");
+            if (i == 1)
+                fprintf(script, "title '%s: median, 16 and 84 %%'", EVALUATION_CASES[c].word);
+            else
+                fputs("notitle", script);
+            fputs(c + 1 < N_EVALUATED || i + 1 < IDA_FRACTILES ? ", " : "\n", script);
+        }
+}
+
+static void write_script(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    write_blocks(script, p);
+    fprintf(script,
+            "set terminal svg size 1300,520 font 'sans,13' noenhanced background '#ffffff'\n"
+            "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:*]\nset yrange [0:*]\n"
+            "set ylabel 'peak ground acceleration [g]'\n"
+            "set multiplot layout 1,%d margins 0.06,0.98,0.13,0.82 spacing 0.07,0\n"
+            "set key at screen 0.5,0.98 center top horizontal\n",
+            n_shown(p->order));
+    for (int k = 0; k < n_shown(p->order); k++)
+        write_panel(script, p, k);
+    fputs("unset multiplot\n", script);
+}
+
+static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const char *path, Err *err)
+{
+    return gnuplot_draw(path, write_script, &(Picture){e, order}, err);
 }
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
@@ -249,9 +328,11 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
 {
     if (args_has(args, "--csv"))
         TRY(write_csv(e, args_value(args, "--csv"), err));
+    if (args_has(args, "--svg"))
+        TRY(ida_draw(e, &c->schema->order, args_value(args, "--svg"), err));
     if (args_has(args, "--json"))
         return show_as_json(args, c, e, err);
-    if (!args_has(args, "--csv"))
+    if (!args_has(args, "--csv") && !args_has(args, "--svg"))
         print_all(args, c, e);
     return STATUS_OK;
 }
@@ -286,6 +367,8 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     static const char *const OTHERS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
     const char *pga = args_value(args, "--pga");
     e->n_levels = 1;
+    if (args_has(args, "--svg") && !(pga && strchr(pga, ':')))
+        return fail(err, STATUS_USAGE, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO");
     if (!pga)
         return STATUS_OK;
     if (strchr(pga, ':')) {
@@ -426,6 +509,8 @@ static const ArgOption OPTIONS[] = {
      "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"},
     OPTION_JSON,
     {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
+    {"--svg", "FILE", NULL, 0,
+     "of --pga FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %"},
     {"--full-model", NULL, NULL, 0, "on all degrees of freedom of the building's frame, beside the reduced model"},
     OPTION_END,
 };

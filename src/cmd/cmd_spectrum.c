@@ -1,4 +1,4 @@
-/* Spectra of ground motions: figures, histories and response spectra as text, CSV and JSON. */
+/* Spectra of ground motions: figures, histories and response spectra as text, CSV, JSON and pictures. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +12,7 @@
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
 #include "motion/spectrum.h"
+#include "report/gnuplot.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
@@ -186,6 +187,101 @@ static void print_curves(size_t n, const Curve c[])
     figures_print(table);
 }
 
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+enum { BINS = 4000 }; /* of a history: more samples are drawn as the least and the largest of each bin */
+
+/* Four histories on the left, under each other; on the right the spectra of acceleration and displacement. */
+static const char PANELS[] =
+    "set terminal svg size 1100,900 font 'sans,13' noenhanced background '#ffffff'\n"
+    "set grid lc '#d0d0d0'\nunset key\nset lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
+    "set multiplot\nset size 0.46,0.19\nset xrange [0:END]\nset format x ''\nset ytics nomirror\n"
+    "set origin 0.09,0.74\nset ylabel 'acceleration [g]' offset 0\n"
+    "plot $H using 1:2 with lines lc '#0072b2'\n"
+    "unset label 1\nset origin 0.09,0.52\nset ylabel 'velocity [m/s]'\nplot $H using 1:3 with lines lc '#0072b2'\n"
+    "set origin 0.09,0.30\nset ylabel 'displacement [m]'\nplot $H using 1:4 with lines lc '#0072b2'\n"
+    "set origin 0.09,0.08\nset format x '%g'\nset xlabel 'time [s]'\nset ylabel 'share of Arias (Husid)'\n"
+    "set yrange [0:1]\nplot $H using 1:5 with lines lc '#d55e00'\n"
+    "set autoscale y\nset logscale x\nset xrange [0.02:20]\nset size 0.33,0.41\n"
+    "set origin 0.65,0.52\nset format x ''\nunset xlabel\nset ylabel 'pseudo-acceleration [g], 5 % damping'\n"
+    "set yrange [0:*]\nplot $S using 1:2 with lines lw 2 lc '#0072b2', "
+    "'' using 1:($6 > 0 ? $6 : NaN) with lines dt (6,4) lc '#d55e00'\n"
+    "set origin 0.65,0.08\nset format x '%g'\nset xlabel 'period [s]'\nset ylabel 'displacement [m], 5 % damping'\n"
+    "plot $S using 1:4 with lines lw 2 lc '#0072b2'\nunset multiplot\n";
+
+static void write_sample(FILE *script, const Spectrum *s, size_t i)
+{
+    fprintf(script, "%.7g %.6g %.6g %.6g %.6g\n", (double)i * s->motion.dt_s, s->motion.accel[i] / GRAVITY,
+            s->velocity[i], s->displacement[i], s->husid[i]);
+}
+
+/* Of a long history two samples of each bin, the ones of the least and of the largest acceleration, in their order. */
+static void write_history(FILE *script, const Spectrum *s)
+{
+    const size_t n = s->motion.n, bin = n > 4 * BINS ? n / BINS : 1;
+    for (size_t begin = 0; begin < n; begin += bin) {
+        size_t low = begin, high = begin;
+        for (size_t i = begin; i < begin + bin && i < n; i++) {
+            low = s->motion.accel[i] < s->motion.accel[low] ? i : low;
+            high = s->motion.accel[i] > s->motion.accel[high] ? i : high;
+        }
+        write_sample(script, s, low < high ? low : high);
+        if (low != high)
+            write_sample(script, s, low < high ? high : low);
+    }
+}
+
+typedef struct {
+    const Spectrum *s;
+    size_t n;
+    const Curve *c; /* (n) over the periods */
+} Picture;
+
+/* $S: the curves in the units of the table, 0 where one is not asked for. */
+static void write_spectra(FILE *script, const Picture *p)
+{
+    fprintf(script, "$S << EOD\n");
+    for (int i = 0; i < N_PERIODS; i++)
+        for (size_t k = 0; k < p->n; k++)
+            fprintf(script, "%.6g%c", p->c[k].x ? p->c[k].x[i] / p->c[k].unit : 0, k + 1 < p->n ? ' ' : '\n');
+    fprintf(script, "EOD\n");
+}
+
+static void draw_one(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    const Spectrum *s = p->s;
+    const Motion *m = &s->motion;
+    const MotionFigures *f = &s->figures;
+    char title[512];
+    write_spectra(script, p);
+    fprintf(script, "$H << EOD\n");
+    write_history(script, s);
+    snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
+             m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
+             is_corrected(s) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
+    fprintf(script, "EOD\nEND = %.7g\nset label 1 ", f->duration_s);
+    gnuplot_quote(script, title);
+    fprintf(script, " at screen 0.5,0.965 center noenhanced\n%s", PANELS);
+}
+
+static void draw_all(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    write_spectra(script, p);
+    fprintf(script, "set terminal svg size 1000,600 font 'sans,13' noenhanced background '#ffffff'\n"
+                    "set grid lc '#d0d0d0'\nset logscale x\nset xrange [0.02:20]\nset yrange [0:*]\nset tics nomirror\n"
+                    "set xlabel 'period [s]'\nset ylabel 'pseudo-acceleration [g], 5 %% damping'\n"
+                    "set key outside right top noenhanced\nplot ");
+    for (size_t k = 3; k < p->n; k++) {
+        fprintf(script, "$S using 1:%zu with lines title ", k + 1);
+        gnuplot_quote(script, name_of(&p->s[k - 3]));
+        fputs(", ", script);
+    }
+    fprintf(script, "$S using 1:2 with lines lw 3 lc 'black' title 'mean'%s\n",
+            p->s->code.kind ? ", $S using 1:3 with lines lw 3 dt (6,4) lc '#d55e00' title 'target'" : "");
+}
+
 /* ---- one motion -------------------------------------------------------------------------------------------------- */
 
 /* Figures of the motion; recorded: without base line and filters, where it has such. */
@@ -249,13 +345,15 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
 {
     Curve c[CURVES_MAX], history[N_HISTORIES];
     const char *csv = args_value(args, "--csv"), *times = args_value(args, "--history");
+    const char *svg = args_value(args, "--svg");
     curves_of_one(s, c);
     histories_of(s, history);
     TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
     TRY(times ? write_curves(times, s->motion.n, N_HISTORIES, history, err) : STATUS_OK);
+    TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_json(s, err);
-    if (csv || times)
+    if (csv || times || svg)
         return STATUS_OK;
     json_t *o = describe(s);
     show_motion(stdout, &s->motion, 0);
@@ -289,13 +387,14 @@ static Status print_all_json(size_t n, const Spectrum s[], const Curve c[], Err 
 static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[], Err *err)
 {
     double mean[N_PERIODS];
-    const char *csv = args_value(args, "--csv");
+    const char *csv = args_value(args, "--csv"), *svg = args_value(args, "--svg");
     average(n, s, mean);
     curves_of_all(n, s, mean, c);
     TRY(csv ? write_curves(csv, N_PERIODS, n + 3, c, err) : STATUS_OK);
+    TRY(svg ? gnuplot_draw(svg, draw_all, &(Picture){s, n + 3, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_all_json(n, s, c, err);
-    if (csv)
+    if (csv || svg)
         return STATUS_OK;
     for (size_t k = 0; k < n; k++) {
         printf("%zu  ", k + 1);
@@ -348,6 +447,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     OPTION_CSV,
     {"--history", "FILE", NULL, 0, "acceleration, velocity, displacement and Husid's curve as CSV; -: standard output"},
+    {"--svg", "FILE", NULL, 0, "a picture of all of it, drawn by gnuplot"},
     OPTION_END,
 };
 
