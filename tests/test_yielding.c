@@ -36,7 +36,7 @@ static SimModel one_storey(StoreyLaw law)
     return m;
 }
 
-static const Engine ENGINES[] = {ENGINE_CVODE};
+static const Engine ENGINES[] = {ENGINE_FAST, ENGINE_CVODE};
 enum { N_ENGINES = sizeof ENGINES / sizeof ENGINES[0] };
 
 static SimResult run(Engine engine, const SimModel *model, const Motion *motion, double duration)

@@ -257,7 +257,7 @@ static void vector_width(Trial *t)
         need(core_beam_make(&core, &tower.settings.core, b.n, b.storey_m, tower.x[20], tower.x[21], &err), &err);
         need(model_create(&model, b.n, b.n, &err), &err);
         need(model_set(&model, &options, &b, &core, tower.x, &err), &err);
-        need(fast_create(&work, b.n, b.n, &err), &err);
+        need(fast_create(&work, b.n, b.n, 0, &err), &err);
         const EngineOptions run = {.duration = (double)(tower.motion.n - 1) * tower.motion.dt_s};
         const FastTolerances tolerances = fast_tolerances(t->accuracy);
         for (size_t i = 0; i < sizeof KERNELS / sizeof KERNELS[0]; i++) {

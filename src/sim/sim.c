@@ -176,7 +176,8 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
         status = floor_filter_create(&w->filter, scene->building.n, scene->options.sim.filter_hz, err);
     sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
-        status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n, err);
+        status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n,
+                                            scene->building.yields, err);
     if (status == STATUS_OK)
         *out = w;
     else

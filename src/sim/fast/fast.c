@@ -1,6 +1,5 @@
 #include "sim/fast/fast.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -15,10 +14,10 @@
             *of[i_] = carve(c, length, sizeof(double));                                                                \
     } while (0)
 
-static void layout_state(State *s, Carve *c, size_t modes, size_t floors)
+static void layout_state(State *s, Carve *c, size_t modes, size_t channels)
 {
     CARVE(c, modes, &s->q, &s->v, &s->load, &s->contact_work, &s->ground_work, &s->defect);
-    CARVE(c, floors, &s->w, &s->w_dot, &s->force);
+    CARVE(c, channels, &s->w, &s->w_dot, &s->force);
 }
 
 static void layout_flight(FlightScratch *f, Carve *c, size_t modes, size_t floors)
@@ -44,28 +43,31 @@ static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)
     CARVE(c, floors, &r->u, &r->drift, &r->a, &r->core);
 }
 
-static void layout_level(Level *l, Carve *c, size_t n, size_t modes, size_t floors)
+static void layout_level(Level *l, Carve *c, size_t rows, size_t modes, size_t channels)
 {
     CARVE(c, FLOW_ROWS * modes, &l->coef);
     CARVE(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
-    l->compliance = carve(c, COMPLIANCES * n * floors, sizeof(double));
-    l->compliance_pair = carve(c, n * n, sizeof(v4));
+    l->compliance = carve(c, COMPLIANCES * rows * channels, sizeof(double));
+    l->compliance_pair = carve(c, rows * rows, sizeof(v4));
 }
 
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
+    const size_t channels = k->may_yield ? 2 * floors : floors, rows = k->may_yield ? channels : n;
     CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
           &k->max_shape_drift);
-    CARVE(c, floors, &k->gap, &k->middle, &k->bubble, &k->peak_u, &k->peak_d, &k->peak_a);
-    layout_state(&k->now, c, modes, floors);
-    layout_state(&k->next, c, modes, floors);
+    CARVE(c, modes, &k->held);
+    CARVE(c, floors, &k->rest, &k->peak_u, &k->peak_d, &k->peak_a);
+    CARVE(c, channels, &k->gap, &k->middle, &k->bubble);
+    layout_state(&k->now, c, modes, channels);
+    layout_state(&k->next, c, modes, channels);
     layout_flight(&k->flight, c, modes, floors);
     layout_contact(&k->contact, c, modes, floors);
     layout_reach(&k->reach, c, modes, floors);
     CARVE(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
           &k->record.most, &k->record.per_most);
-    CARVE(c, floors, &k->record.force);
+    CARVE(c, floors, &k->record.force, &k->record.plastic);
     for (int i = 0; i < HELD_MAX; i++)
         CARVE(c, modes - floors, &k->record.held[i].q, &k->record.held[i].v); /* of the building */
     for (int i = 0; i < 4; i++) {
@@ -76,9 +78,12 @@ static void layout(FastWork *k, Carve *c)
     k->flex = carve(c, n * floors, sizeof(double));
     k->R_abs = carve(c, modes * floors, sizeof(double));
     k->D_abs = carve(c, modes * floors, sizeof(double));
-    k->RT = carve(c, modes * floors, sizeof(double));
+    k->RT = carve(c, modes * channels, sizeof(double));
+    k->E = k->may_yield ? carve(c, modes * channels, sizeof(double)) : k->R;
+    k->newton_g = carve(c, rows * rows, sizeof(m22));
+    k->newton_LU = carve(c, rows * rows, sizeof(m22));
     for (int i = 0; i <= LEVEL_MAX; i++)
-        layout_level(&k->level[i], c, n, modes, floors);
+        layout_level(&k->level[i], c, rows, modes, channels);
 }
 
 static int padded(int n)
@@ -86,7 +91,7 @@ static int padded(int n)
     return (n + PAD - 1) / PAD * PAD;
 }
 
-Status fast_create(FastWork **out, int n_floors, int nb, Err *err)
+Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
 {
     *out = NULL;
     FastWork *k = calloc(1, sizeof *k);
@@ -95,6 +100,7 @@ Status fast_create(FastWork **out, int n_floors, int nb, Err *err)
     k->n = n_floors;
     k->n_pad = padded(n_floors);
     k->m_max = padded(nb) + k->n_pad;
+    k->may_yield = yields;
     Carve count = {0};
     layout(k, &count);
     k->store = carve_store(&count);
@@ -219,13 +225,8 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
                    Err *err)
 {
     FastWork *own = NULL, *work = options->work;
-    if (model->yields) {
-        *result = (SimResult){.outcome = RUN_ENGINE_FAILED, .n_floors = model->n};
-        snprintf(result->reason, sizeof result->reason, "storeys that yield need sim.engine = cvode");
-        return STATUS_OK;
-    }
     if (!work)
-        TRY(fast_create(&own, model->n, model->nb, err));
+        TRY(fast_create(&own, model->n, model->nb, model->yields, err));
     if (!work)
         work = own;
     const FastTolerances tolerances = tolerances_of(options);
@@ -236,10 +237,10 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
     return STATUS_OK;
 }
 
-Status engine_fast_create(void **work, int n_floors, int nb, Err *err)
+Status engine_fast_create(void **work, int n_floors, int nb, int yields, Err *err)
 {
     FastWork *fast;
-    TRY(fast_create(&fast, n_floors, nb, err));
+    TRY(fast_create(&fast, n_floors, nb, yields, err));
     *work = fast;
     return STATUS_OK;
 }

@@ -34,8 +34,8 @@
 
 typedef struct FastWork FastWork;
 
-/* For up to n_floors and nb building modes. */
-Status fast_create(FastWork **out, int n_floors, int nb, Err *err);
+/* For up to n_floors and nb building modes; yields: storeys of a model may. */
+Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
 /* "avx512", "avx2" or "base": the kernel that this processor gets. */

@@ -82,8 +82,12 @@ static int fly_on(FastWork *k, Interval *in, int resolving)
     k->step_start = in->start + k->base * in->at / TICKS;
     for (int level = later(k->flight_level, aligned_level(in)); level < resolving; level++) {
         const uint32_t end = in->at + (TICKS >> level);
-        if (!free_flight(k, level_ready(k, level, 0), ground_at(in, in->at), ground_at(in, end)))
-            continue;
+        if (!free_flight(k, level_ready(k, level, 0), ground_at(in, in->at), ground_at(in, end))) {
+            if (!k->flight.would_yield)
+                continue;
+            k->contact_level = level;
+            return 0;
+        }
         in->at = end;
         k->flight_level = level > 0 ? level - 1 : 0;
         k->contact_level = LEVEL_MAX;
@@ -155,8 +159,11 @@ static int interval(FastWork *k, double start, double a0, double a1)
     while (in.at < TICKS) {
         if ((double)(k->steps + k->flights) > k->tolerances->steps_max)
             return 0;
-        const int resolving = has_core ? resolving_level(k, in.speed_gain) : LEVEL_MAX;
-        if (!(!k->in_contact && fly_on(k, &in, resolving)) && !step_on(k, &in, resolving))
+        const int resolving = later(has_core    ? resolving_level(k, in.speed_gain)
+                                    : k->yields ? 0
+                                                : LEVEL_MAX,
+                                    k->yielding_level);
+        if (!(!k->in_contact && !k->yielding && fly_on(k, &in, resolving)) && !step_on(k, &in, resolving))
             return 0;
         if (k->options->sample && in.at < TICKS && in.at % (TICKS >> k->sample_level) == 0)
             send_now(k, in.start + k->base * in.at / TICKS, ground_at(&in, in.at));
@@ -189,7 +196,7 @@ static Ramp ground(const Motion *motion, long i)
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->oscillatory || k->in_contact || first < k->free_from || end - first < FREE_INTERVALS_MIN)
+    if (!k->oscillatory || k->in_contact || k->yielding || first < k->free_from || end - first < FREE_INTERVALS_MIN)
         return 0;
     const long n = k->free_count < end - first ? k->free_count : end - first;
     for (long i = first; i < first + n; i++) {
@@ -259,6 +266,31 @@ static double calm_of(const FastWork *k, double left)
     return k->tolerances->calms_down && left < k->most_energy ? fmin(k->most_energy / left, 1e3) : 1;
 }
 
+/* About the state of rest under the plastic drifts. */
+static double twice_energy_about_rest(const FastWork *k)
+{
+    vec sum = {0};
+    for (int i = 0; k->yields && i < k->mf; i++) {
+        const vec q = k->now.q[i] - k->held[i] * k->flexibility[i];
+        sum += k->now.v[i] * k->now.v[i] + k->omega[i] * k->omega[i] * q * q;
+    }
+    return k->yields ? lanes_sum(sum) : twice_energy(k, &k->now, 0, k->mf);
+}
+
+/* Can a storey yield once more with so much energy [J] about rest? |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
+static int storeys_may_yield(const FastWork *k, double energy)
+{
+    const double *D = k->E + k->n_pad;
+    for (int j = 0; k->yields && j < k->n; j++) {
+        double soft = 0;
+        for (int i = 0; i < k->model->nb; i++)
+            soft += D[i * k->c_pad + j] * D[i * k->c_pad + j] * scalars_const(k->flexibility)[i];
+        if (sqrt(2 * energy * soft) + scalars_const(k->rest)[j] > scalars_const(k->gap)[k->n_pad + j])
+            return 1;
+    }
+    return 0;
+}
+
 /* Is so little energy left, and to come from sample i of the motion on, that contacts can change no result? Notes how
  * calm it is. */
 static int is_settled(FastWork *k, const Motion *motion, long i)
@@ -266,11 +298,11 @@ static int is_settled(FastWork *k, const Motion *motion, long i)
     const double *input = k->options->tail_input;
     if (!input || k->m_pad == k->nb_pad)
         return 0;
-    const double energy = 0.5 * twice_energy(k, &k->now, 0, k->mf);
+    const double energy = 0.5 * twice_energy_about_rest(k);
     k->most_energy = larger(energy, k->most_energy);
     const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
     k->calm = calm_of(k, left);
-    return !k->in_contact && left <= k->tolerances->tail_tolerance * energy_scale(k) &&
+    return !k->in_contact && !storeys_may_yield(k, left) && left <= k->tolerances->tail_tolerance * energy_scale(k) &&
            left <= PEAK_ENERGY * k->most_energy &&
            (k->tolerances->tail_share == 0 || left <= k->tolerances->tail_share * smallest_share(k));
 }
@@ -291,6 +323,19 @@ static void settle(FastWork *k, double start, Ramp a, double next)
     k->flights++;
 }
 
+/* Steps of `fine`, and the longest that have to be resolved of the others, are no longer than so many to the period of
+ * the building's fastest mode. */
+static int yielding_level(const FastWork *k)
+{
+    double fastest = 0;
+    int level = 0;
+    for (int i = 0; i < k->model->nb; i++)
+        fastest = fmax(fastest, scalars_const(k->omega)[i]);
+    while (level < LEVEL_MAX && ldexp(k->base, -level) * fastest * k->tolerances->steps_per_contact > 2 * M_PI)
+        level++;
+    return level;
+}
+
 static int integrate(FastWork *k, const Motion *motion, double duration)
 {
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
@@ -300,6 +345,7 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     k->contact_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
+    k->yielding_level = k->yields ? yielding_level(k) : 0;
     long look = 0; /* at the next sample from this one on */
     k->settled = duration;
     k->calm = k->crowd = 1;
@@ -346,6 +392,22 @@ static double still_stored(const FastWork *k)
     return stored;
 }
 
+/* Plastic drifts and hysteresis; returns what the storeys have taken from the modes [J]: hysteresis less what the modes
+ * hold of it too much. */
+static double report_storeys(FastWork *k, SimResult *r)
+{
+    double too_much = 0;
+    enter_contact(k);
+    for (int j = 0; j < k->n; j++) {
+        const double z = scalars_const(k->now.w)[k->n_pad + j], p = scalars_const(k->middle)[k->n_pad + j];
+        too_much += 0.5 * k->model->yield_n_m[j] * p * (2 * z + p);
+    }
+    r->hysteresis_j = k->hysteresis;
+    r->kinetic_strain_j -= too_much;
+    model_report_plastic(k->model, scalars_const(k->middle) + k->n_pad, r);
+    return k->hysteresis - too_much;
+}
+
 static void report_energies(FastWork *k, SimResult *r)
 {
     double contact_work = 0, missed = 0;
@@ -360,7 +422,8 @@ static void report_energies(FastWork *k, SimResult *r)
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
-    const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
+    const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
+                                (k->yields ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
@@ -368,6 +431,7 @@ static void report_energies(FastWork *k, SimResult *r)
             r->mode_share_pct[k->model->like[i]] += energy_share(damped[i], r->input_energy_j);
     energy_balance_sum_shares(r);
     r->edcs_pct = energy_share(r->damped_core_j, r->input_energy_j);
+    r->ed_hysteresis_pct = energy_share(r->hysteresis_j, r->input_energy_j);
 }
 
 static void report_peaks(const FastWork *k, SimResult *r)

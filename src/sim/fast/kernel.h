@@ -1,6 +1,9 @@
 /* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set.
  *
- * Shapes   (m_pad) modes: the building's from 0, the kept ones of the core from nb_pad; (n_pad) floors
+ * Shapes   (m_pad) modes: building from 0, the kept ones of the core from nb_pad; (n_pad) floors; (c_pad)
+ *          channels: the gaps of the floors, and from n_pad on the storeys of a building of which some yield; else n_pad
+ * Storeys  w is z, the elastic drift, while p, the plastic one, is as at the start of the step: drift from `middle`;
+ *          its bound `gap` is the yield drift; its force the change of c k p within the step. `held` is the rest.
  * Padding  a padded mode has omega = 1 and no coupling; a padded floor has an unreachable gap and unreachable peaks
  * Threads  one FastWork per thread */
 #ifndef IMTET_SIM_FAST_KERNEL_H
@@ -17,6 +20,7 @@ enum {
     PAD = 8,
     LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
     FLOORS_PAD_MAX = FLOORS_MAX,
+    CHANNELS_MAX = 2 * FLOORS_PAD_MAX,
     HELD_MAX = 128
 };
 
@@ -34,20 +38,20 @@ typedef struct {
     vec *kappa_accel; /* (m_pad) the same for -2 zeta w q' - w^2 q */
     vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
     vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
-    double *compliance;             /* (COMPLIANCES, n, n_pad) of all floors, a row per loaded floor */
-    v4 *compliance_pair; /* (n, n) of floor i to floor j: d (w1_i, w1_i') / d (F, M) of j, its force at the end of
-                            the step and its mean force */
+    double *compliance;             /* (COMPLIANCES, rows, c_pad) of all channels, a row per loaded one */
+    v4 *compliance_pair; /* (rows, rows) of channel i to channel j: d (w1_i, w1_i') / d (F, M) of j, its force at the end
+                            of the step and its mean force */
 } Level;
 
 /* The state at one end of a step. */
 typedef struct {
     vec *q, *v;                      /* (m_pad) modal coordinates and velocities */
-    vec *load;                       /* (m_pad) modal load of the contacts */
+    vec *load;                       /* (m_pad) modal load of the contacts and of plastic drifts */
     vec *contact_work, *ground_work; /* (m_pad) [J] done on each mode since the start */
     vec *defect;                     /* (m_pad) by how much the equation of motion was missed, summed over the steps */
-    vec *w, *w_dot;                  /* (n_pad) [m], [m/s] floor minus core, w from the middle of the gap; current where
+    vec *w, *w_dot;                  /* (c_pad) [m], [m/s] floor minus core, w from the middle of the gap; current where
                                       * state_valid */
-    vec *force;                      /* (n_pad) [N] of the contact on the floor */
+    vec *force;                      /* (c_pad) [N] of the contact on the floor */
     double flexible;                 /* [J] stored in the core modes that are left out */
 } State;
 
@@ -62,6 +66,7 @@ typedef struct {
     vec *a0, *a0_dot, *a1, *a1_dot;             /* accelerations of the floors */
     vec *error_u, *error_core, *error_a;        /* bounds of what the cubics miss */
     vec *reach_a;                               /* largest acceleration by the bounds of the modes */
+    int would_yield;                            /* a storey may, so that there is no flight */
     int by_floor;                               /* are errors and reach those of each floor, or of all at once? */
 } FlightScratch;
 
@@ -94,6 +99,8 @@ typedef struct {
 /* A point inside a step, for a force monitor or a sample: modes (m_pad), floors (n_pad). */
 typedef struct {
     vec *q, *v, *force;
+    vec *plastic;                             /* (n_pad) [m] of the storeys */
+    int in_step;                              /* forces of storeys are those of the step from now to next */
     vec *ground_work, *contact_work, *damped; /* [J] on each mode, of it dissipated */
     vec *batch_q[4], *batch_u[4];             /* of four samples: modes, floors */
     vec *most, *per_most; /* [2 J] energy that a mode has reached at most, rounded up, and its inverse */
@@ -119,26 +126,37 @@ typedef struct FastWork {
     vec *wd_inverse, *decay, *flexibility; /* (m_pad) 1/w_d, 2 zeta w, 1/w^2 */
     vec *max_shape, *max_shape_drift;      /* (m_pad) largest |R| of a mode over the floors, over the storeys */
     double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
-    double *RT;                            /* (n_pad, m_pad) */
-    vec *gap, *middle;                     /* (n_pad) as in SimModel */
-    int has_middle;                        /* some are not 0 */
-    double *flex;                          /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
-    int has_flex;                          /* some are left out */
-    FloorSet floors;                       /* all of them */
-    double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
-    double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
-    int oscillatory;                       /* every mode is below critical damping and has a frequency */
-    double base;                           /* [s] the interval that the levels divide */
-    int sample_level;                      /* samples are as far apart as a step of this level */
+    double *RT;                            /* (c_pad, m_pad) of the channels */
+    vec *gap, *middle;                     /* (c_pad) as in SimModel */
+    int may_yield, yields, rows; /* room for storeys that yield; some do; channels with their padding between */
+    int c_pad, cf;               /* c_pad in vectors of LANES */
+    double *E;                   /* (m_pad, c_pad) of the channels: R where none yields */
+    int has_middle;              /* some are not 0 */
+    double *flex;                /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
+    int has_flex;                /* some are left out */
+    FloorSet floors;             /* all of them */
+    double shortest_at_1;        /* [s] shortest Hertz contact of any floor at 1 m/s */
+    double shortest_bumper;      /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
+    int oscillatory;             /* every mode is below critical damping and has a frequency */
+    double base;                 /* [s] the interval that the levels divide */
+    int sample_level;            /* samples are as far apart as a step of this level */
     Level level[LEVEL_MAX + 1];
 
     /* the motion so far */
     State now, next;
-    vec *bubble;                   /* (n_pad) [N] of the contact forces over the step under way */
-    vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
-    double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
-    int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
-    double force_slope[FLOORS_PAD_MAX], force_bend[FLOORS_PAD_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
+    vec *held;          /* (m_pad) modal load of the plastic drifts at the start of the step */
+    vec *rest;          /* (n_pad) [m] |z| of the storeys at rest under it */
+    int yielding_level; /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
+    FloorSet yielding;  /* storeys at the end of the last step */
+    double work_of[FLOORS_PAD_MAX]; /* [J] int k z d' dt of a storey */
+    double hysteresis;              /* [J] */
+    m22 *newton_g, *newton_LU;      /* (channels, channels) of Active */
+    vec *bubble;                    /* (c_pad) [N] of the contact forces over the step under way */
+    vec *peak_u, *peak_d, *peak_a;  /* (n_pad) */
+    double v0[FLOORS_PAD_MAX];      /* [m/s] of the open contact */
+    int side[FLOORS_PAD_MAX];       /* 0 no contact, +1 or -1 */
+    double force_slope[2 * FLOORS_PAD_MAX],
+        force_bend[2 * FLOORS_PAD_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
     FloorSet in_contact;
     int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
     double speed;      /* [m/s] largest |w'| */
