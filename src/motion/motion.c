@@ -47,5 +47,7 @@ void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX])
 void motion_free(Motion *m)
 {
     free(m->accel);
+    free(m->force);
+    free(m->force_rows);
     memset(m, 0, sizeof *m);
 }

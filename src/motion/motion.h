@@ -4,7 +4,7 @@
  *
  * Life cycle  motion_load or motion_open (motion/motion_scale.h) -> motion_prepare -> ... -> motion_free
  *             (an empty Motion may be freed)
- * Ownership   accel belongs to the Motion
+ * Ownership   accel, force and force_rows belong to the Motion
  * Units       SI; the unit of a file is converted once, here
  * Threads     read-only after motion_prepare */
 #ifndef IMTET_MOTION_MOTION_H
@@ -17,7 +17,11 @@
 #include "motion/options.h"
 
 typedef struct {
-    double *accel; /* [m/s2] (n) */
+    double *accel;      /* [m/s2] (n) */
+    double *force;      /* [N] (n, n_force) on floors 1..n_force, linear between samples too; none after the last */
+    int n_force;        /* 0: none */
+    double *force_rows; /* (n_force_rows, 1 + n_force) as read, time [s] first, until motion_scale has placed them */
+    size_t n_force_rows;
     size_t n;
     double dt_s;
     double scale,

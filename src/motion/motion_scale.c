@@ -11,6 +11,7 @@
 #include "base/list.h"
 #include "base/units.h"
 #include "motion/builtin.h"
+#include "motion/forces.h"
 #include "motion/motion_read.h"
 #include "motion/spectrum.h"
 
@@ -256,10 +257,20 @@ static Status check_scale(const Motion *m, const MotionOptions *o, double peak_g
         m->name, scaling, m->scale, peak_g, m->processed[0] ? " after this: " : "", m->processed, SCALE_MAX);
 }
 
+/* Is the ground at rest? */
+static int is_still(const MotionOptions *o)
+{
+    return strcmp(o->record, "none") == 0;
+}
+
 Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 {
     const double peak_g = motion_peak(m) / GRAVITY;
     CodeSpectrum target;
+    if (is_still(o)) {
+        m->scale = m->stretch = 1;
+        return forces_place(m, err);
+    }
     TRY(target_parse(o->target, &target, err));
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
     const double factor = factor_of(m, o, &target);
@@ -270,7 +281,8 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
         m->accel[i] *= factor;
     m->scale *= factor;
     warn_of_scale(m);
-    return check_scale(m, o, peak_g, err);
+    TRY(check_scale(m, o, peak_g, err));
+    return forces_place(m, err);
 }
 
 int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX])
@@ -328,12 +340,23 @@ Status motion_record(const MotionOptions *o, size_t i, char path[OPTION_TEXT_MAX
     return STATUS_OK;
 }
 
+/* The ground at rest, for forces on the floors alone. */
+static Status stand_still(Motion *m, const MotionOptions *o, Err *err)
+{
+    if (!list_is_given(o->forces))
+        return fail(err, STATUS_BAD_DATA, "motion.record = none: then nothing moves but by motion.forces");
+    *m = (Motion){.accel = calloc(2, sizeof *m->accel), .n = 2, .dt_s = 1, .name = "none", .format = "none"};
+    return m->accel ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for two samples");
+}
+
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
     MotionHow how = {.channel = o->channel, .dt_s = o->dt_s};
     TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
-    TRY(load(m, o->record, &how, err));
-    const Status status = motion_process(m, o, err);
+    TRY(is_still(o) ? stand_still(m, o, err) : load(m, o->record, &how, err));
+    Status status = is_still(o) ? STATUS_OK : motion_process(m, o, err);
+    if (status == STATUS_OK && list_is_given(o->forces))
+        status = forces_read(m, o->forces, err);
     if (status != STATUS_OK)
         motion_free(m);
     return status;

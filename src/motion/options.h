@@ -18,7 +18,7 @@ typedef enum { MOTION_UNIT_LIST(CHOICE_NAME) } MotionUnit;
 typedef enum { MOTION_BASELINE_LIST(CHOICE_NAME) } MotionBaseline;
 
 typedef struct {
-    char record[OPTION_TEXT_MAX];  /* a file or builtin:NAME */
+    char record[OPTION_TEXT_MAX];  /* a file, builtin:NAME, or none: at rest */
     char records[OPTION_TEXT_MAX]; /* further ones, a comma list, or none */
     MotionBaseline baseline;
     double highpass_hz, lowpass_hz; /* 0: none */
@@ -29,6 +29,7 @@ typedef struct {
     char unit[OPTION_TEXT_MAX];    /* from_file or what motion_unit_parse reads */
     char channel[OPTION_TEXT_MAX]; /* name, number or auto */
     double dt_s;                   /* 0: from the file */
+    char forces[OPTION_TEXT_MAX];  /* a CSV file (motion/forces.h) or none */
 } MotionOptions;
 
 #endif

@@ -33,7 +33,7 @@
 
 enum { DESIGN_VARIABLES_MAX = (SIDES + 1) * FLOORS_MAX + 3 };
 
-/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers stiffnesses, has_side widths. */
+/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides. */
 typedef struct {
     int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side;
     int gap_zones, bumper_zones; /* 0: a variable per floor */

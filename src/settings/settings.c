@@ -148,7 +148,8 @@ static const Option OPTIONS[] = {
          "a bumper compressed by more of its thickness bottoms out: the result says so"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
-         "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_BASIC | SETTING_FREE),
+         "ground motion: one of the program, a file, or none: at rest under motion.forces (docs/motions.md)",
+         .flags = SETTING_BASIC | SETTING_FREE),
     PATH_LIST(motion.records, "none",
               "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
               .flags = SETTING_FREE),
@@ -176,6 +177,10 @@ static const Option OPTIONS[] = {
     REAL(motion.dt_s, "s", "0", 0, 100,
          "time step of a file that has neither step nor times; unequal times are resampled to it by straight lines; 0: "
          "as in the file"),
+
+    PATH(motion.forces, "none", NULL,
+         "forces on floors over time, beside the ground motion or with motion.record = none: a CSV with time_s and a "
+         "column floor_01_n, ... per floor, in N (docs/motions.md)"),
 
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),

@@ -24,11 +24,12 @@ typedef struct {
     const LinearSystem *s;
     const LinearRun *run;
     Rows rows;
-    int size, parts_max, stretches_max; /* 2 m + 2, the state and its load */
+    int loads;                          /* the ground, and each floor with a force */
+    int size, parts_max, stretches_max; /* 2 m + 2 loads, the state and its loads, each with its slope */
     double *D;                          /* (m, m) [1/s] */
     double *Y_ddot;                     /* (m, size) y'' of a state */
     double *coordinates;                /* (n_building + n_core, size) modal coordinates, where forces are wanted */
-    double *outputs, *slopes;           /* (rows.n, size); (n_loss + 1, size) derivatives of rates and power */
+    double *outputs, *slopes;           /* (rows.n, size); (n_loss + loads, size) derivatives of rates and powers */
     double *exponential, *whole;        /* (size, size) for a part of h, for all parts of a stretch */
     double h;
     int parts;
@@ -36,7 +37,8 @@ typedef struct {
     double *Z, *Z_next;                    /* (size, stretches) */
     double *Y;                             /* (parts + 1) (rows.n, stretches) */
     double *Q;                             /* (parts + 1) (n_building + n_core, stretches) */
-    double *Y_slope;                       /* (n_loss + 1, stretches) */
+    double *Y_slope;                       /* (n_loss + loads, stretches) */
+    double *load, *load_slope;             /* (loads, BLOCK_STRETCHES) [m/s2], [N] where a stretch begins; per s */
     double *damped, *rate_max, *apart_max; /* (n_loss) [J], [m/s]; (n_apart) [m] */
     double input;                          /* [J] */
     double *work;                          /* (3 size, n or n_loss, size): the largest */
@@ -56,12 +58,13 @@ static void layout(void *linear, Carve *c)
     const size_t m = (size_t)d->s->m, size = (size_t)d->size, out = (size_t)d->rows.n, real = sizeof(double);
     const size_t stretches = (size_t)d->stretches_max, losses = (size_t)d->s->n_loss, n = (size_t)d->s->n;
     const size_t widest = n > losses ? n : losses, work = 3 * size > widest ? 3 * size : widest;
+    const size_t loads = (size_t)d->loads;
     const size_t coordinates = d->run->forces ? (size_t)n_coordinates(d) : 0;
     d->D = carve(c, m * m, real);
     d->Y_ddot = carve(c, m * size, real);
     d->coordinates = carve(c, coordinates * size, real);
     d->outputs = carve(c, out * size, real);
-    d->slopes = carve(c, (losses + 1) * size, real);
+    d->slopes = carve(c, (losses + loads) * size, real);
     d->exponential = carve(c, size * size, real);
     d->whole = carve(c, size * size, real);
     d->z = carve(c, size, real);
@@ -69,7 +72,9 @@ static void layout(void *linear, Carve *c)
     d->Z_next = carve(c, size * stretches, real);
     d->Y = carve(c, (size_t)(d->parts_max + 1) * out * stretches, real);
     d->Q = carve(c, (size_t)(d->parts_max + 1) * coordinates * stretches, real);
-    d->Y_slope = carve(c, (losses + 1) * stretches, real);
+    d->Y_slope = carve(c, (losses + loads) * stretches, real);
+    d->load = carve(c, loads * BLOCK_STRETCHES, real);
+    d->load_slope = carve(c, loads * BLOCK_STRETCHES, real);
     d->damped = carve(c, losses, real);
     d->rate_max = carve(c, losses, real);
     d->apart_max = carve(c, (size_t)d->s->n_apart, real);
@@ -78,7 +83,13 @@ static void layout(void *linear, Carve *c)
 
 /* -- matrices ------------------------------------------------------------------------------------------------------ */
 
-/* y'' = -W (W y) - D y' - Gamma a as rows of the state. */
+/* Load k on coordinate i: -Gamma a, or psi of the floor times its force. */
+static double load_on(const LinearSystem *s, int i, int k)
+{
+    return k == 0 ? -s->gamma[i] : s->psi[i * s->n + k - 1];
+}
+
+/* y'' = -W (W y) - D y' + loads as rows of the state. */
 static void set_acceleration(Linear *d)
 {
     const LinearSystem *s = d->s;
@@ -91,7 +102,8 @@ static void set_acceleration(Linear *d)
         }
     for (int i = 0; i < m; i++) {
         d->Y_ddot[i * m + i] = -s->omega[i];
-        d->Y_ddot[2 * m * m + i] = -s->gamma[i];
+        for (int k = 0; k < d->loads; k++)
+            d->Y_ddot[(2 * m + k) * m + i] = load_on(s, i, k);
     }
 }
 
@@ -117,13 +129,16 @@ static void set_outputs(Linear *d)
             d->outputs[k * out + d->rows.acceleration + j] = d->work[k * n + j] + (k == 2 * m);
     for (int k = 0; k < m; k++) {
         memcpy(d->outputs + (m + k) * out + d->rows.rate, s->P + k * losses, (size_t)losses * sizeof *s->P);
-        d->outputs[(m + k) * out + d->rows.power] = s->gamma[k];
+        for (int l = 0; l < d->loads; l++)
+            d->outputs[(m + k) * out + d->rows.power + l] = load_on(s, k, l);
     }
     linalg_product(losses, m, d->size, s->P, d->Y_ddot, d->work);
     for (int k = 0; k < d->size; k++) {
-        memcpy(d->slopes + k * (losses + 1), d->work + k * losses, (size_t)losses * sizeof *d->work);
-        for (int i = 0; i < m; i++)
-            d->slopes[k * (losses + 1) + losses] += s->gamma[i] * d->Y_ddot[k * m + i];
+        double *slope = d->slopes + k * (losses + d->loads);
+        memcpy(slope, d->work + k * losses, (size_t)losses * sizeof *d->work);
+        for (int l = 0; l < d->loads; l++)
+            for (int i = 0; i < m; i++)
+                slope[losses + l] += load_on(s, i, l) * d->Y_ddot[k * m + i];
     }
 }
 
@@ -157,7 +172,8 @@ static void set_step(Linear *d, double h, int parts)
         for (int k = 0; k < size; k++)
             A[k * size + m + i] = h * d->Y_ddot[k * m + i];
     }
-    A[(2 * m + 1) * size + 2 * m] = h;
+    for (int l = 0; l < d->loads; l++)
+        A[(2 * m + d->loads + l) * size + 2 * m + l] = h;
     linalg_exponential(size, A, d->exponential, d->work + size * size);
     raise(size, d->exponential, parts, d->whole, d->work);
     d->h = h;
@@ -166,28 +182,31 @@ static void set_step(Linear *d, double h, int parts)
 
 /* -- a block of stretches ------------------------------------------------------------------------------------------ */
 
-/* Y (rows.n, count) at one instant of every stretch: weight f of the energies, f = loss rate^2 and -a Gamma' y'. */
+/* Y (rows.n, count) at one instant of every stretch: weight f of the energies, f = loss rate^2 and load times its power
+ * per unit. */
 static void add_power(Linear *d, int count, const double Z[], const double Y[], double weight)
 {
     for (int i = 0; i < count; i++) {
         const double *y = Y + i * d->rows.n, *rate = y + d->rows.rate;
         for (int k = 0; k < d->s->n_loss; k++)
             d->damped[k] += weight * d->s->loss[k] * rate[k] * rate[k];
-        d->input -= weight * Z[i * d->size + 2 * d->s->m] * y[d->rows.power];
+        for (int l = 0; l < d->loads; l++)
+            d->input += weight * Z[i * d->size + 2 * d->s->m + l] * y[d->rows.power + l];
     }
 }
 
 /* The same of f'. */
 static void add_power_slope(Linear *d, int count, const double Z[], const double Y[], double weight)
 {
-    const int losses = d->s->n_loss, m = d->s->m;
-    linalg_product(losses + 1, d->size, count, d->slopes, Z, d->Y_slope);
+    const int losses = d->s->n_loss, m = d->s->m, all = losses + d->loads;
+    linalg_product(all, d->size, count, d->slopes, Z, d->Y_slope);
     for (int i = 0; i < count; i++) {
-        const double *y = Y + i * d->rows.n, *rate = y + d->rows.rate, *slope = d->Y_slope + i * (losses + 1);
+        const double *y = Y + i * d->rows.n, *rate = y + d->rows.rate, *slope = d->Y_slope + i * all;
         const double *load = Z + i * d->size + 2 * m;
         for (int k = 0; k < losses; k++)
             d->damped[k] += weight * d->s->loss[k] * 2 * rate[k] * slope[k];
-        d->input -= weight * (load[1] * y[d->rows.power] + load[0] * slope[losses]);
+        for (int l = 0; l < d->loads; l++)
+            d->input += weight * (load[d->loads + l] * y[d->rows.power + l] + load[l] * slope[losses + l]);
     }
 }
 
@@ -239,27 +258,27 @@ static int parts_per_sample(const Linear *d, int parts, double h)
 }
 
 /* Columns of Z: the states where the stretches begin, with their loads; d->z goes to where the last one ends. */
-static void find_starts(Linear *d, int count, const double a[], const double slope[])
+static void find_starts(Linear *d, int count)
 {
-    const int m = d->s->m, size = d->size;
+    const int m = d->s->m, size = d->size, loads = d->loads;
     for (int i = 0; i < count; i++) {
-        d->z[2 * m] = a[i];
-        d->z[2 * m + 1] = slope[i];
+        memcpy(d->z + 2 * m, d->load + i * loads, (size_t)loads * sizeof *d->z);
+        memcpy(d->z + 2 * m + loads, d->load_slope + i * loads, (size_t)loads * sizeof *d->z);
         memcpy(d->Z + i * size, d->z, (size_t)size * sizeof *d->z);
         linalg_product(size, size, 1, d->whole, d->Z + i * size, d->z);
     }
 }
 
-/* count stretches from t on, each of `length`, whole ones or what is left of one, during which the ground
- * acceleration is a + slope (time since its start). */
-static void cross(Linear *d, double t, double length, int is_whole, int count, const double a[], const double slope[])
+/* count stretches from t on, each of `length`, whole ones or what is left of one, during which the loads are load +
+ * load_slope (time since its start). */
+static void cross(Linear *d, double t, double length, int is_whole, int count)
 {
     const int parts = (int)ceil(length / d->run->step), out = d->rows.n, n_q = n_coordinates(d);
     const double h = length / (double)parts;
     const int each = parts_per_sample(d, parts, h);
     if (!(fabs(h - d->h) <= 1e-13 * h) || parts != d->parts)
         set_step(d, h, parts);
-    find_starts(d, count, a, slope);
+    find_starts(d, count);
     linalg_product(out, d->size, count, d->outputs, d->Z, d->Y);
     add_power(d, count, d->Z, d->Y, 0.5 * h);
     add_power_slope(d, count, d->Z, d->Y, h * h / 12);
@@ -274,9 +293,12 @@ static void cross(Linear *d, double t, double length, int is_whole, int count, c
         add_power(d, count, d->Z, Y, k < parts ? h : 0.5 * h);
     }
     add_power_slope(d, count, d->Z, d->Y + (size_t)parts * (size_t)(out * count), -h * h / 12);
+    if (t == 0 && d->loads > 1) /* a force may begin with a jump; Q is 0 at rest */
+        look(d, 0, d->load[0], d->Y, d->Q);
     for (int i = 0; i < count; i++)
         for (int k = 1; k <= parts; k++) {
-            const double *y = d->Y + (size_t)(k * count + i) * (size_t)out, ground = a[i] + slope[i] * k * h;
+            const double *y = d->Y + (size_t)(k * count + i) * (size_t)out,
+                         ground = d->load[i * d->loads] + d->load_slope[i * d->loads] * k * h;
             look(d, t + i * length + k * h, ground, y,
                  d->Q + (d->run->forces ? (size_t)(k * count + i) * (size_t)n_q : 0));
             if (is_whole && k % each == 0)
@@ -295,12 +317,15 @@ static int is_finite(const Linear *d)
     return isfinite(sum);
 }
 
-/* The load of stretch k; after the last sample the ground is at rest. */
-static void load_of(const Motion *motion, size_t k, double *a, double *slope)
+/* The loads of stretch k as the i-th of a block; after the last sample there are none. */
+static void set_loads(Linear *d, const Motion *motion, size_t k, int i)
 {
-    const int shaking = k + 1 < motion->n;
-    *a = shaking ? motion->accel[k] : 0;
-    *slope = shaking ? (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s : 0;
+    for (int l = 0; l < d->loads; l++) {
+        const int width = l > 0 ? motion->n_force : 1, shaking = k + 1 < motion->n;
+        const double *at = l > 0 ? motion->force + k * (size_t)width + l - 1 : motion->accel + k;
+        d->load[i * d->loads + l] = shaking ? at[0] : 0;
+        d->load_slope[i * d->loads + l] = shaking ? (at[width] - at[0]) / motion->dt_s : 0;
+    }
 }
 
 /* Sample by sample to the end. Returns how far the response was finite. */
@@ -309,7 +334,6 @@ static double walk(Linear *d, const Motion *motion)
     const double dt = motion->dt_s, duration = d->run->duration;
     const size_t whole = (size_t)(duration / dt * (1 + 1e-9));
     const int parts = (int)ceil(dt / d->run->step), each = parts_per_sample(d, parts, dt / parts);
-    double a[BLOCK_STRETCHES], slope[BLOCK_STRETCHES];
     if (each <= parts) {
         const double rest[FLOORS_MAX] = {0};
         send_sample(d, 0, each * dt / parts, motion->accel[0], rest, rest);
@@ -317,16 +341,16 @@ static double walk(Linear *d, const Motion *motion)
     for (size_t k = 0; k < whole;) {
         const int count = (int)(whole - k < (size_t)d->stretches_max ? whole - k : (size_t)d->stretches_max);
         for (int i = 0; i < count; i++)
-            load_of(motion, k + (size_t)i, &a[i], &slope[i]);
-        cross(d, (double)k * dt, dt, 1, count, a, slope);
+            set_loads(d, motion, k + (size_t)i, i);
+        cross(d, (double)k * dt, dt, 1, count);
         if (!is_finite(d))
             return (double)k * dt;
         k += (size_t)count;
     }
     const double left = duration - (double)whole * dt;
     if (left > 1e-9 * dt) {
-        load_of(motion, whole, &a[0], &slope[0]);
-        cross(d, (double)whole * dt, left, 0, 1, a, slope);
+        set_loads(d, motion, whole, 0);
+        cross(d, (double)whole * dt, left, 0, 1);
     }
     return is_finite(d) ? duration : (double)whole * dt;
 }
@@ -335,9 +359,10 @@ static Status prepare(Linear *d, const Motion *motion, Err *err)
 {
     const LinearSystem *s = d->s;
     const int n = s->n, apart = 2 * n, rate = apart + s->n_apart, power = rate + s->n_loss;
-    const int all = power + 1;
+    const int all = power + 1 + motion->n_force;
+    d->loads = 1 + motion->n_force;
     d->rows = (Rows){0, n, apart, rate, power, all};
-    d->size = 2 * s->m + 2;
+    d->size = 2 * s->m + 2 * d->loads;
     d->parts_max = (int)ceil(motion->dt_s / d->run->step) + 1;
     const int fit = BLOCK_NUMBERS / (d->parts_max * all);
     d->stretches_max = d->s->m > LARGE || fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit < 1 ? 1 : fit;

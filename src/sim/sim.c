@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/linalg.h"
 #include "base/units.h"
+#include "motion/forces.h"
 #include "scene/core_beam.h"
 #include "sim/as_built.h"
 #include "sim/engine.h"
@@ -97,6 +98,9 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     Status status = building_load(&scene->building, &o->building, err);
     if (status == STATUS_OK)
         status = design_space_make(&scene->design, &o->design, o->core.section, scene->building.n, err);
+    if (status == STATUS_OK && motion && motion->n_force > scene->building.n)
+        status = fail(err, STATUS_BAD_DATA, "motion.forces: column floor_%02d_n; the building has %d floors",
+                      motion->n_force, scene->building.n);
     if (status == STATUS_OK && motion)
         status = set_tail_input(scene, err);
     if (status == STATUS_OK)
@@ -254,14 +258,15 @@ static void core_nodes(const SimModel *model, const SimSample *s, const double x
         out[j] = 0 - w[j];
 }
 
-/* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes. */
-static void accelerations(const SimModel *model, const SimSample *s, double out[])
+/* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes, f of contacts
+ * and of the motion. */
+static void accelerations(const SimModel *model, const Motion *motion, const SimSample *s, double out[])
 {
     double force[FLOORS_MAX] = {0};
     if (s->plastic)
         model_plastic_forces(model, s->plastic, force);
-    for (int j = 0; j < model->n && s->force; j++)
-        force[j] += s->force[j];
+    for (int j = 0; j < model->n; j++)
+        force[j] += (s->force ? s->force[j] : 0) + motion_force(motion, j, s->t);
     memset(out, 0, (size_t)model->n * sizeof *out);
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
@@ -287,7 +292,7 @@ void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion 
     }
     floors_from_modes(model, 0, model->nb, s->q, out->u);
     floors_from_modes(model, 0, model->nb, s->v, out->u_dot);
-    accelerations(model, s, out->u_ddot);
+    accelerations(model, worker->scene->motion, s, out->u_ddot);
     core_nodes(model, s, s->q, out->core);
     core_nodes(model, s, s->v, out->core_dot);
 }

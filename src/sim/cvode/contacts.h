@@ -35,6 +35,7 @@ typedef struct {
  *                                           + (F - F_raw) p' (clamp, never positive) */
 typedef struct {
     double lost, clamp;
+    double pushed; /* [W] of the forces on the floors (ode.c), which is no part of that */
 } ContactPower;
 
 /* Eight partial sums, then their sum: vectorized, and in the same order on every processor. */

@@ -38,6 +38,7 @@ CLONED static double add_damping(const SimModel *model, double seconds, const do
 void energy_account_add(EnergyAccount *l, double seconds, const double v[], double a, const ContactPower *power)
 {
     l->input -= seconds * a * add_damping(l->model, seconds, v, l->damped);
+    l->input += seconds * power->pushed;
     l->lost += seconds * power->lost;
     l->clamp += seconds * power->clamp;
 }

@@ -34,12 +34,22 @@ int ode_n_roots(const Ode *o)
 }
 
 /* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
+static long interval_of(const Ode *o, double t)
+{
+    return o->stop_at_samples ? o->interval : (long)floor(t / o->motion->dt_s);
+}
+
+static int ground_moves(const Ode *o, double t)
+{
+    const long k = interval_of(o, t);
+    return k >= 0 && k <= (long)o->motion->n - 2;
+}
+
 static double ground(const Ode *o, double t)
 {
     const Motion *motion = o->motion;
-    const long last = (long)motion->n - 2;
-    const long k = o->stop_at_samples ? o->interval : (long)floor(t / motion->dt_s);
-    if (k > last || k < 0)
+    const long k = interval_of(o, t);
+    if (!ground_moves(o, t))
         return 0;
     const double slope = (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s;
     return motion->accel[k] + slope * (t - (double)k * motion->dt_s);
@@ -60,6 +70,25 @@ CLONED static double energy_rates(const SimModel *model, const double v[], doubl
     return dot_product(model->m, model->gamma, v);
 }
 
+/* Modal load [m/s2 sqrt(kg)] of the forces on the floors, added to g (nb); returns its power [W] at q'. */
+static double add_forces(const Ode *o, double t, const double v[], double g[])
+{
+    const SimModel *model = o->model;
+    const Motion *motion = o->motion;
+    double power = 0;
+    for (int j = 0; j < motion->n_force && ground_moves(o, t); j++) {
+        const long k = interval_of(o, t), width = motion->n_force;
+        const double *f = motion->force + k * width + j;
+        const double force = f[0] + (f[width] - f[0]) * (t / motion->dt_s - (double)k);
+        const double *row = model->RT + (size_t)j * (size_t)model->m_pad;
+        for (int i = 0; i < model->nb; i++) {
+            g[i] += force * row[i];
+            power += force * row[i] * v[i];
+        }
+    }
+    return power;
+}
+
 CLONED int ode_add_loads(Ode *o, double t, const double y[], double dv[], double *a, ContactPower *power)
 {
     const SimModel *model = o->model;
@@ -68,6 +97,7 @@ CLONED int ode_add_loads(Ode *o, double t, const double y[], double dv[], double
     *power = contacts_add(&o->contacts, y, y + model->m, dv);
     if (model->yields)
         storeys_add(model, y + storeys_at(o), dv);
+    power->pushed = add_forces(o, t, y + model->m, dv);
     for (int i = 0; i < model->m; i++) {
         dv[i] -= model->gamma[i] * *a;
         check += dv[i];
@@ -90,7 +120,7 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
     const int failed = ode_add_loads(o, t, y, dv, &a, &power);
     if (o->with_energies) {
         double *rest = dv + 2 * m;
-        rest[0] = -a * energy_rates(model, v, dv + m);
+        rest[0] = -a * energy_rates(model, v, dv + m) + power.pushed;
         rest[1] = power.lost;
         rest[2] = power.clamp;
     }
@@ -174,8 +204,12 @@ static void set_tolerances(const Ode *o, double level)
         mass += model->gamma[i] * model->gamma[i];
         slowest = fmin(slowest, fmax(model->omega[i], 1));
     }
-    for (size_t k = 0; k < o->motion->n; k++)
-        pga = fmax(pga, fabs(o->motion->accel[k]));
+    for (size_t k = 0; k < o->motion->n; k++) {
+        double force = 0;
+        for (int j = 0; j < o->motion->n_force; j++)
+            force += fabs(o->motion->force[k * (size_t)o->motion->n_force + (size_t)j]);
+        pga = fmax(pga, fabs(o->motion->accel[k]) + force / fmax(mass, 1e-6));
+    }
     const double speed = (pga > 0 ? pga : 1) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
     for (int i = 0; i < m; i++) {
         tolerance[i] = level * momentum / fmax(model->omega[i], 1);
@@ -294,6 +328,7 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
     if (model->yields)
         storeys_add(model, y + storeys_at(o), contact);
+    o->power_sampled.pushed = add_forces(o, t, y + model->m, contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
     if (o->contacts.forces)

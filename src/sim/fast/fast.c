@@ -57,7 +57,7 @@ static void layout(FastWork *k, Carve *c)
     const size_t channels = k->may_yield ? 2 * floors : floors, rows = k->may_yield ? channels : n;
     CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
           &k->max_shape_drift);
-    CARVE(c, modes, &k->held);
+    CARVE(c, modes, &k->held, &k->push[0], &k->push[1], &k->push_rise, &k->swing[0], &k->swing[1]);
     CARVE(c, floors, &k->rest, &k->peak_u, &k->peak_d, &k->peak_a);
     CARVE(c, channels, &k->gap, &k->middle, &k->bubble);
     layout_state(&k->now, c, modes, channels);

@@ -65,6 +65,15 @@ static double ground_at(const Interval *in, uint32_t tick)
     return in->a0 + (in->a1 - in->a0) * tick / TICKS;
 }
 
+/* The load of the forces on the floors at one end of the step under way. */
+static void set_push(FastWork *k, int end, uint32_t tick)
+{
+    for (int i = 0; i < k->bf && k->has_push; i++) {
+        k->push[end][i] = k->swing[0][i] + (k->swing[1][i] - k->swing[0][i]) * ((double)tick / TICKS);
+        k->push_rise[i] = k->push[1][i] - k->push[0][i];
+    }
+}
+
 /* The longest step that may begin here. */
 static int aligned_level(const Interval *in)
 {
@@ -80,8 +89,10 @@ static int later(int level, int than)
 static int fly_on(FastWork *k, Interval *in, int resolving)
 {
     k->step_start = in->start + k->base * in->at / TICKS;
+    set_push(k, 0, in->at);
     for (int level = later(k->flight_level, aligned_level(in)); level < resolving; level++) {
         const uint32_t end = in->at + (TICKS >> level);
+        set_push(k, 1, end);
         if (!free_flight(k, level_ready(k, level, 0), ground_at(in, in->at), ground_at(in, end))) {
             if (!k->flight.would_yield)
                 continue;
@@ -131,6 +142,7 @@ static int halvings_in_crowd(FastWork *k)
 static int step_on(FastWork *k, Interval *in, int resolving)
 {
     k->step_start = in->start + k->base * in->at / TICKS;
+    set_push(k, 0, in->at);
     resolving += halvings_in_crowd(k);
     if (resolving > LEVEL_MAX)
         resolving = LEVEL_MAX;
@@ -138,6 +150,7 @@ static int step_on(FastWork *k, Interval *in, int resolving)
     set_contact_level(k, resolving);
     for (int level = later(k->contact_level, aligned_level(in)); level <= LEVEL_MAX; level++) {
         const uint32_t end = in->at + (TICKS >> level);
+        set_push(k, 1, end);
         if (!contact_step(k, level_ready(k, level, 1), ground_at(in, in->at), ground_at(in, end), level - resolving))
             continue;
         in->at = end;
@@ -153,7 +166,10 @@ static const double SPEED_GAIN = 0.1;
 /* One sampling interval from `start` [s] on, ground acceleration from a0 to a1; 0 when no step is short enough. */
 static int interval(FastWork *k, double start, double a0, double a1)
 {
-    Interval in = {.start = start, .a0 = a0, .a1 = a1, .speed_gain = SPEED_GAIN * k->base * fmax(fabs(a0), fabs(a1))};
+    Interval in = {.start = start,
+                   .a0 = a0,
+                   .a1 = a1,
+                   .speed_gain = SPEED_GAIN * k->base * (fmax(fabs(a0), fabs(a1)) + k->push_accel)};
     const int has_core = k->m_pad > k->nb_pad;
     k->energy_scale = energy_scale(k);
     while (in.at < TICKS) {
@@ -192,6 +208,50 @@ static Ramp ground(const Motion *motion, long i)
     return i + 1 < (long)motion->n ? (Ramp){motion->accel[i], motion->accel[i + 1]} : (Ramp){0, 0};
 }
 
+/* Do forces act on the floors anywhere from sample first to sample last? */
+static int is_forced(const Motion *motion, long first, long last)
+{
+    int forced = 0;
+    for (long i = first * motion->n_force; i < (last + 1) * motion->n_force && !forced; i++)
+        forced = motion->force[i] != 0;
+    return forced;
+}
+
+/* Modal load of the forces on the floors at sample i of the motion. */
+static void swing_at(FastWork *k, const Motion *motion, long i, vec *out)
+{
+    for (int m = 0; m < k->bf; m++)
+        out[m] = (vec){0};
+    for (int j = 0; j < motion->n_force; j++) {
+        const vec *row = (const vec *)k->RT + j * k->mf;
+        for (int m = 0; m < k->bf; m++)
+            out[m] += row[m] * motion->force[i * motion->n_force + j];
+    }
+}
+
+/* The forces on the floors in the first `share` of interval i; after the last sample there are none. */
+static void enter_forces(FastWork *k, const Motion *motion, long i, double share)
+{
+    const int was_pushed = k->has_push;
+    const vec zero = {0};
+    vec most = zero;
+    k->push_accel = 0;
+    k->has_push = i + 1 < (long)motion->n && is_forced(motion, i, i + 1);
+    for (int m = 0; m < k->bf && was_pushed && !k->has_push; m++)
+        k->push[0][m] = k->push[1][m] = k->push_rise[m] = zero;
+    if (!k->has_push)
+        return;
+    swing_at(k, motion, i, k->swing[0]);
+    swing_at(k, motion, i + 1, k->swing[1]);
+    for (int m = 0; m < k->bf; m++) {
+        k->swing[1][m] = k->swing[0][m] + share * (k->swing[1][m] - k->swing[0][m]);
+        most += k->max_shape[m] * vec_max(vec_abs(k->swing[0][m]), vec_abs(k->swing[1][m]));
+    }
+    k->push_accel = lanes_sum(most);
+    set_push(k, 0, 0);
+    set_push(k, 1, TICKS);
+}
+
 /* Certified free intervals first.. are passed at once; returns how many, 0 where the next one must be integrated. */
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
@@ -199,6 +259,8 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
     if (!k->oscillatory || k->in_contact || k->yielding || first < k->free_from || end - first < FREE_INTERVALS_MIN)
         return 0;
     const long n = k->free_count < end - first ? k->free_count : end - first;
+    if (is_forced(motion, first, first + n < (long)motion->n ? first + n : (long)motion->n - 1))
+        return 0;
     for (long i = first; i < first + n; i++) {
         const Ramp a = ground(motion, i);
         impulse += 0.5 * motion->dt_s * (fabs(a.start) + fabs(a.end));
@@ -354,12 +416,15 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     for (long i = 0; i < full;) {
         if (i >= look && is_settled(k, motion, i)) {
             k->settled = (double)i * motion->dt_s;
-            for (; i < full; i++)
+            for (; i < full; i++) {
+                enter_forces(k, motion, i, 1);
                 settle(k, (double)i * motion->dt_s, ground(motion, i), ground(motion, i + 1).start);
+            }
             leave_free_intervals(k);
             break;
         }
         look = i >= look ? i + SETTLED_EVERY : look;
+        enter_forces(k, motion, i, 1);
         const long passed = free_intervals(k, motion, i, full);
         const Ramp a = ground(motion, i);
         if ((!passed && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
@@ -371,6 +436,7 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     if (rest > 1e-9 * motion->dt_s) {
         const Ramp a = ground(motion, full);
         set_base(k, rest);
+        enter_forces(k, motion, full, rest / motion->dt_s);
         k->sample_level = 0;
         const double end = a.start + (a.end - a.start) * rest / motion->dt_s;
         stop_holding(k);
@@ -453,6 +519,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
 {
     k->options = options;
     k->tolerances = tolerances;
+    k->forced = motion->n_force > 0;
     memset(result, 0, sizeof *result);
     set_design(k, model, motion->dt_s);
     start_at_rest(k);

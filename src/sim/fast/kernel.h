@@ -172,6 +172,12 @@ typedef struct FastWork {
     double settled;                  /* [s] where contacts ended */
     long free_from, free_count;      /* the interval from which free intervals are tried, and over how many */
 
+    int forced;               /* there are forces on the floors in this run */
+    int has_push;             /* they act in the interval under way */
+    vec *push[2], *push_rise; /* (m_pad) modal load of these forces at both ends of the step under way; its rise */
+    vec *swing[2];            /* (m_pad) the same of the interval */
+    double push_accel;        /* [m/s2] at most, of any floor, by these forces in the interval */
+
     FlightScratch flight;
     ContactScratch contact;
     ReachScratch reach;
