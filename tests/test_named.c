@@ -74,6 +74,25 @@ TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
     run_free(&run);
 }
 
+/* Unless the command line says by which accuracy. */
+TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
+{
+    Run run = run_here();
+    const Evaluation *e = run.finer.row;
+    const double wanted = run_f(&run, run_find(&run, e->id))[2];
+    char words[300];
+    assert_true(e->level > 0);
+    snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", e->id);
+    json_t *o = json_of(words);
+    assert_same_number(number(o, "j3_g"), wanted);
+    json_decref(o);
+    strcat(words, " --set sim.accuracy=coarse");
+    o = json_of(words);
+    assert_true(number(o, "j3_g") != wanted);
+    json_decref(o);
+    run_free(&run);
+}
+
 TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 {
     Run run = run_here();

@@ -183,6 +183,11 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
     for (size_t i = 0; i + 1 < json_array_size(records); i++)
         assert_less(strcmp(record_of(records, i), record_of(records, i + 1)), 0);
+    for (size_t i = 0; i < json_array_size(records); i++) {
+        const json_t *error = json_object_get(json_object_get(json_array_get(records, i), "with_core"), "error");
+        assert_true(json_number_value(json_object_get(json_object_get(error, "likely"), "j1_m")) >= 0);
+        assert_null(json_object_get(json_object_get(error, "sd_gaps_1_um"), "j1_m"));
+    }
     size_t at = 0; /* others lack a gain, or ask which channel */
     while (at < json_array_size(unreadable) && strcmp(record_of(unreadable, at), "tests/motion/irregular.csv") != 0)
         at++;

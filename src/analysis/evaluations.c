@@ -138,14 +138,16 @@ size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
 static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
-    const size_t n = evaluated_cases(e, run);
+    size_t n = evaluated_cases(e, run);
     for (size_t c = 0; c < n; c++)
         if (c < N_EVALUATED)
             task[c] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
         else
             task[c] = (SimTask){
                 .kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .finds_device = 1, .parts = &run->device[c]};
-    run->error_known = e->is_estimated && n == N_WITH_DEVICES;
+    run->error_known = e->is_estimated && !e->level;
+    if (run->error_known && run->record->from_folder)
+        task[n++] = (SimTask){.x = x, .scene = i, .is_finer = 1, .parts = &run->finer};
     return n;
 }
 
@@ -188,6 +190,18 @@ static Status run_round(Evaluations *e, MakeTasks *make, const double x[], Evalu
     return status;
 }
 
+static Status estimate(const Evaluations *e, size_t i, const double x[], Err *err)
+{
+    EvaluatedRun *run = &e->run[i];
+    const Measured found = measured(run->result);
+    if (!run->record->from_folder)
+        return estimate_designs(&e->tower, 1, &(SimTask){.x = x, .scene = i}, run->result, run->error, run->sd, err);
+    estimate_errors(&found, &run->finer, run->error);
+    for (int k = 0; k < N_MEASURES; k++)
+        run->sd[k] = NAN;
+    return STATUS_OK;
+}
+
 Status evaluations_run(Evaluations *e, size_t n_var, const double x[], EvaluationsTold *told, Err *err)
 {
     if (e->tower.n_var != n_var)
@@ -198,8 +212,7 @@ Status evaluations_run(Evaluations *e, size_t n_var, const double x[], Evaluatio
     TRY(run_round(e, replicate_tasks, x, told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         if (e->run[i].error_known)
-            TRY(estimate_designs(&e->tower, 1, &(SimTask){.x = x, .scene = i}, e->run[i].result, e->run[i].error,
-                                 e->run[i].sd, err));
+            TRY(estimate(e, i, x, err));
     return STATUS_OK;
 }
 

@@ -45,8 +45,9 @@ typedef struct {
     SimResult result[N_WITH_DEVICES];
     Measured device[N_WITH_DEVICES];          /* found under this record (evaluate/device.h) */
     ReplicateSummary replicates;              /* of the design, where there are some */
+    Measured finer;                           /* the design with twice the steps, of records of a folder */
     double error[N_MEASURES], sd[N_MEASURES]; /* of the design (analysis/estimate.h), where error_known */
-    int error_known;                          /* of records that were named, at one intensity, by the engine fast */
+    int error_known;                          /* at one intensity, by the engine fast; sd of records that were named */
 } EvaluatedRun;
 
 typedef struct {

@@ -213,6 +213,29 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
                 word, first);
 }
 
+Status designs_steps(const Args *args, const char *word, SimOptions *sim, Err *err)
+{
+    Place p;
+    Run run;
+    size_t row;
+    if (!word || strlen(word) >= sizeof p.path || args_gives(args, "sim.accuracy"))
+        return STATUS_OK;
+    find_place(word, &p);
+    if (!p.is_run)
+        return STATUS_OK;
+    TRY(run_read(&run, p.path, err));
+    const Status status = run_pick(&run, p.choice ? p.choice : "knee", &row, err);
+    if (status == STATUS_OK) {
+        const double before = sim->steps_per_contact;
+        run_steps(&run, row, sim);
+        if (sim->steps_per_contact != before)
+            fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n",
+                    run.table.row[row].id, ldexp(1.0, (int)run.table.row[row].level));
+    }
+    run_free(&run);
+    return status;
+}
+
 void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX])
 {
     const char *slash = d->id ? NULL : strrchr(word, '/'), *name = slash ? slash + 1 : word;

@@ -135,7 +135,7 @@ static Status show(const Args *args, Job *job, Settings *s, Err *err)
 }
 
 /* --design; of a run also ID, knee, best_NAME alone. folder NULL: there is no run. */
-static Status take_designs(const Args *args, const char *folder, Job *job, Err *err)
+static Status take_designs(const Args *args, const char *folder, Job *job, SimOptions *sim, Err *err)
 {
     const char *word = args_value(args, "--design");
     char own[PATH_MAX + 64];
@@ -150,6 +150,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, Err *
         snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
         word = own;
     }
+    TRY(designs_steps(args, word, sim, err));
     TRY(designs_take(&job->designs, word, &job->space, err));
     job->n = job->designs.n;
     return STATUS_OK;
@@ -178,7 +179,7 @@ Status show_full_model(const Args *args, Settings *s, const char *folder, Err *e
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
     TRY(measures_order(&job.order, s->search.objectives, job.space.n_floors, err));
-    TRY(take_designs(args, folder, &job, err));
+    TRY(take_designs(args, folder, &job, &s->sim, err));
     const Status status = show(args, &job, s, err);
     design_free(&job.designs);
     return status;

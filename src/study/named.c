@@ -19,7 +19,7 @@ static const double SHARE_MIN = 0.1; /* [%] */
 
 /* Shares of the promise: runs that differ by less end the doubling of the steps; no likely error is below, for two runs
  * agree by chance too. */
-static const double AGREED = 1.0 / 3.0, LEAST = 1.0 / 30.0;
+static const double AGREED = 1.0 / 3.0, LEAST = 1.0 / 15.0;
 
 /* Three times so many deviations of a design and its first copies, or of a design and its others: one run in a hundred
  * differs more from another, by Student's distribution, sqrt(2) t / 3. docs/measured/named.csv has what this covers. */

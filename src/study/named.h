@@ -10,7 +10,7 @@
  *   2 two copies of it, every gap changed by 1 um, in patterns of signs, at the steps of the run; where they say more
  *     than a third of the promise, or no steps agree in 1, six others, at the steps of 1
  *   3 its error is sqrt(difference^2 + (c sd)^2), sd the standard deviation of the design and its last copies, c that
- *     of Student's distribution for so few runs; never less than a thirtieth of the promise. Where no steps agree, or
+ *     of Student's distribution for so few runs; never less than a fifteenth of the promise. Where no steps agree, or
  *     sd is above the promise, the design is called unpredictable. docs/measured/named.csv has what this covers
  *   4 the front is formed again with the better values; names move on, and what is named then is looked at as well. A
  *     few designs are looked at together and stored together, so that a run which is stopped goes on behind them
