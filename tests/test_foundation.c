@@ -338,7 +338,7 @@ TEST(what_is_no_foundation_is_refused_in_words)
                {"soil=C", "needs radius="},
                {"soil=C g=1e8 radius=10", "leave one out"},
                {"soil=C radius=10 nu=0.6", "'nu=0.6' is no number from 0.001 to 0.5"},
-               {"rotation=-1", "is no number from 1 to"},
+               {"rotation=-1", "is no number from 10000 to"},
                {"rotation=1e9 rotation=2e9", "stands twice"},
                {"rotation=1e9 translation_dashpot=1e6", "needs the spring beside it"},
                {"depth=3", "'depth=3' is none of soil=A..D g="}};

@@ -79,6 +79,38 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     free(list);
 }
 
+TEST(the_ground_is_a_parameter_where_there_is_one)
+{
+    Settings s;
+    Err err = {0};
+    Sensitivity *list;
+    size_t n;
+    double x[N_VAR], rotation[2];
+    short_scene(&s, x, 5);
+    s.sim.duration_s = 12;
+    CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
+    for (size_t i = 0; i < n; i++)
+        assert_string_not_equal(list[i].name, "core.foundation_factor");
+    free(list);
+    snprintf(s.core.foundation, sizeof s.core.foundation, "rotation=1e12");
+    CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
+    const Sensitivity *ground = named(list, n, "core.foundation_factor");
+    for (int side = 0; side < 2; side++) {
+        Settings other = s;
+        Problem p;
+        SimResult r;
+        other.sim.forces = FORCES_YES;
+        snprintf(other.core.foundation, sizeof other.core.foundation, "rotation=%.17g",
+                 1e12 * (1 + (side ? 0.5 : -0.5) * ground->step));
+        CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
+        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
+        rotation[side] = r.forces.base_rotation_rad;
+        problem_close(&p);
+    }
+    assert_close(ground->slope[MEASURE_BASE_ROTATION], (rotation[1] - rotation[0]) / ground->step, 1e-6);
+    free(list);
+}
+
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
     Settings s;

@@ -117,6 +117,29 @@ static void huge_gap(Trial *t)
 
 /* ---- the core --------------------------------------------------------------------------------------------------- */
 
+static void compare_with_finest(Trial *t, const Tower *tower, const char *what)
+{
+    const SimResult r = bench_tower_run(tower, SCENE_IMPACT), wanted = finest(tower);
+    trial_remark(t, "%s: %ld contact onsets, energy-balance error %.1e; ", what, r.impacts, r.energy_balance_error);
+    trial_compare(t, &r, r.j1_m, wanted.j1_m, wanted.j1_m, 3e-3 * trial_slack(t), "%s: J1", what);
+    trial_compare(t, &r, r.j2_m, wanted.j2_m, wanted.j2_m, 1e-2 * trial_slack(t), "%s: J2", what);
+    trial_compare(t, &r, r.input_energy_j, wanted.input_energy_j, wanted.input_energy_j, 1e-2, "%s: input energy",
+                  what);
+}
+
+static void hard_and_soft_ground(Trial *t)
+{
+    static const char *const GROUND[] = {"rotation=1e4", "g=1e6 radius=4", "soil=D radius=10", "g=1e12 radius=100"};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 4; i += t->size == SIZE_QUICK ? 2 : 1) {
+        Tower tower;
+        open_tower(t, &tower, seconds_for(t, 3));
+        snprintf(tower.settings.core.foundation, sizeof tower.settings.core.foundation, "%s", GROUND[i]);
+        compare_with_finest(t, &tower, GROUND[i]);
+        bench_tower_close(&tower);
+    }
+}
+
 static void stiff_and_soft_core(Trial *t)
 {
     static const double FACTOR[] = {1e-6, 1e-3, 1e3, 1e6};
@@ -126,14 +149,8 @@ static void stiff_and_soft_core(Trial *t)
         char what[40];
         open_tower(t, &tower, seconds_for(t, 3));
         tower.settings.core.youngs_modulus_pa *= FACTOR[i];
-        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
         snprintf(what, sizeof what, "core stiffness x %g", FACTOR[i]);
-        trial_remark(t, "x %g: %ld contact onsets, energy-balance error %.1e; ", FACTOR[i], r.impacts,
-                     r.energy_balance_error);
-        trial_compare(t, &r, r.j1_m, wanted.j1_m, wanted.j1_m, 3e-3 * trial_slack(t), "%s: J1", what);
-        trial_compare(t, &r, r.j2_m, wanted.j2_m, wanted.j2_m, 1e-2 * trial_slack(t), "%s: J2", what);
-        trial_compare(t, &r, r.input_energy_j, wanted.input_energy_j, wanted.input_energy_j, 1e-2, "%s: input energy",
-                      what);
+        compare_with_finest(t, &tower, what);
         bench_tower_close(&tower);
     }
 }
@@ -284,6 +301,7 @@ static const Case CASES[] = {
     {"zero-gap", "no gap on any floor tends to the rigidly connected building, without a storm of events", zero_gap},
     {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
     {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},
+    {"ground", "a core on ground from next to nothing to rock, against `fast` at fine", hard_and_soft_ground},
     {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
     {"zero-padded-record", "zeros before or behind the record change no objective", padded},
     {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength},
