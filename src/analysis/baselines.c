@@ -1,7 +1,7 @@
 #include "analysis/baselines.h"
 
+#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const struct {
     const char *words, *key;
@@ -37,7 +37,8 @@ static void summarise(const ReplicateSummary *sum, const LinearDevice *device, B
 {
     out->device = *device;
     out->outcome = sum->outcome;
-    memcpy(out->value, sum->mean, sizeof out->value);
+    for (int k = 0; k < N_MEASURES; k++)
+        out->value[k] = sum->outcome == OUTCOME_OK ? sum->mean[k] : NAN;
 }
 
 Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err)

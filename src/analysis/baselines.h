@@ -20,7 +20,7 @@ typedef enum { BASELINE_NO_CORE, BASELINE_RIGID, BASELINE_TMD, BASELINE_LINKS, N
 typedef struct {
     LinearDevice device;      /* as it was found */
     Outcome outcome;          /* of all records together */
-    double value[N_MEASURES]; /* over the records; natural */
+    double value[N_MEASURES]; /* over the records; natural; NAN: it failed */
     SimResult first;          /* under the first record, or the one under which it failed */
 } Baseline;
 

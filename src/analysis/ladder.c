@@ -19,11 +19,12 @@ static const struct {
     {"shear of the core", "core.theory", "timoshenko", "euler_bernoulli"},
     {"P-delta", "building.p_delta", "on", "off"},
     {"ground under the core", "core.foundation", NULL, "fixed"},
+    {"storeys that yield", "building.yield_drift", "0.01", "0"},
     {"flexibility at contacts", "contact.bumper_stiffness_n_m", "5e8", "0"},
     {"weak end of the record", "sim.duration_s", NULL, NULL},
     {"steps, modes of the core", "sim.accuracy", "fine", NULL},
 };
-enum { BETWEEN, SHEAR, P_DELTA, GROUND, FLEXIBILITY, END, STEPS, KINDS };
+enum { BETWEEN, SHEAR, P_DELTA, GROUND, YIELDING, FLEXIBILITY, END, STEPS, KINDS };
 
 typedef struct {
     const Settings *s; /* as given */
