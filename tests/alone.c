@@ -16,7 +16,7 @@ int main(void)
     s.sim.duration_s = 20;
     Status status = adapter_open(&adapter, &s, &err);
     if (status == STATUS_OK)
-        status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, 0, &err);
+        status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, &err);
     if (status == STATUS_OK)
         status = queue_ask(q, &(Asked){.x = adapter_problem(adapter)->upper}, &err);
     if (status == STATUS_OK)

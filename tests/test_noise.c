@@ -104,45 +104,6 @@ TEST(a_constant_deviation_and_a_share_of_the_value_are_told_apart)
     assert_close(noise_variance(&(NoiseModel){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
 }
 
-/* Truth 0, an answer with the error 1, a prediction that is off by tau: of both the mean weighted with 1/variance is
- * off by tau^2 / (1 + tau^2) in the mean square, without the limit of one error. */
-TEST(estimates_are_as_near_as_answer_and_prediction_allow)
-{
-    enum { MANY = 4000 };
-    static double e[MANY], answer[MANY], error[MANY], estimate[MANY];
-    static size_t rows[MANY];
-    const double taus[] = {0.0, 0.5, 1.0, 3.0};
-    for (size_t j = 0; j < sizeof taus / sizeof *taus; j++) {
-        Random r = random_stream(7, RANDOM_TEST, 4, (uint32_t)j);
-        const double least = taus[j] * taus[j] / (1.0 + taus[j] * taus[j]);
-        double square = 0.0;
-        for (size_t i = 0; i < MANY; i++) {
-            rows[i] = MANY - 1 - i;
-            answer[i] = random_normal(&r);
-            error[i] = 1.0;
-            e[MANY - 1 - i] = answer[i] - taus[j] * random_normal(&r);
-        }
-        noise_estimate(MANY, rows, e, 1, 0, answer, error, estimate);
-        for (size_t i = 0; i < MANY; i++) {
-            square += estimate[i] * estimate[i] / MANY;
-            assert_at_most(fabs(estimate[i] - answer[i]), 1.0 + 1e-12);
-        }
-        if (!(square > least - 0.05 && square < least + 0.2 && square < 0.98))
-            fail_msg("mean square %g where %g can be had", square, least);
-    }
-}
-
-TEST(what_has_no_error_is_taken_as_it_is)
-{
-    const size_t rows[] = {0, 1};
-    const double mean[] = {1.0 / 3.0, 5.0}, e[] = {0.2, 0.0};
-    double estimate[2];
-    noise_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 0.0}, estimate);
-    assert_memory_equal(estimate, mean, sizeof mean);
-    noise_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 3.0}, estimate);
-    assert_memory_equal(estimate, mean, sizeof mean);
-}
-
 /* -- archive ------------------------------------------------------------------------------------------------------- */
 
 /* 60 designs on a line; every third is answered again, some several times. */
@@ -374,7 +335,8 @@ TEST(repeats_are_simulations_of_the_budget_and_no_more_than_their_share)
         assert_int_equal(seen.replicates[i] == 0, seen.kind[i] == KIND_REPEAT);
     }
     assert_true(repeats == seen.n_repeats && repeats == w.n_repeated);
-    assert_int_equal(repeats, (size_t)(0.4 * (200 - 18 * VAR)));
+    assert_at_most((double)repeats, 0.4 * (200 - 18 * VAR));
+    assert_less(0.8 * 0.4 * (200 - 18 * VAR), repeats); /* those that the last batch brings with it are not made */
     assert_true(most > 1 && most <= 4);
     forget(&seen);
 }
@@ -427,7 +389,6 @@ TEST(repeats_take_most_of_the_optimism_out_of_the_front)
     assert_true(believed > 0.5 && fabs(tried) < 0.5 * believed);
 }
 
-/* So much noise that estimates are in use. */
 TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
 {
     World w = world(0.3, 1);
@@ -450,60 +411,6 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
         evaluation_table_free(&before);
     }
     forget(&seen);
-}
-
-/* Designs at random, a third of them with a second answer; their estimates are nearer to the truth than their means. */
-static double square_off(const Archive *a, const double f[])
-{
-    double square = 0.0, wanted[OBJ];
-    for (size_t row = 0; row < a->n; row++) {
-        exact(a->X + row * VAR, wanted);
-        for (size_t k = 0; k < OBJ && a->replicates[row] > 0; k++)
-            square += pow(f[row * OBJ + k] - wanted[k], 2.0);
-    }
-    return square;
-}
-
-TEST(estimates_of_a_surface_are_nearer_to_the_truth_than_means)
-{
-    enum { FIRST = 90, ALL = 120 };
-    World w = world(0.05, 1);
-    double X[ALL * VAR], F[ALL * OBJ];
-    size_t draws[ALL];
-    unsigned char ok[ALL];
-    Archive a;
-    Surrogate *surrogate;
-    Infill *near;
-    Directions directions;
-    Err err = {0};
-    Random r = random_stream(11, RANDOM_TEST, 5, 0);
-    settle(&w);
-    for (size_t i = 0; i < ALL * VAR; i++)
-        X[i] = i < FIRST * VAR ? random_uniform(&r) : X[i - FIRST * VAR];
-    for (size_t i = 0; i < ALL; i++)
-        draws[i] = i >= FIRST;
-    CHECK_OK(evaluate(ALL, X, draws, F, NULL, ok, &w, &err), &err);
-    CHECK_OK(directions_spread(&directions, OBJ, 10, &err), &err);
-    CHECK_OK(infill_create(&near, INFILL_PBI, 1, &directions, &err), &err);
-    CHECK_OK(surrogate_create(&surrogate, &w.problem, ALL, 1, &err), &err);
-    CHECK_OK(pareto_archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
-    CHECK_OK(pareto_archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
-    pareto_archive_list_front(&a);
-    infill_measure(near, a.n_front, a.front, a.F);
-    CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
-    surrogate_estimate(surrogate, &a);
-    assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
-    CHECK_OK(pareto_archive_insert(&a, ALL - FIRST, X + FIRST * VAR, F + FIRST * OBJ, NULL, ok, 0, 1, &err), &err);
-    pareto_archive_update_noise(&a);
-    CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
-    surrogate_estimate(surrogate, &a);
-    assert_less(square_off(&a, a.estimate), 0.6 * square_off(&a, a.F));
-    pareto_archive_reset_estimates(&a);
-    assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
-    pareto_archive_free(&a);
-    surrogate_free(surrogate);
-    infill_free(near);
-    directions_free(&directions);
 }
 
 int main(void)

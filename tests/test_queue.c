@@ -99,7 +99,7 @@ static Queue *open_queue(size_t workers, QueueOrder order)
     bench.problem.n_parts = PARTS;
     bench.problem.part_size = sizeof(Part);
     bench.problem.n_workers = workers;
-    CHECK_OK(queue_open(&q, &bench.problem, order, 1, 100, &err), &err);
+    CHECK_OK(queue_open(&q, &bench.problem, order, 100, &err), &err);
     return q;
 }
 
@@ -113,13 +113,11 @@ static void ask(Queue *q, int n)
 {
     Err err = {0};
     for (int i = 0; i < n; i++)
-        CHECK_OK(queue_ask(q,
-                           &(Asked){.x = (double[]){i, i % 7 == 6 ? -1.0 : 1.0},
-                                    .repeat = (size_t)i % 3,
-                                    .kind = KIND_INFILL,
-                                    .note = &(double){0.5 * i}},
-                           &err),
-                 &err);
+        CHECK_OK(
+            queue_ask(
+                q, &(Asked){.x = (double[]){i, i % 7 == 6 ? -1.0 : 1.0}, .repeat = (size_t)i % 3, .kind = KIND_INFILL},
+                &err),
+            &err);
 }
 
 static Status note_done(const Evaluation *e, void *user, Err *err)
@@ -144,7 +142,7 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
         for (int i = 0; i < DESIGNS; i++) {
             CHECK_OK(queue_next(q, &done, &err), &err);
             const Evaluation *e = done.evaluation;
-            assert_true(e->id == 101 + i && e->x[0] == i && done.note[0] == 0.5 * i && e->kind == KIND_INFILL);
+            assert_true(e->id == 101 + i && e->x[0] == i && e->kind == KIND_INFILL);
             assert_true(e->replicates == PARTS && ((const Part *)done.parts)[1].value == i + 1.0);
             if (i % 7 == 6) {
                 assert_true(e->outcome == OUTCOME_ERROR && isnan(e->f[0]) && isinf(e->violation));
@@ -170,7 +168,7 @@ TEST(numbers_are_those_that_a_run_keeps)
     Queue *q = open_queue(1, QUEUE_AS_ASKED);
     problem_repair(&bench.problem, x);
     assert_int_equal(signbit(x[0]), 0);
-    CHECK_OK(queue_ask(q, &(Asked){.x = x, .note = &(double){0}}, &err), &err);
+    CHECK_OK(queue_ask(q, &(Asked){.x = x}, &err), &err);
     CHECK_OK(queue_next(q, &done, &err), &err);
     assert_true(done.evaluation->f[1] == 0.0 && !signbit(done.evaluation->f[1]));
     assert_true(isnan(done.evaluation->sd[0]));
@@ -327,7 +325,6 @@ TEST(known_evaluations_are_not_simulated_again)
     for (size_t i = 0; i < known.n; i++) {
         CHECK_OK(queue_next(q, &done, &err), &err);
         assert_true(done.evaluation->x[0] == known.row[i].x[0] && done.evaluation->f[0] == -2.0 * (double)i);
-        assert_int_equal(done.note != NULL, i < 2);
     }
     assert_int_equal(queue_pending(q), 4);
     for (int i = 0; i < 4; i++)
@@ -390,7 +387,7 @@ TEST(designs_without_end_need_no_more_memory_than_those_pending)
     for (int i = 0; i < 3000; i++) {
         CHECK_OK(queue_next(q, &done, &err), &err);
         const double x[2] = {done.evaluation->x[0] + 1, 1};
-        CHECK_OK(queue_ask(q, &(Asked){.x = x, .note = &(double){0}}, &err), &err);
+        CHECK_OK(queue_ask(q, &(Asked){.x = x}, &err), &err);
         assert_int_equal(queue_pending(q), 20);
     }
     queue_close(q);

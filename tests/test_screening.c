@@ -275,7 +275,7 @@ TEST(a_search_that_ends_by_its_generations_finishes_designs_too)
     CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
     assert_int_equal(reason, STOP_GENERATIONS);
     assert_less(other.n_evaluations, EVALS / 2 + EVALS / 4);
-    assert_int_equal(other.n_finished, other.n_screened / 5);
+    assert_int_equal(other.n_finished, other.n_screened / 5 > LEVEL_PAIRS ? other.n_screened / 5 : LEVEL_PAIRS);
     forget(&other_world, &other);
 }
 

@@ -11,7 +11,6 @@
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
 #include "moga/constants.h"
-#include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/search.h"
 #include "moga/surrogate.h"
@@ -247,75 +246,9 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
         assert_true(i == 0 || seen.generation[i] >= seen.generation[i - 1]);
     }
     assert_int_equal(count[KIND_SAMPLED], 120);
-    assert_int_equal(count[KIND_INFILL] + count[KIND_OFFSPRING], 120); /* before INFILL_ALONE all variation is probes */
-    assert_at_most((double)count[KIND_OFFSPRING], PROBE_SHARE_MAX * 120.0);
+    assert_int_equal(count[KIND_INFILL] + count[KIND_OFFSPRING], 120);
+    assert_at_most((double)count[KIND_OFFSPRING], PROBE_SHARE * 120.0);
     assert_true(seen.error > 0.0 && seen.error < 0.05);
-}
-
-/* Of 32 designs, after batches of which a quarter of the infill failed. */
-static void test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures(void **state)
-{
-    (void)state;
-    SurrogateControl c;
-    const double F[4] = {0}, predicted[4] = {0};
-    const unsigned char ok[4] = {0, 1, 1, 1}, none[4] = {0},
-                        kind[4] = {KIND_INFILL, KIND_INFILL, KIND_INFILL, KIND_INFILL};
-    control_begin(&c);
-    assert_int_equal(control_variation(&c, 32), 0);
-    for (int i = 0; i < 40; i++)
-        control_judge(&c, &(BatchResults){4, 1, F, predicted, NULL, ok, kind, none, none});
-    assert_int_equal(control_variation(&c, 32), 8);
-}
-
-/* Agreement after n batches of one result, predicted in the same or in the opposite order. */
-static double agreement_after(size_t n, double sign)
-{
-    SurrogateControl c;
-    double F[4 * 2], predicted[4 * 2];
-    const unsigned char ok = 1, kind = KIND_SAMPLED, is_probe = 0, was_predicted = 1;
-    control_begin(&c);
-    c.F = F;
-    c.predicted = predicted;
-    for (size_t i = 0; i < n; i++) {
-        const double f[2] = {(double)(i * 7 % 11), (double)(i * 5 % 11)}, p[2] = {sign * f[0], sign * f[1]};
-        control_judge(&c, &(BatchResults){1, 2, f, p, NULL, &ok, &kind, &is_probe, &was_predicted});
-    }
-    assert_int_equal(control_agrees(&c), c.agreement > 0.15);
-    return c.agreement;
-}
-
-static void test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_too(void **state)
-{
-    (void)state;
-    assert_close(agreement_after(3, -1.0), 1.0, 1e-12);
-    assert_close(agreement_after(4, -1.0), 0.5, 1e-12); /* 3/4 of 1 and 1/4 of -1 */
-    assert_close(agreement_after(7, -1.0), 0.5, 1e-12);
-    assert_less(agreement_after(40, -1.0), 0.0);
-    assert_close(agreement_after(40, 1.0), 1.0, 1e-12);
-}
-
-/* Share of a batch for probes after n of them, each better than predicted by so much of the range in the mean. */
-static double probe_share_after(int n, double better)
-{
-    SurrogateControl c;
-    double F[4 * 2], predicted[4 * 2];
-    const double f[2] = {5.0, -1.0}, p[2] = {5.0 + 20.0 * better, -1.0}, range[2] = {10.0, 1.0};
-    const unsigned char ok = 1, kind = KIND_OFFSPRING, is_probe = 1, was_predicted = 1;
-    control_begin(&c);
-    c.F = F;
-    c.predicted = predicted;
-    for (int i = 0; i < n; i++)
-        control_judge(&c, &(BatchResults){1, 2, f, p, range, &ok, &kind, &is_probe, &was_predicted});
-    return control_probe_share(&c);
-}
-
-static void test_probes_get_more_of_a_batch_while_they_are_better_than_predicted(void **state)
-{
-    (void)state;
-    assert_close(probe_share_after(0, 0.0), PROBE_SHARE, 1e-12);
-    assert_close(probe_share_after(1, 0.02), PROBE_SHARE + PROBE_WEIGHT * (PROBE_PAY - PROBE_SHARE), 1e-12);
-    assert_close(probe_share_after(1, 0.009), PROBE_SHARE * (1.0 - PROBE_WEIGHT), 1e-12);
-    assert_close(probe_share_after(200, 0.02), PROBE_SHARE_MAX, 1e-12);
 }
 
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
@@ -474,7 +407,7 @@ static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double
     Err err = {0};
     unsigned char all[ROWS_MAX];
     memset(all, 1, sizeof all);
-    CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->F, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
+    CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->F, NULL, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
     return h[1] - h[0];
 }
 
@@ -532,7 +465,8 @@ static void test_shares_are_areas_in_a_box_about_the_front(void **state)
     const double F[] = {9, 9, 2, 2, 0, 10, 10, 0, 5, 5};
     const unsigned char counts[] = {1, 1, 1, 1, 0}, front[] = {0, 1, 1, 1, 0};
     double h[3];
-    CHECK_OK(convergence_shares(&(GrowingFront){5, 2, F, NULL, counts, front}, 3, (size_t[]){1, 2, 5}, h, &err), &err);
+    CHECK_OK(convergence_shares(&(GrowingFront){5, 2, F, NULL, NULL, counts, front}, 3, (size_t[]){1, 2, 5}, h, &err),
+             &err);
     const double box = 11.0 * 11.0;
     assert_close(h[0], 4.0 / box, 4.0 * hypervolume_error(4.0 / box) / (4.0 / box));
     assert_close(h[1], 81.0 / box, 4.0 * hypervolume_error(81.0 / box) / (81.0 / box));
@@ -758,7 +692,7 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
 }
 
 /* The valleys next to the lowest one are at 1 + 2 0.16 at least. Of 72 designs after the sample a share between
- * 0.03 and PROBE_SHARE_MAX probes, in the mean over the seeds. */
+ * 0.03 and PROBE_SHARE probes, in the mean over the seeds. */
 static void test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else(void **state)
 {
     (void)state;
@@ -771,7 +705,7 @@ static void test_single_variables_are_probed_where_there_are_waves_along_them_an
         probes += n;
     }
     assert_less(0.03 * 72 * SEEDS, probes);
-    assert_less(probes, PROBE_SHARE_MAX * 72 * SEEDS);
+    assert_less(probes, PROBE_SHARE * 72 * SEEDS);
     assert_less(SEEDS / 2, in_lowest);
 }
 
@@ -821,9 +755,6 @@ int main(void)
         cmocka_unit_test_setup(test_answers_that_no_surrogate_fits_do_not_end_the_search, fresh),
         cmocka_unit_test_setup(test_a_first_sample_of_four_designs_is_enough, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
-        cmocka_unit_test(test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_too),
-        cmocka_unit_test(test_probes_get_more_of_a_batch_while_they_are_better_than_predicted),
-        cmocka_unit_test(test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
         cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
         cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),

@@ -21,7 +21,6 @@ typedef struct {
     long request;
     Variant variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
-    double *note;
     char *parts;
 } Slot;
 
@@ -34,7 +33,6 @@ typedef struct {
 struct Queue {
     const Problem *problem;
     QueueOrder order;
-    size_t n_note;
     Slot **pool; /* (n_pool) every slot that was ever needed, and room for n_max */
     Slot **idle; /* (n_idle) */
     Slot **line; /* (head..head+n) pending designs in the order of asking, room for n_max */
@@ -84,7 +82,6 @@ static void layout(Slot *s, const Queue *q, Carve *c)
     s->e.room = carve(c, REASON_MAX, 1);
     s->f = carve(c, p->n_obj, sizeof *s->f);
     s->g = carve(c, p->n_con, sizeof *s->g);
-    s->note = carve(c, q->n_note, sizeof *s->note);
     s->parts = carve(c, p->n_parts, p->part_size);
 }
 
@@ -130,7 +127,7 @@ static Status slot_get(Queue *q, Slot **out, Err *err)
     }
     Slot *s = q->idle[--q->n_idle];
     const Slot was = *s;
-    *s = (Slot){.e = was.e, .index = was.index, .f = was.f, .g = was.g, .note = was.note, .parts = was.parts};
+    *s = (Slot){.e = was.e, .index = was.index, .f = was.f, .g = was.g, .parts = was.parts};
     evaluation_forget(&s->e, p->n_obj, p->n_extra);
     *out = s;
     return STATUS_OK;
@@ -214,7 +211,6 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     const size_t row = find_known(q, q->last_request + 1, asked->x);
     const int is_known = row < q->known.n;
     copy(s->e.x, asked->x, q->problem->n_var);
-    copy(s->note, asked->note, q->n_note);
     s->e.kind = asked->kind;
     s->repeat = asked->repeat;
     s->variant = asked->variant;
@@ -277,13 +273,13 @@ int queue_has(const Queue *q, const double x[])
 Asked queue_design(const Queue *q, size_t i)
 {
     const Slot *s = in_line(q, i);
-    return (Asked){s->e.x, s->repeat, s->e.kind, s->note, s->n_parts, s->variant, NULL};
+    return (Asked){s->e.x, s->repeat, s->e.kind, s->n_parts, s->variant, NULL};
 }
 
 static void give_out(Queue *q, Slot *s, Finished *out)
 {
     q->given = s;
-    *out = (Finished){&s->e, s->f, s->g, s->note, s->was_known ? NULL : s->parts};
+    *out = (Finished){&s->e, s->f, s->g, s->was_known ? NULL : s->parts};
 }
 
 /* The next of before, whether asked for or not. */
@@ -300,7 +296,6 @@ static Status next_known(Queue *q, Finished *out, Err *err)
     s->was_known = 1;
     take_known(q, s, row, was_asked ? s->e.kind : row->kind == KIND_UNFINISHED ? KIND_INFILL : row->kind);
     give_out(q, s, out);
-    out->note = was_asked ? s->note : NULL;
     return STATUS_OK;
 }
 
@@ -557,7 +552,7 @@ static Status start(Queue *q, Err *err)
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err)
+Status queue_open(Queue **out, const Problem *problem, QueueOrder order, long n_before, Err *err)
 {
     Queue *q = calloc(1, sizeof *q);
     *out = NULL;
@@ -565,7 +560,6 @@ Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t 
         return fail(err, STATUS_NO_MEMORY, "no memory for designs under way");
     q->problem = problem;
     q->order = order;
-    q->n_note = n_note;
     q->last_request = q->last_id = n_before;
     pthread_mutex_init(&q->lock, NULL);
     pthread_mutex_init(&q->finishing, NULL);

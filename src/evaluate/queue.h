@@ -28,17 +28,15 @@
 
 typedef enum { QUEUE_AS_ASKED, QUEUE_AS_ARRIVED } QueueOrder;
 
-/* Borrows the problem. n_note: numbers that a design carries through the queue for the client. n_before: designs that
- * were evaluated before this session. */
-Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err);
+/* Borrows the problem. n_before: designs that were evaluated before this session. */
+Status queue_open(Queue **out, const Problem *problem, QueueOrder order, long n_before, Err *err);
 void queue_close(Queue *q); /* NULL is fine */
 
 typedef struct {
     const double *x; /* (n_var), copied */
     size_t repeat;   /* evaluations of this design that there are already */
     EvaluationKind kind;
-    const double *note; /* (n_note), copied */
-    size_t n_parts;     /* the first parts alone; 0: all */
+    size_t n_parts; /* the first parts alone; 0: all */
     Variant variant;
     const void *cheap_parts; /* (n_cheap) parts of this design that are there, copied; NULL: none */
 } Asked;
@@ -48,7 +46,6 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err);
 typedef struct {
     const Evaluation *evaluation; /* kind: as asked; KIND_INFILL where it was not asked for */
     const double *f, *g;          /* (n_obj) (n_con) minimised, as the problem judges it */
-    const double *note;           /* NULL: known, and not asked for */
     const void *parts;            /* (n_parts) of part_size; NULL where the evaluation was known */
 } Finished;
 

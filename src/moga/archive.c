@@ -19,13 +19,12 @@ static void layout_means(Archive *a, Carve *c)
 {
     const size_t n = a->n, n_max = a->n_max, m = a->n_obj, k = a->n_con, known = a->S ? n * m : 0;
     if (!a->has_means) {
-        a->F = a->estimate = a->Y;
+        a->F = a->Y;
         a->G = a->H;
         return;
     }
     a->F = carve_wider(c, a->F, n * m, n_max * m, sizeof *a->F);
     a->G = carve_wider(c, a->G, n * k, n_max * k, sizeof *a->G);
-    a->estimate = carve_wider(c, a->estimate, n * m, n_max * m, sizeof *a->estimate);
     a->S = carve_wider(c, a->S, known, n_max * m, sizeof *a->S);
     a->sd = carve_wider(c, a->sd, known, n_max * m, sizeof *a->sd);
     a->error = carve_wider(c, a->error, known, n_max * m, sizeof *a->error);
@@ -196,7 +195,6 @@ static void set_errors(Archive *a, size_t row)
 static void take_as_means(Archive *a, size_t row)
 {
     memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
-    memcpy(a->estimate + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->estimate);
     if (a->n_con > 0)
         memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
     memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
@@ -240,7 +238,6 @@ static Status add_replicate(Archive *a, size_t row, size_t design, Err *err)
         const double y = a->Y[row * a->n_obj + k], off = y - a->F[i];
         a->F[i] += off / n;
         a->S[i] += off * (y - a->F[i]);
-        a->estimate[i] = a->F[i];
     }
     for (size_t k = 0; k < a->n_con; k++)
         a->G[design * a->n_con + k] += (a->H[row * a->n_con + k] - a->G[design * a->n_con + k]) / n;
@@ -349,12 +346,6 @@ void pareto_archive_update_noise(Archive *a)
             compare_with_front(a, row);
     }
     a->is_stale = 0;
-}
-
-void pareto_archive_reset_estimates(Archive *a)
-{
-    if (a->n_replicates > 0)
-        memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
 }
 
 size_t pareto_archive_find(const Archive *a, const double x[])

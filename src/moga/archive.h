@@ -2,8 +2,7 @@
  *
  *   row       one evaluation; of a design that is in the archive already it is a further replicate
  *   design    the row of its first evaluation, which has the mean of all its replicates (F, G, violation), the standard
- *             error of F (moga/noise.h; 0 without replicates), and an estimate: F, or what the surrogate corrects it to
- *             (surrogate_estimate)
+ *             error of F (moga/noise.h; 0 without replicates)
  *   screened  a design of which only the cheap level is known (KIND_SCREENED): never on the front; F is what the whole
  *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design,
  *             and the row before is none any more (replicates 0)
@@ -16,7 +15,7 @@
  * standard errors change what dominates what.
  *
  * Life cycle  pareto_archive_init -> pareto_archive_insert (pareto_archive_update_noise) ... -> pareto_archive_free
- * Memory      without replicates F, G and estimate are Y, H and Y, and S, sd and error are NULL. Grows by doubling,
+ * Memory      without replicates F and G are Y and H, and S, sd and error are NULL. Grows by doubling,
  *             of many rows by a quarter: pointers move
  * Threads     one writer */
 #ifndef IMTET_MOGA_ARCHIVE_H
@@ -46,7 +45,6 @@ typedef struct {
     double *S;               /* (n, n_obj) sum of squared deviations from the mean */
     double *sd;              /* (n, n_obj) standard deviation of one replicate */
     double *error;           /* (n, n_obj) standard error of the mean */
-    double *estimate;        /* (n, n_obj) what the search compares */
 
     size_t *front;    /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
     size_t n_listed;  /* rows of `front` until then: those that have left are among them */
@@ -85,8 +83,6 @@ void pareto_archive_update_noise(Archive *a);
 
 /* Rows that have left the front leave its list. */
 void pareto_archive_list_front(Archive *a);
-
-void pareto_archive_reset_estimates(Archive *a); /* to the means; without replicates they are */
 
 /* Row of exactly this design, or n where it has not been evaluated. */
 size_t pareto_archive_find(const Archive *a, const double x[]);

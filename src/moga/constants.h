@@ -23,8 +23,9 @@ enum { VECTORS = 200 }; /* or the population, where that is more */
 
 /* -- offspring.c --------------------------------------------------------------------------------------------------- */
 
-enum { INNER_GENERATIONS = 10 };  /* of variation and selection on the surrogate between two batches */
-enum { DESCENTS_PER_DESIGN = 2 }; /* descents on the surrogate for each design of a batch */
+enum { INNER_GENERATIONS = 10 };       /* of variation and selection on the surrogate between two batches */
+enum { DESCENTS_PER_DESIGN = 2 };      /* descents on the surrogate for each design of a batch */
+static const double PROBE_SHARE = 0.1; /* of a batch, for probes, times the share of objectives with waves */
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 
@@ -47,19 +48,9 @@ static const double PBI_THETA = 5.0;     /* weight of the distance from the vect
 static const double RAY_START = 1.1;     /* reference point of the hypervolume scalarisation, in widths of the front */
 static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's derivative, in widths of the front */
 
-/* -- infill_select.c: infill selection ----------------------------------------------------------------------------- */
+/* -- offspring.c: infill selection --------------------------------------------------------------------------------- */
 
 static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
-
-/* -- control.c, offspring.c ---------------------------------------------------------------------------------------- */
-
-static const double AGREEMENT_MIN = 0.15;    /* running mean of Kendall's tau below which no infill is selected */
-static const double AGREEMENT_WEIGHT = 0.25; /* of one batch in that mean and in that of the failure rate */
-static const double PROBE_SHARE = 0.1;       /* of a batch, for probes along single variables, at first */
-static const double PROBE_SHARE_MAX = 0.3;   /* greatest share of a batch for probes */
-static const double PROBE_FIND = 0.01;       /* a find is better than predicted by this, in ranges of the archive */
-static const double PROBE_PAY = 2.5;         /* share of a batch for probes of which all are finds */
-static const double PROBE_WEIGHT = 0.05;     /* of one probe in the running mean that is the share */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */
 
@@ -70,9 +61,7 @@ static const double LEVEL_TAU_MIN = 0.5; /* mean of Kendall's tau between the le
 /* -- replication.c: replication of noisy designs ------------------------------------------------------------------- */
 
 enum { REPLICATE_AFTER = 18 };               /* evaluations per variable before the first replicate */
-static const double REPLICATE_EARLY = 0.25;  /* share of the replicates drawn before the end of the search */
 static const double NOISE_NEGLIGIBLE = 1e-3; /* standard deviation, in ranges of the front, that ends replication */
 enum { NOISE_SAMPLE = 8 };                   /* replicates before it may end */
-static const double NOISE_SIGNIFICANT = 0.2; /* standard deviation, in ranges, above which estimates replace means */
 
 #endif

@@ -12,7 +12,8 @@ static const double REFERENCE = 1.1; /* of the box, in widths of the front from 
 
 static double value(const GrowingFront *d, size_t i, size_t k)
 {
-    return d->F[i * d->n_obj + k] + (d->error ? d->error[i * d->n_obj + k] : 0.0);
+    const double f = d->F[i * d->n_obj + k];
+    return (d->sense ? d->sense[k] * f : f) + (d->error ? d->error[i * d->n_obj + k] : 0.0);
 }
 
 static void range_of(const GrowingFront *d, const unsigned char chosen[], size_t k, double *min, double *max)

@@ -20,7 +20,8 @@
 
 typedef struct {
     size_t n, n_obj;
-    const double *F, *error;       /* (n, n_obj) minimised, standard errors; error: NULL: none */
+    const double *F, *error;       /* (n, n_obj) objectives, standard errors; error: NULL: none */
+    const double *sense;           /* (n_obj) 1: minimised, -1: maximised; NULL: all are minimised */
     const unsigned char *counts;   /* (n) succeeded, keeps every limit, and is no further replicate */
     const unsigned char *on_front; /* (n) */
 } GrowingFront;

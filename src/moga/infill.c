@@ -17,15 +17,13 @@ struct Infill {
     InfillKind kind;
     size_t n_obj, n_dir, n_max, n;
     Normalisation normalisation;
-    double *unit, *across; /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
-    double *over;          /* (n_obj, n_dir) 1 / component, at most 1e9 */
-    double *row;           /* (n_dir) */
-    double *best_value;    /* (n_dir) of the front, lowered by what is picked */
-    size_t *best;          /* (n_dir) row of the front that has it */
-    double *value;         /* (n, n_dir) of the candidates */
-    double *gain;          /* (n) when it was computed last: what is picked later only lowers it */
-    size_t *computed;      /* (n) how much had been taken then */
-    size_t n_taken;        /* since the candidates were offered */
+    double *unit, *across;                          /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
+    double *over;                                   /* (n_obj, n_dir) 1 / component, at most 1e9 */
+    double *row;                                    /* (n_dir) */
+    double *best_value;                             /* (n_dir) of the front, lowered by what is picked */
+    size_t *best;                                   /* (n_dir) row of the front that has it */
+    double *value;                                  /* (n, n_dir) of the candidates */
+    double *gain;                                   /* (n) */
     const double *violation, *uncertainty, *chance; /* (n) */
     void *store;
 };
@@ -44,7 +42,6 @@ static void layout(void *infill, Carve *c)
     q->best = carve(c, q->n_dir, sizeof(size_t));
     q->value = carve(c, q->n_max * q->n_dir, sizeof(double));
     q->gain = carve(c, q->n_max, sizeof(double));
-    q->computed = carve(c, q->n_max, sizeof(size_t));
 }
 
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)
@@ -218,11 +215,8 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     q->violation = violation;
     q->uncertainty = uncertainty;
     q->chance = chance;
-    q->n_taken = 0;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++)
         values_of(q, F + i * q->n_obj, q->value + i * q->n_dir);
-        q->computed[i] = SIZE_MAX;
-    }
 }
 
 static double gain_left(const Infill *q, size_t i)
@@ -230,7 +224,7 @@ static double gain_left(const Infill *q, size_t i)
     double gain = 0.0;
     for (size_t r = 0; r < q->n_dir; r++)
         gain += fmax(q->best_value[r] - q->value[i * q->n_dir + r], 0.0);
-    return gain;
+    return gain * (q->chance ? q->chance[i] : 1.0);
 }
 
 /* Feasible before infeasible where there is no chance to weigh gains with, then gain, violation, uncertainty. */
@@ -245,35 +239,15 @@ static int is_better(const Infill *q, size_t a, size_t b)
     return q->uncertainty[a] > q->uncertainty[b];
 }
 
-static void compute_gain(Infill *q, size_t i)
-{
-    q->gain[i] = gain_left(q, i) * (q->chance ? q->chance[i] : 1.0);
-    q->computed[i] = q->n_taken;
-}
-
-/* The first of the best by the gains as they were computed last. */
-static size_t best_so_far(Infill *q, const unsigned char allowed[])
+size_t infill_pick(Infill *q, unsigned char allowed[])
 {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i])
             continue;
-        if (q->computed[i] == SIZE_MAX)
-            compute_gain(q, i);
+        q->gain[i] = gain_left(q, i);
         if (best == SIZE_MAX || is_better(q, i, best))
             best = i;
-    }
-    return best;
-}
-
-/* A gain never grows while designs are taken, so that the best one whose gain is up to date is the best of all: Minoux,
- * Accelerated greedy algorithms for maximizing submodular set functions, LNCIS 7 (1978) 234-243. */
-size_t infill_pick(Infill *q, unsigned char allowed[])
-{
-    size_t best = best_so_far(q, allowed);
-    while (best != SIZE_MAX && q->computed[best] != q->n_taken) {
-        compute_gain(q, best);
-        best = best_so_far(q, allowed);
     }
     if (best == SIZE_MAX)
         return best;
@@ -284,7 +258,6 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
 
 void infill_take(Infill *q, size_t candidate)
 {
-    q->n_taken++;
     for (size_t r = 0; r < q->n_dir; r++)
         q->best_value[r] = fmin(q->best_value[r], q->value[candidate * q->n_dir + r]);
 }

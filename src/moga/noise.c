@@ -29,19 +29,3 @@ double noise_variance(const NoiseModel *model, double mean, double S, size_t rep
     const double sd = model->is_relative ? model->sd * mean : model->sd;
     return (sd * sd + S) / (double)replicates;
 }
-
-void noise_estimate(size_t n, const size_t rows[], const double e[], size_t n_obj, size_t k, const double mean[],
-                    const double error[], double estimate[])
-{
-    double surplus = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        const double own = error[rows[i] * n_obj + k];
-        surplus += (e[i] * e[i] - own * own) / (double)n;
-    }
-    for (size_t i = 0; i < n; i++) {
-        const size_t at = rows[i] * n_obj + k;
-        const double square = error[at] * error[at],
-                     share = square > 0.0 ? square / (square + fmax(surplus, 0.0)) : 0.0;
-        estimate[at] = mean[at] - fmin(fmax(share * e[i], -error[at]), error[at]);
-    }
-}

@@ -9,14 +9,8 @@
  *
  * Without replicates, or where all agree, every standard deviation is 0.
  *
- *   estimate  f - t,  t = e error^2 / (error^2 + tau^2),  |t| <= error
- *             e: leave-one-out error of the surrogate at the design; tau^2: mean over the designs of e^2 - error^2, 0
- *             at least, the surrogate's own error. Moves a mean towards what its neighbours make likely, by one
- *             standard error at most, so that a wrong surrogate does little harm
- *
  * Threads  pure functions on the caller's memory
- * Sources  Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3 (variances moderated by a common one)
- *          Efron and Morris, J. Am. Stat. Assoc. 67 (1972) 130-139 (limited translation estimators) */
+ * Source   Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3 (variances moderated by a common one) */
 #ifndef IMTET_MOGA_NOISE_H
 #define IMTET_MOGA_NOISE_H
 
@@ -33,9 +27,5 @@ NoiseModel noise_fit(size_t n, const size_t rows[], const size_t replicates[], s
 
 /* s^2 of one design. */
 double noise_variance(const NoiseModel *model, double mean, double S, size_t replicates);
-
-/* Objective k of designs rows[0..n), e (n): column k of mean, error and estimate (., n_obj). */
-void noise_estimate(size_t n, const size_t rows[], const double e[], size_t n_obj, size_t k, const double mean[],
-                    const double error[], double estimate[]);
 
 #endif

@@ -19,8 +19,11 @@ void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], co
     }
 }
 
-/* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis
- * and 1e-6 off it; the sum breaks ties between points that are all on the axis. */
+/* 1 / w_j of the achievement function off the axis: Deb and Jain 2014, section IV.C. A plane that cuts an axis nearer
+ * than this is none: its intercepts are rounding. */
+static const double OFF_AXIS = 1e6;
+
+/* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis. */
 static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const size_t list[], const double F[])
 {
     const size_t m = q->n_obj;
@@ -29,7 +32,7 @@ static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const si
     for (size_t i = 0; i < n; i++) {
         double worst = 0.0;
         for (size_t j = 0; j < m; j++)
-            worst = fmax(worst, normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : 1e6));
+            worst = fmax(worst, normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : OFF_AXIS));
         if (worst < min) {
             min = worst;
             found = list[i];
@@ -52,7 +55,7 @@ void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const do
     if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, (int)m, 1, q->plane, (int)m, q->pivot, b, (int)m) != 0)
         return;
     for (size_t k = 0; k < m; k++) /* the plane sum_k z_k b_k = 1 cuts axis k at 1 / b_k, in units of the box */
-        if (!(b[k] < 1e6 && b[k] > 0.0))
+        if (!(b[k] < OFF_AXIS && b[k] > 0.0))
             return;
     for (size_t k = 0; k < m; k++)
         q->width[k] *= fmin(1.0 / b[k], 1.0);

@@ -1,6 +1,7 @@
-#include "moga/state.h"
+#include "moga/offspring.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "moga/dominance.h"
 #include "moga/variation.h"
@@ -8,13 +9,17 @@
 /* Distribution indices: Deb and Jain 2014. */
 static const double SBX_ETA = 20.0, MUTATION_ETA = 20.0;
 
-void offspring_survive(Search *s, Population *p, uint32_t step)
+static Random stream(const Common *c, RandomPurpose purpose, uint32_t name)
 {
-    Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
-    size_t *survivors = s->scratch.survivors;
+    return random_stream(c->config->seed, purpose, (uint32_t)c->generation, name);
+}
+
+void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step)
+{
+    Random random = stream(w->common, RANDOM_NICHING, step);
     const size_t n =
-        selection_select(s->selection, p->n, p->F, p->violation, s->config->population, &random, survivors);
-    population_keep(p, n, survivors);
+        selection_select(w->selection, p->n, p->F, p->violation, w->common->config->population, &random, o->survivors);
+    population_keep(p, n, o->survivors);
 }
 
 /* -- variation ----------------------------------------------------------------------------------------------------- */
@@ -26,23 +31,22 @@ static const double *tournament(const Population *p, Random *random)
     return p->X + (b_wins ? b : a) * p->n_var;
 }
 
-/* Appends n children of the present members; a share of the pairs is mutated over the whole box. Pair j of step has
- * its own streams. */
-static void breed(Search *s, Population *population, size_t n, uint32_t step, double far)
+/* Appends a population of children of the present members; a share of the pairs is mutated over the whole box. Pair j
+ * of step has its own streams. */
+static void breed(Offspring *o, const Common *c, Population *population, uint32_t step, double far)
 {
-    const Problem *p = s->problem;
-    const SearchConfig *c = s->config;
+    const Problem *p = c->problem;
     const Population parents = *population;
-    double *children = s->scratch.children;
+    const size_t n = c->config->population;
     for (size_t j = 0; 2 * j < n; j++) {
-        const uint32_t name = step * (uint32_t)c->population + (uint32_t)j;
-        Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
-        Random change = random_stream(c->seed, RANDOM_VARIATION, (uint32_t)s->generation, name);
+        const uint32_t name = step * (uint32_t)n + (uint32_t)j;
+        Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
         const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : MUTATION_ETA;
-        crossover_sbx(&change, p->n_var, p->lower, p->upper, SBX_ETA, mother, father, children, children + p->n_var);
+        crossover_sbx(&change, p->n_var, p->lower, p->upper, SBX_ETA, mother, father, o->children,
+                      o->children + p->n_var);
         for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
-            double *x = children + i * p->n_var;
+            double *x = o->children + i * p->n_var;
             mutate_polynomial(&change, p->n_var, p->lower, p->upper, 1.0 / (double)p->n_var, eta, x);
             problem_repair(p, x);
             population_add(population, x);
@@ -50,108 +54,153 @@ static void breed(Search *s, Population *population, size_t n, uint32_t step, do
     }
 }
 
-/* Of n children of the population. */
-static void add_variation(Search *s, size_t n)
+static void append_predicted(Offspring *o)
 {
-    Population *offspring = &s->offspring.members;
-    const size_t n_parents = s->population.n, first = offspring->n;
-    population_copy(&s->pool, &s->population);
-    breed(s, &s->pool, n, 0, 0.0);
-    for (size_t i = n_parents; i < s->pool.n; i++)
-        population_append(offspring, &s->pool, i);
-    s->offspring.n_variation = n;
-    search_predict(s, offspring, first, 1);
+    for (size_t i = 0; i < o->pool.n; i++)
+        if (o->pool.row[i] == PREDICTED)
+            population_append(&o->members, &o->pool, i);
+}
+
+static void add_variation(Offspring *o, const Breeding *w)
+{
+    population_copy(&o->pool, w->population);
+    breed(o, w->common, &o->pool, 0, 0.0);
+    append_predicted(o);
+    o->n_variation = o->members.n;
 }
 
 /* -- on the surrogate ---------------------------------------------------------------------------------------------- */
 
 /* What survives some generations of variation and selection on the surrogate and is not evaluated. */
-static void add_evolved(Search *s)
+static void add_evolved(Offspring *o, const Breeding *w)
 {
-    population_copy(&s->pool, &s->population);
+    population_copy(&o->pool, w->population);
     for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
-        const size_t n_parents = s->pool.n;
-        breed(s, &s->pool, s->config->population, step, surrogate_waves(s->surrogate));
-        search_predict(s, &s->pool, n_parents, 0);
-        offspring_survive(s, &s->pool, 1 + step);
+        const size_t n_parents = o->pool.n;
+        breed(o, w->common, &o->pool, step, surrogate_waves(w->surrogate));
+        surrogate_predict(w->surrogate, &o->pool, n_parents, 0);
+        offspring_survive(o, w, &o->pool, 1 + step);
     }
-    for (size_t i = 0; i < s->pool.n; i++)
-        if (s->pool.row[i] == PREDICTED)
-            population_append(&s->offspring.members, &s->pool, i);
+    append_predicted(o);
 }
 
 /* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the
  * criteria share them. */
-static void add_descended(Search *s)
+static void add_descended(Offspring *o, const Breeding *w)
 {
-    const Problem *p = s->problem;
-    const size_t n_vectors = s->criteria.vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(s),
-                 wanted = two_each < s->config->population ? two_each : s->config->population,
+    const Common *c = w->common;
+    const Problem *p = c->problem;
+    const size_t n_vectors = w->criteria->vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(c),
+                 wanted = two_each < c->config->population ? two_each : c->config->population,
                  n = wanted < n_vectors ? wanted : n_vectors, first = n / 2;
-    size_t *vector = s->scratch.descent_vector;
-    double *X = s->scratch.descent_X;
-    Random random = random_stream(s->config->seed, RANDOM_DESCENT, (uint32_t)s->generation, 0);
+    size_t *vector = o->descent_vector;
+    double *X = o->descent_X;
+    Random random = stream(c, RANDOM_DESCENT, 0);
     for (size_t r = 0; r < n_vectors; r++)
         vector[r] = r;
     random_shuffle(&random, n_vectors, vector);
-    search_descend(s, INFILL_HYPERVOLUME, first, vector, X);
-    search_descend(s, INFILL_PBI, n - first, vector + first, X + first * p->n_var);
+    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_HYPERVOLUME], first, vector, X);
+    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_PBI], n - first, vector + first,
+                      X + first * p->n_var);
     for (size_t i = 0; i < n; i++) {
         problem_repair(p, X + i * p->n_var);
-        population_add(&s->offspring.members, X + i * p->n_var);
+        population_add(&o->members, X + i * p->n_var);
     }
 }
 
 /* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the
  * golden section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. As far as objectives
  * have waves. Their number is rounded at random, or a small share would never come to a whole one. */
-static void add_probes(Search *s)
+static void add_probes(Offspring *o, const Breeding *w)
 {
-    const Problem *p = s->problem;
-    Offspring *o = &s->offspring;
     static const double GOLDEN = 0.61803398874989485;
-    const double wanted = s->archive.n_front == 0 ? 0.0 : surrogate_waves(s->surrogate);
-    Random random = random_stream(s->config->seed, RANDOM_PROBES, (uint32_t)s->generation, 0);
-    const double share = wanted * control_probe_share(&s->control);
-    const size_t first = o->members.n, n = (size_t)(share * (double)batch_size(s) + random_uniform(&random));
-    for (size_t i = 0; i < n; i++, s->n_probed++) {
-        const size_t d = s->n_probed % p->n_var, vector = random_below(&random, s->criteria.vectors.n);
-        const Infill *near = s->criteria.select[i % INFILL_KINDS];
-        const double place = GOLDEN * (double)(s->n_probed / p->n_var) + M_SQRT2 * (double)d;
-        double *x = s->scratch.children;
-        memcpy(x, s->archive.X + infill_best(near, vector) * p->n_var, p->n_var * sizeof *x);
+    const Common *c = w->common;
+    const Problem *p = c->problem;
+    const double share = c->archive.n_front == 0 ? 0.0 : PROBE_SHARE * surrogate_waves(w->surrogate);
+    Random random = stream(c, RANDOM_PROBES, 0);
+    o->n_probes = (size_t)(share * (double)batch_size(c) + random_uniform(&random));
+    for (size_t i = 0; i < o->n_probes; i++, o->n_probed++) {
+        const size_t d = o->n_probed % p->n_var, vector = random_below(&random, w->criteria->vectors.n);
+        const Infill *near = w->criteria->select[i % INFILL_KINDS];
+        const double place = GOLDEN * (double)(o->n_probed / p->n_var) + M_SQRT2 * (double)d;
+        double *x = o->children;
+        memcpy(x, c->archive.X + infill_best(near, vector) * p->n_var, p->n_var * sizeof *x);
         x[d] = p->lower[d] + (place - floor(place)) * (p->upper[d] - p->lower[d]);
         problem_repair(p, x);
         population_add(&o->members, x);
     }
-    o->n_probes = n;
-    search_predict(s, &o->members, first, 1);
 }
 
 /* Designs that are asked for already, predicted. */
-static void add_pending(Search *s)
+static void add_pending(Offspring *o, const Common *c)
 {
-    Offspring *o = &s->offspring;
-    const size_t first = o->members.n, max = s->batch.n_max, n = queue_pending(s->queue);
-    o->n_pending = n < max ? n : max;
+    const size_t n = queue_pending(c->queue);
+    o->n_pending = n < o->pending_max ? n : o->pending_max;
     for (size_t i = 0; i < o->n_pending; i++)
-        population_add(&o->members, queue_design(s->queue, i).x);
-    search_predict(s, &o->members, first, 1);
+        population_add(&o->members, queue_design(c->queue, i).x);
 }
 
-void offspring_make(Search *s, int variation_alone)
+void offspring_make(Offspring *o, const Breeding *w)
 {
-    Offspring *o = &s->offspring;
-    const int with_surrogate = search_uses_surrogate(s) && !variation_alone;
-    const size_t all = s->config->population, few = batch_size(s);
-    o->members.n = o->n_probes = 0;
-    if (with_surrogate) {
-        add_evolved(s);
-        if (search_has_front(s))
-            add_descended(s);
-        search_predict(s, &o->members, 0, 1);
-        add_probes(s);
+    o->members.n = o->n_probes = o->n_variation = 0;
+    if (!w->with_surrogate) {
+        add_variation(o, w);
+        return;
     }
-    add_variation(s, variation_alone ? all : !with_surrogate ? few : control_variation(&s->control, few) > 0 ? all : 0);
-    add_pending(s);
+    add_evolved(o, w);
+    if (w->has_front)
+        add_descended(o, w);
+    add_probes(o, w);
+    add_pending(o, w->common);
+    surrogate_predict(w->surrogate, &o->members, 0, 1);
+}
+
+/* -- which of them are evaluated ----------------------------------------------------------------------------------- */
+
+/* Candidates are offered to both criteria with lower confidence bounds of their objectives; pending designs lower the
+ * values to beat, by their predictions. */
+static void offer(Offspring *o, const Breeding *w)
+{
+    const Population *p = &o->members;
+    const size_t first_pending = p->n - o->n_pending;
+    for (size_t i = 0; i < p->n * p->n_obj; i++)
+        o->bound[i] = p->F[i] - (i < first_pending * p->n_obj ? OPTIMISM * p->error[i] : 0.0);
+    for (int kind = 0; kind < INFILL_KINDS; kind++) {
+        Infill *q = w->criteria->select[kind];
+        infill_offer(q, p->n, o->bound, p->violation, p->uncertainty, w->has_front ? p->chance : NULL);
+        for (size_t i = first_pending; i < p->n; i++)
+            infill_take(q, i);
+    }
+}
+
+/* Of the first `count` members those with the greatest gain beside what is picked already, by both criteria in turn,
+ * up to `limit` in the batch. */
+static size_t pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size_t count)
+{
+    size_t n = 0;
+    memset(o->allowed, 0, o->members.n);
+    memset(o->allowed, 1, count);
+    while (n < limit) {
+        const InfillKind criterion = n % 2 == 0 ? INFILL_HYPERVOLUME : INFILL_PBI;
+        const size_t i = infill_pick(w->criteria->select[criterion], o->allowed);
+        if (i == SIZE_MAX)
+            break;
+        infill_take(w->criteria->select[criterion == INFILL_PBI ? INFILL_HYPERVOLUME : INFILL_PBI], i);
+        n = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_INFILL);
+    }
+    return n;
+}
+
+size_t offspring_select(Offspring *o, const Breeding *w, Batch *b)
+{
+    const size_t size = batch_size(w->common), first = o->members.n - o->n_pending - o->n_probes - o->n_variation,
+                 end = first + o->n_probes + o->n_variation;
+    size_t n = 0;
+    if (w->with_surrogate) {
+        offer(o, w);
+        n = pick(o, w, b, size > o->n_probes ? size - o->n_probes : 0, first);
+    }
+    for (size_t i = first; i < end && n < size; i++)
+        n = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_OFFSPRING);
+    return n;
 }

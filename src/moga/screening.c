@@ -14,28 +14,26 @@
  *
  * Sources  Kennedy and O'Hagan, Biometrika 87 (2000) 1-13 (autoregression between levels)
  * Threads  one */
-#include "moga/state.h"
+#include "moga/screening.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "moga/hypervolume.h"
 
-void screening_begin(Search *s)
+void screening_begin(Screening *q, const Common *c)
 {
-    const Problem *p = s->problem;
-    Screening *q = &s->screening;
-    *q = (Screening){.cost = {.whole = 1}, .agreement = NAN};
-    if (s->config->fidelity == FIDELITY_OFF || p->n_cheap == 0 || p->is_noisy)
+    const Problem *p = c->problem;
+    *q = (Screening){.cost = {.whole = 1}, .agreement = NAN, .n_out = p->n_obj + p->n_con};
+    if (c->config->fidelity == FIDELITY_OFF || p->n_cheap == 0 || p->is_noisy)
         return;
     q->is_on = 1;
     q->cost = (LevelCosts){p->n_cheap, p->n_parts - p->n_cheap, p->n_parts};
 }
 
-void screening_free(Search *s)
+void screening_free(Screening *q)
 {
-    Screening *q = &s->screening;
     for (size_t i = 0; i < q->n; i++)
         free(q->design[i].parts);
     free(q->design);
@@ -45,37 +43,52 @@ void screening_free(Search *s)
     free(q->rows);
 }
 
+/* Output k, an objective or a limit, of a row of the archive; of screened design i by the cheap level; by the whole
+ * evaluation, which it has. */
+static double *output_of(const Archive *a, size_t row, size_t k)
+{
+    return k < a->n_obj ? a->Y + row * a->n_obj + k : a->H + row * a->n_con + k - a->n_obj;
+}
+
+static double cheap_value(const Screening *q, size_t i, size_t k)
+{
+    return q->y[i * q->n_out + k];
+}
+
+static double whole_value(const Screening *q, const Archive *a, size_t i, size_t k)
+{
+    return *output_of(a, q->design[i].finished, k);
+}
+
 /* -- what it costs ------------------------------------------------------------------------------------------------- */
 
 /* So far. */
-static size_t spent(const Search *s)
+static size_t spent(const Screening *q, const Common *c)
 {
-    const Screening *q = &s->screening;
-    return (s->archive.n - q->n - q->n_finished) * q->cost.whole + q->n * q->cost.cheap + q->n_finished * q->cost.rest;
+    return (c->archive.n - q->n - q->n_finished) * q->cost.whole + q->n * q->cost.cheap + q->n_finished * q->cost.rest;
 }
 
-size_t search_evaluations(const Search *s)
+size_t screening_evaluations(const Screening *q, const Common *c)
 {
-    return spent(s) / s->screening.cost.whole;
+    return spent(q, c) / q->cost.whole;
 }
 
-static size_t left(const Search *s)
+static size_t left(const Screening *q, const Common *c)
 {
-    const size_t all = search_evals(s) * s->screening.cost.whole, now = spent(s) + queue_pending(s->queue);
+    const size_t all = common_end(c) * q->cost.whole, now = spent(q, c) + queue_pending(c->queue);
     return all > now ? all - now : 0;
 }
 
-int search_is_spent(const Search *s)
+int screening_is_spent(const Screening *q, const Common *c)
 {
-    const Screening *q = &s->screening;
     const size_t next = q->n_open > 0 ? q->cost.rest : q->is_on ? q->cost.cheap + q->cost.rest : q->cost.whole;
-    return spent(s) + next > search_evals(s) * q->cost.whole;
+    return spent(q, c) + next > common_end(c) * q->cost.whole;
 }
 
-static int is_open(const Search *s, size_t i)
+static int is_open(const Screening *q, const Archive *a, size_t i)
 {
-    const Screened *d = &s->screening.design[i];
-    return d->finished == SIZE_MAX && s->archive.usable[d->row];
+    const Screened *d = &q->design[i];
+    return d->finished == SIZE_MAX && a->usable[d->row];
 }
 
 static size_t min_size(size_t a, size_t b)
@@ -84,33 +97,31 @@ static size_t min_size(size_t a, size_t b)
 }
 
 /* Designs to be finished when n more have been screened. */
-static size_t finish_due(const Search *s, size_t n)
+static size_t finish_due(const Screening *q, size_t n)
 {
-    const Screening *q = &s->screening;
     const size_t due = (q->n + n) / SCREENED_PER_FINISHED;
     return due > q->n_finished ? min_size(due - q->n_finished, q->n_open + n) : 0;
 }
 
-int screening_has_room(const Search *s, size_t n)
+size_t screening_room(const Screening *q, const Common *c, size_t n_max)
 {
-    const Screening *q = &s->screening;
-    if (q->cost.whole == 1)
-        return s->archive.n + queue_pending(s->queue) + n + s->reserved < search_evals(s);
-    const size_t one = q->is_on ? q->cost.cheap : q->cost.whole,
-                 kept = q->is_on ? finish_due(s, n + 1) * q->cost.rest : 0;
-    return (n + 1) * one + kept <= left(s);
+    const size_t one = q->is_on ? q->cost.cheap : q->cost.whole, all = left(q, c);
+    size_t n = 0;
+    while (n < n_max && (n + 1) * one + (q->is_on ? finish_due(q, n + 1) * q->cost.rest : 0) <= all)
+        n++;
+    return n;
 }
 
 /* -- results ------------------------------------------------------------------------------------------------------- */
 
-static Status grow(Screening *q, size_t n_out, Err *err)
+static Status grow(Screening *q, Err *err)
 {
     if (q->n < q->n_max)
         return STATUS_OK;
     const size_t n_max = q->n_max > 0 ? 2 * q->n_max : 128;
     Screened *design = realloc(q->design, n_max * sizeof *design);
     q->design = design ? design : q->design;
-    double *y = realloc(q->y, n_max * n_out * sizeof *y);
+    double *y = realloc(q->y, n_max * q->n_out * sizeof *y);
     q->y = y ? y : q->y;
     size_t *rows = realloc(q->rows, n_max * sizeof *rows);
     q->rows = rows ? rows : q->rows;
@@ -121,10 +132,9 @@ static Status grow(Screening *q, size_t n_out, Err *err)
 }
 
 /* Screened design x, or n. */
-static size_t find(const Search *s, const double x[])
+static size_t find(const Screening *q, const Common *c, const double x[])
 {
-    const Screening *q = &s->screening;
-    const size_t row = q->n > 0 ? pareto_archive_find(&s->archive, x) : 0;
+    const size_t row = q->n > 0 ? pareto_archive_find(&c->archive, x) : 0;
     size_t low = 0, high = q->n;
     while (low < high) {
         const size_t middle = (low + high) / 2;
@@ -136,138 +146,85 @@ static size_t find(const Search *s, const double x[])
     return low < q->n && q->design[low].row == row ? low : q->n;
 }
 
-static Status keep(Search *s, const Finished *done, Err *err)
+static Status keep(Screening *q, const Common *c, const Finished *done, Err *err)
 {
-    const Problem *p = s->problem;
-    Screening *q = &s->screening;
-    const size_t n_out = p->n_obj + p->n_con, size = p->n_cheap * p->part_size;
-    TRY(grow(q, n_out, err));
+    const Problem *p = c->problem;
+    const size_t size = p->n_cheap * p->part_size;
+    TRY(grow(q, err));
     Screened *d = &q->design[q->n];
-    *d = (Screened){s->archive.n, SIZE_MAX, done->parts ? malloc(size) : NULL};
+    *d = (Screened){c->archive.n, SIZE_MAX, done->parts ? malloc(size) : NULL};
     if (d->parts)
         memcpy(d->parts, done->parts, size);
-    memcpy(q->y + q->n * n_out, done->f, p->n_obj * sizeof *q->y);
+    memcpy(q->y + q->n * q->n_out, done->f, p->n_obj * sizeof *q->y);
     if (p->n_con > 0)
-        memcpy(q->y + q->n * n_out + p->n_obj, done->g, p->n_con * sizeof *q->y);
+        memcpy(q->y + q->n * q->n_out + p->n_obj, done->g, p->n_con * sizeof *q->y);
     q->n++;
     return STATUS_OK;
 }
 
-Status screening_take(Search *s, const Finished *done, Err *err)
+Status screening_take(Screening *q, const Common *c, const Finished *done, Err *err)
 {
-    Screening *q = &s->screening;
     if (done->evaluation->kind == KIND_SCREENED)
-        return keep(s, done, err);
-    const size_t i = find(s, done->evaluation->x);
+        return keep(q, c, done, err);
+    const size_t i = find(q, c, done->evaluation->x);
     if (i == q->n)
         return STATUS_OK;
-    q->design[i].finished = s->archive.n;
+    q->design[i].finished = c->archive.n;
     q->n_finished++;
     free(q->design[i].parts);
     q->design[i].parts = NULL;
     return STATUS_OK;
 }
 
-static void exchange(size_t n, double a[], double b[])
+void screening_exchange(Screening *q, Archive *a)
 {
-    for (size_t k = 0; k < n; k++) {
-        const double value = a[k];
-        a[k] = b[k];
-        b[k] = value;
-    }
+    for (size_t i = 0; i < q->n; i++)
+        for (size_t k = 0; k < q->n_out; k++) {
+            double *y = q->y + i * q->n_out + k, *value = output_of(a, q->design[i].row, k), was = *y;
+            *y = *value;
+            *value = was;
+        }
 }
 
-void screening_exchange(Search *s)
+const void *screening_parts(const Screening *q, const Common *c, const double x[])
 {
-    Archive *a = &s->archive;
-    const size_t m = a->n_obj, c = a->n_con;
-    for (size_t i = 0; i < s->screening.n; i++) {
-        const size_t row = s->screening.design[i].row;
-        double *y = s->screening.y + i * (m + c);
-        exchange(m, a->Y + row * m, y);
-        exchange(c, a->H + row * c, y + m);
-    }
-}
-
-const void *screening_parts(const Search *s, const double x[])
-{
-    const size_t i = find(s, x);
-    return i < s->screening.n ? s->screening.design[i].parts : NULL;
+    const size_t i = find(q, c, x);
+    return i < q->n ? q->design[i].parts : NULL;
 }
 
 /* -- what the cheap level says of the whole evaluation ------------------------------------------------------------- */
 
-/* Output k of design i by the cheap level, and of its row in the archive. */
-static double cheap_value(const Search *s, size_t i, size_t k)
+/* Designs that have both levels, in q->rows. */
+static size_t find_pairs(Screening *q, const Archive *a)
 {
-    return s->screening.y[i * (s->problem->n_obj + s->problem->n_con) + k];
-}
-
-static double value_of(const Search *s, size_t row, size_t k)
-{
-    const Archive *a = &s->archive;
-    return k < a->n_obj ? a->Y[row * a->n_obj + k] : a->H[row * a->n_con + k - a->n_obj];
-}
-
-/* Output k of screened design i by the whole evaluation, which it has. */
-static double whole_value(const Search *s, size_t i, size_t k)
-{
-    return value_of(s, s->screening.design[i].finished, k);
-}
-
-/* Sums over designs and lines through them stay finite. */
-static int is_far_from_overflow(const Search *s, size_t i)
-{
-    static const double MOST = DBL_MAX * 0x1p-32;
-    for (size_t k = 0; k < s->problem->n_obj + s->problem->n_con; k++)
-        if (!(fabs(cheap_value(s, i, k)) < MOST && fabs(whole_value(s, i, k)) < MOST))
-            return 0;
-    return 1;
-}
-
-/* Designs that have both levels, in screening.rows. */
-static size_t find_pairs(Search *s)
-{
-    Screening *q = &s->screening;
     q->n_rows = 0;
     for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished != SIZE_MAX && s->archive.usable[q->design[i].finished] && is_far_from_overflow(s, i))
+        if (q->design[i].finished != SIZE_MAX && a->usable[q->design[i].finished])
             q->rows[q->n_rows++] = i;
     return q->n_rows;
-}
-
-/* The power of two of `most`: what is divided by it keeps its digits. */
-static double scale_of(double most)
-{
-    return most > 0.0 ? ldexp(1.0, ilogb(most)) : 1.0;
 }
 
 typedef struct {
     double from, to, slope; /* means, slope between them */
 } Line;
 
-static Line fit_line(const Search *s, size_t k)
+/* Where squares overflow, or the cheap level is constant beside the whole evaluation: the mean of the latter. */
+static Line fit_line(const Screening *q, const Archive *a, size_t k)
 {
-    const Screening *q = &s->screening;
     const double n = (double)q->n_rows;
     Line line = {0.0, 0.0, 1.0};
-    double xx = 0.0, xy = 0.0, x_most = 0.0, y_most = 0.0;
+    double xx = 0.0, xy = 0.0;
     for (size_t j = 0; j < q->n_rows; j++) {
-        line.from += cheap_value(s, q->rows[j], k) / n;
-        line.to += whole_value(s, q->rows[j], k) / n;
+        line.from += cheap_value(q, q->rows[j], k) / n;
+        line.to += whole_value(q, a, q->rows[j], k) / n;
     }
     for (size_t j = 0; j < q->n_rows; j++) {
-        x_most = fmax(x_most, fabs(cheap_value(s, q->rows[j], k) - line.from));
-        y_most = fmax(y_most, fabs(whole_value(s, q->rows[j], k) - line.to));
-    }
-    const double x_scale = scale_of(x_most), y_scale = scale_of(y_most);
-    for (size_t j = 0; j < q->n_rows; j++) {
-        const double x = (cheap_value(s, q->rows[j], k) - line.from) / x_scale;
+        const double x = cheap_value(q, q->rows[j], k) - line.from;
         xx += x * x;
-        xy += x * ((whole_value(s, q->rows[j], k) - line.to) / y_scale);
+        xy += x * (whole_value(q, a, q->rows[j], k) - line.to);
     }
-    line.slope = xx > 0.0 ? xy / xx * (y_scale / x_scale) : 1.0;
-    if (!isfinite(line.slope)) /* beside what the whole evaluation says, the cheap level is constant */
+    line.slope = xx > 0.0 ? xy / xx : 1.0;
+    if (!isfinite(line.slope))
         line.slope = 0.0;
     return line;
 }
@@ -279,92 +236,66 @@ static int order_of(double a, double b)
 
 /* Kendall's tau of objective k, of the pairs that the whole evaluation tells apart: one that the cheap level does not
  * tell apart counts as half of an agreement and half of its contrary. NAN: there is no such pair. */
-static double agreement_of(const Search *s, size_t k)
+static double agreement_of(const Screening *q, const Archive *a, size_t k)
 {
-    const Screening *q = &s->screening;
     double same = 0.0, pairs = 0.0;
-    for (size_t i = 0; i < q->n_rows; i++)
-        for (size_t j = 0; j < i; j++) {
-            const size_t a = q->rows[i], b = q->rows[j];
-            const int whole = order_of(whole_value(s, a, k), whole_value(s, b, k));
-            same += whole * order_of(cheap_value(s, a, k), cheap_value(s, b, k));
+    for (size_t j = 0; j < q->n_rows; j++)
+        for (size_t i = 0; i < j; i++) {
+            const size_t x = q->rows[j], y = q->rows[i];
+            const int whole = order_of(whole_value(q, a, x, k), whole_value(q, a, y, k));
+            same += whole * order_of(cheap_value(q, x, k), cheap_value(q, y, k));
             pairs += whole != 0;
         }
     return pairs > 0.0 ? same / pairs : NAN;
 }
 
 /* An objective that the whole evaluation does not tell apart says nothing. */
-static double mean_agreement(const Search *s)
+static double mean_agreement(const Screening *q, const Archive *a)
 {
-    const size_t m = s->problem->n_obj;
-    double sum = 0.0, n = 0.0, *tau = s->scratch.f;
-    for (size_t k = 0; k < m; k++) {
-        tau[k] = agreement_of(s, k);
-        n += !isnan(tau[k]);
+    double sum = 0.0, n = 0.0;
+    for (size_t k = 0; k < a->n_obj; k++) {
+        const double tau = agreement_of(q, a, k);
+        sum += isnan(tau) ? 0.0 : tau;
+        n += !isnan(tau);
     }
-    for (size_t k = 0; k < m; k++)
-        sum += isnan(tau[k]) ? 0.0 : tau[k] / n;
-    return n > 0.0 ? sum : 1.0;
+    return n > 0.0 ? sum / n : 1.0;
 }
 
 /* What is predicted from the cheap level is not used any more, but for an initial sample that is to be finished. */
-static void turn_off(Search *s)
+static void turn_off(Screening *q, Archive *a)
 {
-    Screening *q = &s->screening;
     q->is_on = 0;
     for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished == SIZE_MAX && s->archive.generation[q->design[i].row] > 0)
-            pareto_archive_drop(&s->archive, q->design[i].row);
-}
-
-static void look_at_agreement(Search *s)
-{
-    Screening *q = &s->screening;
-    q->agreement = mean_agreement(s);
-    if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
-        turn_off(s);
+        if (q->design[i].finished == SIZE_MAX && a->generation[q->design[i].row] > 0)
+            pareto_archive_drop(a, q->design[i].row);
 }
 
 /* -- predictions --------------------------------------------------------------------------------------------------- */
 
-static double *output_of(Search *s, size_t row, size_t k)
+static void predict(Screening *q, Archive *a)
 {
-    Archive *a = &s->archive;
-    return k < a->n_obj ? a->Y + row * a->n_obj + k : a->H + row * a->n_con + k - a->n_obj;
-}
-
-static int is_finite_prediction(const Search *s, size_t row)
-{
-    int is_finite = 1;
-    for (size_t k = 0; k < s->problem->n_obj + s->problem->n_con; k++)
-        is_finite &= isfinite(value_of(s, row, k)) != 0;
-    return is_finite;
-}
-
-static void predict(Search *s)
-{
-    const Problem *p = s->problem;
-    const Screening *q = &s->screening;
-    for (size_t k = 0; k < p->n_obj + p->n_con; k++) {
-        const Line line = q->n_rows >= LEVEL_PAIRS ? fit_line(s, k) : (Line){0.0, 0.0, 1.0};
-        for (size_t i = 0; i < q->n; i++)
-            if (is_open(s, i))
-                *output_of(s, q->design[i].row, k) = line.to + line.slope * (cheap_value(s, i, k) - line.from);
+    for (size_t k = 0; k < q->n_out; k++) {
+        const Line line = q->n_rows >= LEVEL_PAIRS ? fit_line(q, a, k) : (Line){0.0, 0.0, 1.0};
+        for (size_t i = 0; i < q->n; i++) {
+            const size_t row = q->design[i].row;
+            if (!is_open(q, a, i))
+                continue;
+            double *y = output_of(a, row, k);
+            *y = line.to + line.slope * (cheap_value(q, i, k) - line.from);
+            if (!isfinite(*y))
+                pareto_archive_drop(a, row);
+        }
     }
     for (size_t i = 0; i < q->n; i++)
-        if (is_open(s, i) && !is_finite_prediction(s, q->design[i].row))
-            pareto_archive_drop(&s->archive, q->design[i].row);
-        else if (is_open(s, i))
-            pareto_archive_predicted(&s->archive, q->design[i].row);
+        if (is_open(q, a, i))
+            pareto_archive_predicted(a, q->design[i].row);
 }
 
 /* -- the front ----------------------------------------------------------------------------------------------------- */
 
 /* Of whole evaluations and predictions together. */
-static Status find_front(Search *s, Err *err)
+static Status find_front(Screening *q, const Archive *a, Err *err)
 {
-    const Archive *a = &s->archive;
-    Screening *q = &s->screening;
     NdTree *tree;
     NdChange change;
     size_t n = 0;
@@ -399,34 +330,34 @@ static Status find_front(Search *s, Err *err)
     return status;
 }
 
-Status screening_update(Search *s, Err *err)
+Status screening_update(Screening *q, Archive *a, Err *err)
 {
-    if (s->screening.n == 0)
+    if (q->n == 0)
         return STATUS_OK;
-    if (find_pairs(s) >= LEVEL_PAIRS)
-        look_at_agreement(s);
-    predict(s);
-    return find_front(s, err);
+    if (find_pairs(q, a) >= LEVEL_PAIRS) {
+        q->agreement = mean_agreement(q, a);
+        if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
+            turn_off(q, a);
+    }
+    predict(q, a);
+    return find_front(q, a, err);
 }
 
 /* -- finishing ----------------------------------------------------------------------------------------------------- */
 
-static size_t append(Search *s, size_t n, size_t row)
+static size_t append(Screening *q, const Archive *a, Batch *b, size_t n, size_t row)
 {
-    const Archive *a = &s->archive;
-    memcpy(s->batch.X + n * a->n_var, a->X + row * a->n_var, a->n_var * sizeof *a->X);
-    s->batch.repeat[n] = 0;
-    s->screening.is_chosen[row] = 1;
-    return n + 1;
+    q->is_chosen[row] = 1;
+    return batch_repeat(b, a, n, row, 0);
 }
 
 /* Of the box about the front of results and predictions, what the front of the whole evaluations dominates. */
-static Status measure_front(Search *s, Hypervolume **out, Err *err)
+static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hypervolume **out, Err *err)
 {
-    const Screening *q = &s->screening;
-    Archive *a = &s->archive;
     const size_t m = a->n_obj;
-    double *lower = s->scratch.f, *reference = s->scratch.reference;
+    double *lower = calloc(2 * m, sizeof *lower), *reference = lower + m;
+    if (!lower)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a box of %zu objectives", m);
     for (size_t k = 0; k < m; k++) {
         double min = INFINITY, max = -INFINITY;
         for (size_t i = 0; i < q->n_front; i++) {
@@ -436,27 +367,27 @@ static Status measure_front(Search *s, Hypervolume **out, Err *err)
         lower[k] = min;
         reference[k] = min + RAY_START * (max > min ? max - min : 1.0);
     }
-    TRY(hypervolume_create(out, m, lower, reference, s->config->seed, err));
+    const Status status = hypervolume_create(out, m, lower, reference, seed, err);
+    free(lower);
     pareto_archive_list_front(a);
-    for (size_t i = 0; i < a->n_front; i++)
+    for (size_t i = 0; status == STATUS_OK && i < a->n_front; i++)
         hypervolume_add(*out, a->Y + a->front[i] * m);
-    return STATUS_OK;
+    return status;
 }
 
 /* Of the open designs of the front those that add most, one after the other. */
-static Status append_best(Search *s, size_t *n, size_t limit, Err *err)
+static Status append_best(Screening *q, Common *c, Batch *b, size_t *n, size_t limit, Err *err)
 {
-    const Archive *a = &s->archive;
+    Archive *a = &c->archive;
     Hypervolume *h;
-    TRY(measure_front(s, &h, err));
+    TRY(measure_front(q, a, c->config->seed, &h, err));
     while (*n < limit) {
         size_t best = SIZE_MAX;
         double most = -1.0;
-        for (size_t j = 0; j < s->screening.n_front; j++) {
-            const size_t row = s->screening.front[j];
-            const double gain = a->kind[row] == KIND_SCREENED && !s->screening.is_chosen[row]
-                                    ? hypervolume_gain(h, a->Y + row * a->n_obj)
-                                    : -1.0;
+        for (size_t j = 0; j < q->n_front; j++) {
+            const size_t row = q->front[j];
+            const double gain =
+                a->kind[row] == KIND_SCREENED && !q->is_chosen[row] ? hypervolume_gain(h, a->Y + row * a->n_obj) : -1.0;
             if (gain > most) {
                 most = gain;
                 best = row;
@@ -465,28 +396,18 @@ static Status append_best(Search *s, size_t *n, size_t limit, Err *err)
         if (best == SIZE_MAX)
             break;
         hypervolume_add(h, a->Y + best * a->n_obj);
-        *n = append(s, *n, best);
+        *n = append(q, a, b, *n, best);
     }
     hypervolume_free(h);
     return STATUS_OK;
 }
 
-/* Open designs in their order. */
-static void append_open(Search *s, size_t *n, size_t limit)
-{
-    const Screening *q = &s->screening;
-    for (size_t i = 0; i < q->n && *n < limit; i++)
-        if (is_open(s, i) && !q->is_chosen[q->design[i].row])
-            *n = append(s, *n, q->design[i].row);
-}
-
 /* Size of a batch of n new designs and `wanted` to be finished, as far as there is room. */
-static size_t size_with(const Search *s, size_t n, size_t wanted)
+static size_t size_with(const Screening *q, const Common *c, const Batch *b, size_t n, size_t wanted)
 {
-    const Screening *q = &s->screening;
-    const size_t asked = n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(s),
+    const size_t asked = n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(q, c),
                  room = all > asked ? all - asked : 0;
-    return min_size(s->batch.size_max, n + min_size(wanted, room / q->cost.rest));
+    return min_size(b->size_max, n + min_size(wanted, room / q->cost.rest));
 }
 
 /* Pairs to compare the levels by, or the initial sample where nothing is screened any more. */
@@ -495,31 +416,30 @@ static size_t wanted_now(const Screening *q)
     return !q->is_on ? q->n : q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : 0;
 }
 
-Status screening_finish(Search *s, size_t *n, Err *err)
+Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 {
-    const Screening *q = &s->screening;
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(s, *n, wanted_now(q));
+    const size_t size = size_with(q, c, b, *n, wanted_now(q));
     if (size <= *n)
         return STATUS_OK;
     if (q->is_on)
-        TRY(append_best(s, n, size, err));
-    append_open(s, n, size);
+        TRY(append_best(q, c, b, n, size, err));
+    for (size_t i = 0; i < q->n && *n < size; i++) /* further ones in their order */
+        if (is_open(q, &c->archive, i) && !q->is_chosen[q->design[i].row])
+            *n = append(q, &c->archive, b, *n, q->design[i].row);
     return STATUS_OK;
 }
 
-int screening_is_due(const Search *s)
+int screening_is_due(const Screening *q, const Common *c)
 {
-    const Screening *q = &s->screening;
-    return q->is_on && q->n_open > 0 && finish_due(s, 0) > 0 && left(s) >= q->cost.rest;
+    return q->is_on && q->n_open > 0 && finish_due(q, 0) > 0 && left(q, c) >= q->cost.rest;
 }
 
-Status screening_last(Search *s, size_t *n, Err *err)
+Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 {
-    const Screening *q = &s->screening;
-    const int is_last = s->generation > s->config->generations || !screening_has_room(s, 0);
+    const int is_last = c->generation > c->config->generations || screening_room(q, c, 1) == 0;
     if (*n > 0 || q->n == 0 || !q->is_on || !is_last)
         return STATUS_OK;
-    return append_best(s, n, size_with(s, 0, batch_size(s)), err);
+    return append_best(q, c, b, n, size_with(q, c, b, 0, batch_size(c)), err);
 }

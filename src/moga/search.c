@@ -1,4 +1,5 @@
 #include "moga/search.h"
+#include "moga/replication.h"
 #include "moga/state.h"
 
 #include <math.h>
@@ -22,11 +23,11 @@ const char *stop_reason_words(StopReason reason)
 
 static StopReason reason_to_stop(const Search *s)
 {
-    const SearchConfig *c = s->config;
-    const Archive *a = &s->archive;
-    if (search_is_spent(s))
+    const SearchConfig *c = s->common.config;
+    const Archive *a = &s->common.archive;
+    if (screening_is_spent(&s->screening, &s->common))
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
-    if (s->generation >= c->generations && !screening_is_due(s))
+    if (s->common.generation >= c->generations && !screening_is_due(&s->screening, &s->common))
         return STOP_GENERATIONS;
     if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)
         return STOP_SHARE;
@@ -38,45 +39,45 @@ static StopReason reason_to_stop(const Search *s)
 /* Eight times in stop_after evaluations: this generation has passed one of those marks. */
 static int is_due(const Search *s)
 {
-    const Archive *a = &s->archive;
-    const size_t wanted = s->config->stop_after, step = wanted / 8 + 1;
+    const Archive *a = &s->common.archive;
+    const size_t wanted = s->common.config->stop_after, step = wanted / 8 + 1;
     size_t before = a->n;
-    while (before > 0 && a->generation[before - 1] == s->generation)
+    while (before > 0 && a->generation[before - 1] == s->common.generation)
         before--;
-    return wanted > 0 && s->convergence.end == 0 && a->n > wanted && a->n / step > before / step;
+    return wanted > 0 && s->common.convergence.end == 0 && a->n > wanted && a->n / step > before / step;
 }
 
 static Status look_for_convergence(Search *s, Err *err)
 {
-    const Archive *a = &s->archive;
+    const Archive *a = &s->common.archive;
     unsigned char *counts = s->rows.counts;
-    const size_t cuts[] = {a->n - s->config->stop_after, a->n};
+    const size_t cuts[] = {a->n - s->common.config->stop_after, a->n};
     double h[2];
     if (!is_due(s))
         return STATUS_OK;
     for (size_t i = 0; i < a->n; i++)
         counts[i] = a->usable[i] && a->replicates[i] > 0 && a->violation[i] == 0.0;
-    const GrowingFront designs = {a->n, a->n_obj, a->F, a->error, counts, a->on_front};
+    const GrowingFront designs = {a->n, a->n_obj, a->F, a->error, NULL, counts, a->on_front};
     TRY(convergence_shares(&designs, 2, cuts, h, err));
     if (!(h[1] - h[0] <= hypervolume_error(h[1])))
         return STATUS_OK;
-    s->convergence.after = s->config->stop_after;
-    s->convergence.end = a->n + queue_pending(s->queue) + replication_due(s);
+    s->common.convergence.after = s->common.config->stop_after;
+    s->common.convergence.end = a->n + queue_pending(s->common.queue);
     return STATUS_OK;
 }
 
 /* A search that is resumed with another stop_after may not be over any more. */
 static void reconsider_convergence(Search *s)
 {
-    if (s->convergence.after != s->config->stop_after)
-        s->convergence = (Convergence){0};
+    if (s->common.convergence.after != s->common.config->stop_after)
+        s->common.convergence = (Convergence){0};
 }
 
 /* -- the view of the observer -------------------------------------------------------------------------------------- */
 
 static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
-    const Archive *a = &s->archive;
+    const Archive *a = &s->common.archive;
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -96,24 +97,24 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_front = a->n_front,
         .n_failed = a->n_failed,
         .n_replicates = a->n_replicates,
-        .n_evaluations = search_evaluations(s),
+        .n_evaluations = screening_evaluations(&s->screening, &s->common),
         .n_screened = s->screening.n,
         .level_agreement = s->screening.agreement,
         .has_left_screening = s->screening.n > 0 && !s->screening.is_on,
-        .generation_now = s->generation,
+        .generation_now = s->common.generation,
         .n_left_out = surrogate_left_out(s->surrogate),
         .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
         .waited_s = s->waited_s,
         .surrogate_s = s->surrogate_s,
         .is_last = is_last,
-        .is_asynchronous = s->config->asynchronous != 0,
+        .is_asynchronous = s->common.config->asynchronous != 0,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
     };
-    screening_exchange(s);
+    screening_exchange(&s->screening, &s->common.archive);
     const int stop = observe && observe(&view, user);
-    screening_exchange(s);
+    screening_exchange(&s->screening, &s->common.archive);
     return stop;
 }
 
@@ -128,24 +129,24 @@ static Status begin(Search *s, const SearchStart *start, StopReason *reason, Err
     TRY(state_grow_rows(s, err));
     reconsider_convergence(s);
     *reason = start->state ? reason_to_stop(s) : STOP_NONE;
-    s->generation += start->state != NULL;
+    s->common.generation += start->state != NULL;
     return STATUS_OK;
 }
 
 static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason, Err *err)
 {
     TRY(begin(s, start, reason, err));
-    for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
-        TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
+    for (; *reason == STOP_NONE; s->common.generation += *reason == STOP_NONE) {
+        TRY(s->common.generation == 0 ? generation_first(s, err) : generation_next(s, err));
         TRY(state_grow_rows(s, err));
         TRY(look_for_convergence(s, err));
         *reason = reason_to_stop(s);
         if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
     }
-    if (queue_pending(s->queue) == 0 || *reason == STOP_ASKED)
+    if (queue_pending(s->common.queue) == 0 || *reason == STOP_ASKED)
         return STATUS_OK;
-    s->generation++;
+    s->common.generation++;
     TRY(generation_last(s, err));
     TRY(state_grow_rows(s, err));
     report(s, 1, observe, user);
@@ -170,12 +171,12 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
 
 static Status open_queue(Search *s, const SearchStart *start, Err *err)
 {
-    const int asynchronous = s->config->asynchronous;
+    const int asynchronous = s->common.config->asynchronous;
     const size_t n_before = start ? start->n + (asynchronous ? start->n_later : 0) : 0;
-    TRY(queue_open(&s->queue, s->problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
-                   NOTE_PREDICTED + s->problem->n_obj, (long)n_before, err));
+    TRY(queue_open(&s->common.queue, s->common.problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
+                   (long)n_before, err));
     if (start)
-        queue_know(s->queue, start->n_later, start->row + (start->each ? 0 : start->n));
+        queue_know(s->common.queue, start->n_later, start->row + (start->each ? 0 : start->n));
     return STATUS_OK;
 }
 
@@ -188,15 +189,14 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err)
 {
-    Search s = {.problem = problem, .config = config, .start = clock_seconds()};
+    Search s = {.common = {.problem = problem, .config = config}, .start = clock_seconds()};
     TRY(check(problem, config, err));
-    control_begin(&s.control);
     Status status = state_create(&s, err);
     if (status == STATUS_OK)
         status = open_queue(&s, start, err);
     if (status == STATUS_OK)
         status = run_loop(&s, start, observe, user, reason, err);
-    queue_close(s.queue);
+    queue_close(s.common.queue);
     state_free(&s);
     return status;
 }

@@ -4,28 +4,24 @@
  *       Latin hypercube and given designs, evaluated
  *   2 Surrogate (surrogate.h)
  *       RBF interpolant of the archive; hyperparameters are tuned now and then. Of an output with waves along single
- *       variables the kernel gets an additive part (rbf/rbf.h)
+ *       variables the kernel gets an additive part (rbf/rbf.h). Used while its leave-one-out errors are small enough
  *   3 Offspring (offspring.c): tournament, SBX, polynomial mutation
  *       evolved     INNER_GENERATIONS generations of variation and selection on the surrogate; a share of the pairs, as
  *                   many as objectives have waves, is mutated over the whole box
  *       descended   descents on the surrogate along reference vectors, from the best design of each
  *       probes      designs of the front with one variable elsewhere, where objectives have waves
- *       variation   children of the population; the only offspring where the surrogate is not used
- *   4 Infill selection of a batch (infill_select.c)
+ *       variation   children of the population, where the surrogate is not used or proposes nothing new
+ *   4 Infill selection of a batch (offspring.c)
  *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is
  *                   that of lower confidence bounds, prediction minus OPTIMISM times its error in every objective:
  *                   where the surrogate errs more there is more to find
- *       variation   as many children of variation as infill loses to failures, those with the greatest predicted gain
- *       probes      times the share of objectives with waves a share that grows while probes are better than predicted
- *                   and falls where they are not (control.h). What a surrogate knows of one valley says nothing of the
- *                   others, and what is gained at once is no measure of it
+ *       probes      PROBE_SHARE times the share of objectives with waves: what a surrogate knows of one valley says
+ *                   nothing of the others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted
- *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by
- *     the cheap level, and in full for those that promise most (screening.c)
- *   6 Control (control.h)
- *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone
- *   7 Environmental selection (selection.h)
+ *   5 Evaluation (generation.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES
+ *     by the cheap level, and in full for those that promise most (screening.c)
+ *   6 Environmental selection (selection.h)
  *       NSGA-III among members and results; other designs are dropped. Back to 2
  *
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count; no
@@ -33,11 +29,8 @@
  * Never twice   a design that is in the archive, failed ones too, is not evaluated again, except as a replicate
  * Noise         a share replicate_share of the evaluations, beyond the first REPLICATE_AFTER for each variable, goes to
  *               replicates of the front: the best in each objective and the knee, then the best for most reference
- *               vectors; a quarter of them during the search, the rest at its end. A design has the mean of its
- *               replicates, and dominance asks for more than the standard errors (moga/archive.h)
- *                 significant  standard deviation above a fifth of the front's range: parents, survivors and the front
- *                              to be improved are compared by estimates (moga/noise.h)
- *                 negligible   below a thousandth of the range: replication ends
+ *               vectors. A design has the mean of its replicates, and dominance asks for more than the standard
+ *               errors (moga/archive.h). Standard deviations below a thousandth of the front's range end replication
  * Threads       evaluations go through a queue (evaluate/queue.h) to as many workers as the problem has; a batch is
  *               asked for, then taken in that order. Set BLAS to one thread
  * Asynchronous  the same queue in the order of arrival: no worker waits for the slowest of a batch, and the next one is
@@ -51,7 +44,7 @@
  *               means. A new variable that outlives a generation is one more line in pack_search (state.c), and
  *               STATE_VERSION one higher
  * Converged     stop_after evaluations that gain no more hypervolume than its standard error end the search
- *               (moga/convergence.h); where evaluations are noisy after the last replicates
+ *               (moga/convergence.h)
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III)
  *               Deb and Agrawal, Complex Systems 9 (1995) 115-148 (SBX)

@@ -8,49 +8,42 @@
 /* -- memory -------------------------------------------------------------------------------------------------------- */
 
 /* Reference vectors of infill. */
-static size_t n_vectors(const Search *s)
+static size_t n_vectors(const Common *c)
 {
-    const size_t population = s->config->population;
-    return s->problem->n_obj < 2 ? 1 : population < VECTORS ? VECTORS : population;
+    const size_t population = c->config->population;
+    return c->problem->n_obj < 2 ? 1 : population < VECTORS ? VECTORS : population;
 }
 
 static void layout(void *search, Carve *c)
 {
     Search *s = search;
-    const size_t n_var = s->problem->n_var, n_obj = s->problem->n_obj, n_pool = s->pool.n_max;
+    const Problem *p = s->common.problem;
+    const size_t n_var = p->n_var, n_pool = s->offspring.pool.n_max;
     Batch *b = &s->batch;
+    Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
-    b->X = carve(c, b->n_max * n_var, sizeof(double));
-    b->F = carve(c, b->n_max * n_obj, sizeof(double));
-    b->predicted = carve(c, b->n_max * n_obj, sizeof(double));
-    b->ok = carve(c, b->n_max, 1);
-    b->kind = carve(c, b->n_max, 1);
-    b->is_probe = carve(c, b->n_max, 1);
-    b->was_predicted = carve(c, b->n_max, 1);
-    b->repeat = carve(c, b->n_max, sizeof(size_t));
-    s->control.F = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
-    s->control.predicted = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
-    s->offspring.allowed = carve(c, n_pool, 1);
-    w->survivors = carve(c, n_pool, sizeof(size_t));
+    b->X = carve(c, b->size_max * n_var, sizeof(double));
+    b->kind = carve(c, b->size_max, 1);
+    b->repeat = carve(c, b->size_max, sizeof(size_t));
+    o->allowed = carve(c, n_pool, 1);
+    o->survivors = carve(c, n_pool, sizeof(size_t));
+    o->bound = carve(c, n_pool * p->n_obj, sizeof(double));
+    o->children = carve(c, 2 * n_var, sizeof(double));
+    o->descent_vector = carve(c, s->criteria.vectors.n, sizeof(size_t));
+    o->descent_X = carve(c, n_pool * n_var, sizeof(double));
     w->members = carve(c, n_pool, sizeof(size_t));
-    w->bound = carve(c, n_pool * n_obj, sizeof(double));
     w->slices = carve(c, b->size_max, sizeof(size_t));
     w->samples = carve(c, b->size_max * n_var, sizeof(double));
     w->given = carve(c, n_var, sizeof(double));
-    w->children = carve(c, 2 * n_var, sizeof(double));
-    w->descent_vector = carve(c, s->criteria.vectors.n, sizeof(size_t));
-    w->descent_X = carve(c, n_pool * n_var, sizeof(double));
-    w->note = carve(c, NOTE_PREDICTED + n_obj, sizeof(double));
-    w->f = carve(c, n_obj, sizeof(double));
-    w->g = carve(c, s->problem->n_con, sizeof(double));
+    w->f = carve(c, p->n_obj, sizeof(double));
+    w->g = carve(c, p->n_con, sizeof(double));
     w->x = carve(c, n_var, sizeof(double));
-    w->reference = carve(c, n_obj, sizeof(double));
 }
 
 static Status create_criteria(Search *s, size_t n_pool, Err *err)
 {
     Criteria *q = &s->criteria;
-    TRY(directions_spread(&q->vectors, s->problem->n_obj, n_vectors(s), err));
+    TRY(directions_spread(&q->vectors, s->common.problem->n_obj, n_vectors(&s->common), err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, err));
     return STATUS_OK;
@@ -58,31 +51,38 @@ static Status create_criteria(Search *s, size_t n_pool, Err *err)
 
 static Status create_selection(Search *s, size_t n_pool, Err *err)
 {
-    const size_t n_obj = s->problem->n_obj;
+    const size_t n_obj = s->common.problem->n_obj;
     size_t outer, inner;
-    directions_choose(n_obj, s->config->population, &outer, &inner);
+    directions_choose(n_obj, s->common.config->population, &outer, &inner);
     TRY(directions_create(&s->directions, n_obj, outer, inner, err));
     return selection_create(&s->selection, n_pool, &s->directions, err);
 }
 
+/* Asynchronous: the workers and a part of a batch. */
+static size_t pending_max(const SearchConfig *c, size_t n_workers)
+{
+    return c->asynchronous && n_workers > 1 ? n_workers + batch_size_max(c) / LOOK_AHEAD_SHARE + 1 : 0;
+}
+
 Status state_create(Search *s, Err *err)
 {
-    const Problem *p = s->problem;
-    screening_begin(s);
-    const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
-    const size_t pending = batch_pending_max(s->config, p->n_workers);
+    const Problem *p = s->common.problem;
+    const SearchConfig *c = s->common.config;
+    screening_begin(&s->screening, &s->common);
+    const size_t population = c->population, initial = c->n_given + generation_samples(s);
+    const size_t pending = pending_max(c, p->n_workers);
     const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * pending;
-    const size_t evals = s->config->max_evals > 4 ? s->config->max_evals : 4;
-    const size_t centres = s->config->surrogate_max < evals ? s->config->surrogate_max : evals;
+    const size_t evals = c->max_evals > 4 ? c->max_evals : 4;
+    const size_t centres = c->surrogate_max < evals ? c->surrogate_max : evals;
     s->batch.size_max = initial > population ? initial : population;
-    s->batch.n_max = s->batch.size_max + pending;
+    s->offspring.pending_max = pending;
     TRY(create_selection(s, n_pool, err));
     TRY(create_criteria(s, n_pool, err));
-    TRY(pareto_archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(pareto_archive_init(&s->common.archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_pool, p->n_var, p->n_obj, err));
-    TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->offspring.pool, n_pool, p->n_var, p->n_obj, err));
     s->store = carve_all(layout, s);
     return s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
 }
@@ -91,15 +91,15 @@ void state_free(Search *s)
 {
     directions_free(&s->directions);
     directions_free(&s->criteria.vectors);
-    pareto_archive_free(&s->archive);
+    pareto_archive_free(&s->common.archive);
     selection_free(s->selection);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->criteria.select[kind]);
     surrogate_free(s->surrogate);
-    screening_free(s);
+    screening_free(&s->screening);
     population_free(&s->population);
     population_free(&s->offspring.members);
-    population_free(&s->pool);
+    population_free(&s->offspring.pool);
     free(s->state.bytes);
     free(s->rows.importance);
     free(s->rows.counts);
@@ -109,46 +109,44 @@ void state_free(Search *s)
 Status state_grow_rows(Search *s, Err *err)
 {
     PerRow *rows = &s->rows;
-    if (s->archive.n <= rows->n_max)
+    if (s->common.archive.n <= rows->n_max)
         return STATUS_OK;
     free(rows->importance);
     free(rows->counts);
-    rows->n_max = 2 * s->archive.n;
+    rows->n_max = 2 * s->common.archive.n;
     rows->importance = calloc(rows->n_max, sizeof *rows->importance);
     rows->counts = calloc(rows->n_max, 1);
     if (rows->importance && rows->counts)
         return STATUS_OK;
     rows->n_max = 0;
-    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->archive.n);
+    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->common.archive.n);
 }
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 13 };
+enum { STATE_VERSION = 14 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
 {
-    const size_t n_var = s->problem->n_var, n_note = NOTE_PREDICTED + s->problem->n_obj;
-    double *x = s->scratch.x, *note = s->scratch.note;
-    size_t n = queue_pending(s->queue);
+    const size_t n_var = s->common.problem->n_var;
+    double *x = s->scratch.x;
+    size_t n = queue_pending(s->common.queue);
     pack_size(p, &n, UINT32_MAX);
     for (size_t i = 0; i < n && !p->faulty; i++) {
-        Asked asked = {.x = x, .note = note};
+        Asked asked = {.x = x};
         size_t kind;
         if (!p->reading) {
-            asked = queue_design(s->queue, i);
+            asked = queue_design(s->common.queue, i);
             memcpy(x, asked.x, n_var * sizeof *x);
-            memcpy(note, asked.note, n_note * sizeof *note);
         }
         kind = asked.kind;
         pack_numbers(p, x, n_var, -DBL_MAX, DBL_MAX);
-        pack_numbers(p, note, n_note, -DBL_MAX, DBL_MAX);
         pack_size(p, &asked.repeat, UINT32_MAX);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
         if (p->reading && !p->faulty)
-            p->faulty = queue_ask(s->queue, &asked, &(Err){0}) != STATUS_OK;
+            p->faulty = queue_ask(s->common.queue, &asked, &(Err){0}) != STATUS_OK;
     }
 }
 
@@ -164,19 +162,18 @@ int search_state_is_current(const void *state, size_t n_state)
 
 static void pack_search(Search *s, Pack *p)
 {
-    const Problem *problem = s->problem;
+    const Problem *problem = s->common.problem;
     pack_expect(p, STATE_VERSION);
     pack_expect(p, problem->n_var);
     pack_expect(p, problem->n_obj);
     pack_expect(p, problem->n_con);
-    pack_expect(p, s->config->population);
-    pack_expect(p, s->archive.n);
-    pack_size(p, &s->generation, UINT32_MAX);
-    pack_size(p, &s->n_probed, UINT32_MAX);
-    control_pack(&s->control, p, problem->n_obj);
-    population_pack(&s->population, p, &s->archive);
+    pack_expect(p, s->common.config->population);
+    pack_expect(p, s->common.archive.n);
+    pack_size(p, &s->common.generation, UINT32_MAX);
+    pack_size(p, &s->offspring.n_probed, UINT32_MAX);
+    population_pack(&s->population, p, &s->common.archive);
     surrogate_pack(s->surrogate, p);
-    convergence_pack(&s->convergence, p);
+    convergence_pack(&s->common.convergence, p);
     pack_size(p, &s->screening.is_on, 1);
     pack_pending(s, p);
 }
@@ -198,27 +195,27 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
 {
     Restoring *r = restoring;
     Search *s = r->s;
-    const Problem *p = s->problem;
+    const Problem *p = s->common.problem;
     const size_t i = r->n++;
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = (unsigned char)e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
-    TRY(screening_take(s, &(Finished){.evaluation = e, .f = f, .g = g}, err));
+    TRY(screening_take(&s->screening, &s->common, &(Finished){.evaluation = e, .f = f, .g = g}, err));
     if (r->start->on_front && !p->is_noisy)
-        return pareto_archive_restore(&s->archive, e->x, f, g, ok, kind, (size_t)e->generation, r->start->on_front[i],
-                                      err);
-    return pareto_archive_insert(&s->archive, 1, e->x, f, g, &ok, kind, (size_t)e->generation, err);
+        return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, (size_t)e->generation,
+                                      r->start->on_front[i], err);
+    return pareto_archive_insert(&s->common.archive, 1, e->x, f, g, &ok, kind, (size_t)e->generation, err);
 }
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
-    TRY(pareto_archive_reserve(&s->archive, start->n + start->n / 8, err));
+    TRY(pareto_archive_reserve(&s->common.archive, start->n + start->n / 8, err));
     Restoring restoring = {s, start, 0};
     if (start->each)
         TRY(start->each(restore_row, &restoring, start->user, err));
     while (restoring.n < start->n)
         TRY(restore_row(&start->row[restoring.n], &restoring, err));
-    pareto_archive_update_noise(&s->archive);
+    pareto_archive_update_noise(&s->common.archive);
     if (!start->state)
         return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
@@ -228,5 +225,5 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
                     "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
                     "another version, or with other settings",
                     start->n_state, start->n);
-    return screening_update(s, err);
+    return screening_update(&s->screening, &s->common.archive, err);
 }

@@ -209,12 +209,6 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
     return fit_success(s, a, tuning, err);
 }
 
-void surrogate_estimate(const Surrogate *s, Archive *a)
-{
-    for (size_t k = 0; s->fitted && a->has_means && k < a->n_obj; k++)
-        noise_estimate(s->n, s->centre, rbf_leave_one_out(s->rbf, k), a->n_obj, k, a->F, a->error, a->estimate);
-}
-
 void surrogate_drop(Surrogate *s)
 {
     s->fitted = 0;

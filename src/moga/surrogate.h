@@ -47,9 +47,6 @@ double surrogate_error(const Surrogate *s);
 /* Objectives and constraints that the last fit left out (rbf/rbf.h): their mean stands for them. */
 size_t surrogate_left_out(const Surrogate *s);
 
-/* Estimates of the centres among the archive's designs, from their leave-one-out errors (moga/noise.h). */
-void surrogate_estimate(const Surrogate *s, Archive *archive);
-
 /* F, violation and chance of the predicted members first..n-1, and where wanted their uncertainty, which costs a third
  * more; without it a limit is kept or not. A predicted failure is a violation. */
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);

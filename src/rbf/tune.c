@@ -195,13 +195,19 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
     }
 }
 
-/* The best form so far with an additive part, which must be worth it where there is none yet. */
+/* The best form so far with an additive part, which must be worth it where there is none yet. Scales are tuned for it
+ * only the first time, and where it is better with the present ones: where there are no waves it is not, and that costs
+ * little. */
 static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, double reach, int steps)
 {
     const double best = k->min_error, wanted = best * (k->best_form.reach > 0.0 ? 1.0 : ADDITIVE_GAIN);
     RbfForm form = k->best_form;
     form.reach = reach;
     form.nugget = fmax(form.nugget, NUGGET_START);
+    RbfForm untuned = form;
+    model_additive(m, n, k->C, reach, k->K);
+    if (m->n_tuned > 0 && !(trial_error(m, k, n, &untuned, &k->best_shape) < best))
+        return;
     k->min_error = wanted;
     try_form(m, k, n, o, form, steps);
     if (!(k->min_error < wanted))

@@ -112,7 +112,7 @@ static Status simulate(Work *w, size_t level, size_t n, Err *err)
     s.sim = w->sim[level];
     TRY(adapter_open(&adapter, &s, err));
     adapter_observe(adapter, &(Observer){.go_on = may_go_on, .user = w});
-    Status status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, 0, err);
+    Status status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, err);
     if (status == STATUS_OK)
         status = ask_all(w, q, n, err);
     queue_close(q);

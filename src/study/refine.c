@@ -42,7 +42,7 @@ static Status open_simulator(Refine *r, const SimOptions *sim, long replicates, 
     close_simulator(r);
     TRY(adapter_open(&r->adapter, &s, err));
     adapter_observe(r->adapter, &(Observer){.go_on = r->config->go_on, .user = r->config->user});
-    return queue_open(&r->queue, adapter_problem(r->adapter), QUEUE_AS_ASKED, 0, 0, err);
+    return queue_open(&r->queue, adapter_problem(r->adapter), QUEUE_AS_ASKED, 0, err);
 }
 
 static void count(Refine *r, size_t n_evaluated, size_t n_failed, long replicates)

@@ -1,0 +1,46 @@
+/* moga/offspring.h -- the candidates of a batch: what the surrogate proposes, or children of variation.
+ *
+ * Memory   all of it in state_create
+ * Threads  one; predictions and descents use several */
+#ifndef IMTET_MOGA_OFFSPRING_H
+#define IMTET_MOGA_OFFSPRING_H
+
+#include "moga/batch.h"
+#include "moga/population.h"
+#include "moga/selection.h"
+#include "moga/surrogate.h"
+
+/* Members in this order: proposed by the surrogate, probes, by variation, pending. */
+typedef struct {
+    Population members;
+    Population pool; /* of a generation on the surrogate */
+    size_t n_probes, n_variation, n_pending;
+    size_t n_probed;        /* probes so far */
+    unsigned char *allowed; /* (pool) may be picked now */
+    double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
+    size_t *survivors;      /* (pool) of the environmental selection */
+    double *children;       /* (2, n_var) */
+    size_t *descent_vector; /* (vectors) in the order of this generation */
+    double *descent_X;      /* (pool, n_var) */
+    size_t pending_max;     /* designs that may be pending */
+} Offspring;
+
+/* Who takes part in making them. */
+typedef struct {
+    const Common *common;
+    const Population *population;
+    Surrogate *surrogate;
+    const Criteria *criteria;
+    Selection *selection;
+    int with_surrogate, has_front; /* a design is known, or predicted from its cheap level, that is feasible */
+} Breeding;
+
+void offspring_make(Offspring *o, const Breeding *w);
+
+/* Which of them are evaluated: returns how many designs of the batch. */
+size_t offspring_select(Offspring *o, const Breeding *w, Batch *b);
+
+/* Environmental selection; step: of the random stream. */
+void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step);
+
+#endif

@@ -1,0 +1,51 @@
+/* moga/screening.h -- most designs are evaluated by the cheap level of the problem alone; screening.c says how.
+ *
+ * Life cycle  screening_begin -> (screening_take, screening_update ...) ... -> screening_free
+ * Memory      grows with the screened designs
+ * Threads     one */
+#ifndef IMTET_MOGA_SCREENING_H
+#define IMTET_MOGA_SCREENING_H
+
+#include "moga/batch.h"
+
+/* A design of which the cheap level was evaluated first. */
+typedef struct {
+    size_t row, finished; /* of the archive; of its evaluation in full, SIZE_MAX: there is none */
+    void *parts;          /* (n_cheap) of part_size, parts of the whole; NULL: not kept */
+} Screened;
+
+typedef struct {
+    LevelCosts cost; /* whole 1: nothing is screened in this search */
+    size_t is_on;    /* 0: the levels do not agree, or nothing is screened */
+    size_t n_out;    /* objectives and constraints */
+    size_t n, n_max, n_finished;
+    size_t n_open;                     /* on that front, not finished */
+    Screened *design;                  /* (n) by row */
+    double *y;                         /* (n, n_out) objectives and constraints of the cheap level */
+    double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
+    size_t n_front, front_max, *front; /* rows of the front of results and predictions */
+    unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
+    size_t *rows, n_rows;              /* (n_max) designs that have both levels */
+} Screening;
+
+void screening_begin(Screening *q, const Common *c);
+void screening_free(Screening *q);
+
+size_t screening_evaluations(const Screening *q,
+                             const Common *c); /* of max_evals; a screened design is a part of one */
+int screening_is_spent(const Screening *q, const Common *c);
+
+/* New designs, n_max at most, that there is room for beside what the screened ones are finished with. */
+size_t screening_room(const Screening *q, const Common *c, size_t n_max);
+
+Status screening_take(Screening *q, const Common *c, const Finished *done, Err *err); /* before it enters the archive */
+Status screening_update(Screening *q, Archive *a, Err *err); /* after results: predictions, agreement, front */
+void screening_exchange(Screening *q, Archive *a); /* predictions in the archive for what was evaluated, and back */
+const void *screening_parts(const Screening *q, const Common *c, const double x[]); /* of the cheap level; NULL: none */
+
+/* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
+Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
+Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
+int screening_is_due(const Screening *q, const Common *c); /* designs are to be finished, and there is room */
+
+#endif
