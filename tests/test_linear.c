@@ -58,7 +58,7 @@ static SimResult run_system(LinearKind kind, const Frame *f, const CoreBeam *cor
     Err err = {0};
     LinearSystem s;
     SimResult r;
-    const LinearRun run = {(double)(motion->n - 1) * motion->dt_s, step, NULL, NULL};
+    const LinearRun run = {(double)(motion->n - 1) * motion->dt_s, step, NULL, NULL, NULL};
     CHECK_OK(linear_system_make(&s, kind, &f->b, core, &device, f->b.n, &err), &err);
     CHECK_OK(linear_run(&s, motion, &run, &r, &err), &err);
     linear_system_free(&s);

@@ -71,7 +71,7 @@ static SimResult run_tied(const Stage *stage, const Motion *m, double duration, 
     SimResult r;
     Err err;
     const LinearDevice none = {0};
-    CHECK_OK(engine_linear(LINEAR_RIGID, &stage->b, &stage->core, &none, m,
+    CHECK_OK(engine_linear(LINEAR_RIGID, &stage->b, &stage->core, &none, NULL, m,
                            &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
              &err);
     return r;

@@ -17,7 +17,7 @@ enum { BLOCK_NUMBERS = 1 << 16, BLOCK_STRETCHES = 32, LARGE = 64 /* coordinates 
 
 /* Rows of the outputs of a state. */
 typedef struct {
-    int u, acceleration, apart, rate, power, n; /* where each group begins; in all */
+    int u, acceleration, apart, rate, power, plastic, n; /* where each group begins; in all */
 } Rows;
 
 typedef struct {
@@ -25,7 +25,13 @@ typedef struct {
     const LinearRun *run;
     Rows rows;
     int loads;                          /* the ground, and each floor with a force */
-    int size, parts_max, stretches_max; /* 2 m + 2 loads, the state and its loads, each with its slope */
+    int size, parts_max, stretches_max; /* 2 m + 2 loads, the state and its loads, each with its slope; 2 n more where
+                                         * storeys yield */
+    const SimModel *storeys;            /* NULL: none yields */
+    int at_force;                       /* [N] of the plastic drifts in the state, behind them their rates */
+    double *drift, *answer;             /* (n, 2 m) drifts of a state; (n, n) drift i at the end for a unit rate j */
+    double *spent;                      /* (n) e of sim/storey.h */
+    double hysteresis;                  /* [J] */
     double *D;                          /* (m, m) [1/s] */
     double *Y_ddot;                     /* (m, size) y'' of a state */
     double *coordinates;                /* (n_building + n_core, size) modal coordinates, where forces are wanted */
@@ -79,6 +85,103 @@ static void layout(void *linear, Carve *c)
     d->rate_max = carve(c, losses, real);
     d->apart_max = carve(c, (size_t)d->s->n_apart, real);
     d->work = carve(c, work * size, real);
+    d->drift = carve(c, d->storeys ? n * m : 0, real);
+    d->answer = carve(c, d->storeys ? n * n : 0, real);
+    d->spent = carve(c, d->storeys ? n : 0, real);
+}
+
+/* -- storeys that yield -------------------------------------------------------------------------------------------- */
+
+/* Their forces c k p load the coordinates by the drifts of these, and are straight lines over a step. */
+static void set_storeys(Linear *d)
+{
+    const LinearSystem *s = d->s;
+    const int n = s->n, m = s->m, at = d->at_force;
+    for (int k = 0; k < m; k++)
+        for (int j = 0; j < n; j++) {
+            const double drift = s->psi[k * n + j] - (j > 0 ? s->psi[k * n + j - 1] : 0);
+            d->Y_ddot[(at + j) * m + k] = drift;
+            d->drift[k * n + j] = drift / s->omega[k];
+        }
+    for (int j = 0; j < n; j++)
+        if (d->storeys->yield_n_m[j] > 0)
+            d->outputs[(at + j) * d->rows.n + d->rows.plastic + j] = 1 / d->storeys->yield_n_m[j];
+}
+
+static void drifts_of(const Linear *d, const double z[], double out[])
+{
+    linalg_product(d->s->n, d->s->m, 1, d->drift, z, out);
+}
+
+/* What a unit rate of the forces moves in a step. */
+static void set_answer(Linear *d)
+{
+    for (int j = 0; j < d->s->n; j++)
+        drifts_of(d, d->exponential + (size_t)(d->at_force + d->s->n + j) * (size_t)d->size, d->answer + j * d->s->n);
+}
+
+/* Iterations of a step, whose share of the building's stiffness in its inertia is small: each gains its square. */
+enum { ROUNDS = 6 };
+
+/* The state z1 at the end of a step of h from z0, so far with the forces of the start: the plastic drifts follow the
+ * drifts at both ends. */
+static void yield_in_step(Linear *d, double h, const double z0[], double z1[])
+{
+    const SimModel *b = d->storeys;
+    const int n = d->s->n;
+    double d0[FLOORS_MAX], free[FLOORS_MAX], d1[FLOORS_MAX], p[FLOORS_MAX], e[FLOORS_MAX], rate[FLOORS_MAX] = {0};
+    drifts_of(d, z0, d0);
+    drifts_of(d, z1, free);
+    memcpy(d1, free, sizeof d1);
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int j = 0; j < n; j++) {
+            const double k = b->yield_n_m[j], p0 = k > 0 ? z0[d->at_force + j] / k : 0;
+            e[j] = d->spent[j];
+            p[j] = k > 0 ? storey_advance(&b->storey_law, b->yield_m[j], d0[j], d1[j], p0, &e[j]) : 0;
+            rate[j] = k * (p[j] - p0) / h;
+        }
+        linalg_product(n, n, 1, d->answer, rate, d1);
+        for (int j = 0; j < n; j++)
+            d1[j] += free[j];
+    }
+    for (int j = 0; j < n; j++) {
+        const double k = b->yield_n_m[j], y = b->yield_m[j], turned = rate[j] * h;
+        const double *column = d->exponential + (size_t)(d->at_force + n + j) * (size_t)d->size;
+        if (b->storey_law.kind == HYSTERESIS_BILINEAR)
+            d->hysteresis += fabs(turned) * y;
+        d->spent[j] = e[j];
+        for (int i = 0; i < d->size && k > 0; i++)
+            z1[i] += column[i] * rate[j];
+        z1[d->at_force + n + j] = 0; /* it was of this step */
+    }
+}
+
+/* Hysteresis, and what the modes hold of it too much, at the end. */
+static void report_storeys(const Linear *d, SimResult *result)
+{
+    const SimModel *b = d->storeys;
+    const int n = d->s->n;
+    double drift[FLOORS_MAX], p[FLOORS_MAX] = {0}, load[FLOORS_MAX];
+    drifts_of(d, d->z, drift);
+    result->hysteresis_j = d->hysteresis;
+    for (int j = 0; j < n; j++) {
+        const double k = b->yield_n_m[j], y = b->yield_m[j];
+        p[j] = k > 0 ? d->z[d->at_force + j] / k : 0;
+        const double z = drift[j] - p[j];
+        result->kinetic_strain_j -= 0.5 * k * (drift[j] * drift[j] - z * z);
+        if (b->storey_law.kind == HYSTERESIS_BOUC_WEN && k > 0)
+            result->hysteresis_j += k * (y * y * d->spent[j] - 0.5 * z * z);
+    }
+    model_report_plastic(b, p, result);
+    memset(result->residual_drift_m, 0, sizeof result->residual_drift_m);
+    memcpy(load, d->z + d->at_force, sizeof *load * (size_t)n);
+    for (int k = 0; k < d->s->m; k++) {
+        double sum = 0;
+        for (int j = 0; j < n; j++)
+            sum += d->drift[k * n + j] * load[j];
+        for (int j = 0; j < n; j++)
+            result->residual_drift_m[j] += d->drift[k * n + j] * sum;
+    }
 }
 
 /* -- matrices ------------------------------------------------------------------------------------------------------ */
@@ -174,10 +277,14 @@ static void set_step(Linear *d, double h, int parts)
     }
     for (int l = 0; l < d->loads; l++)
         A[(2 * m + d->loads + l) * size + 2 * m + l] = h;
+    for (int j = 0; d->storeys && j < d->s->n; j++)
+        A[(d->at_force + d->s->n + j) * size + d->at_force + j] = h;
     linalg_exponential(size, A, d->exponential, d->work + size * size);
     raise(size, d->exponential, parts, d->whole, d->work);
     d->h = h;
     d->parts = parts;
+    if (d->storeys)
+        set_answer(d);
 }
 
 /* -- a block of stretches ------------------------------------------------------------------------------------------ */
@@ -232,6 +339,7 @@ static void look(Linear *d, double t, double ground, const double y[], const dou
                                                           .ground = ground,
                                                           .building_q = q,
                                                           .building_v = y + d->rows.rate,
+                                                          .plastic = d->storeys ? y + d->rows.plastic : NULL,
                                                           .core_q = q + s->n_building});
 }
 
@@ -265,7 +373,8 @@ static void find_starts(Linear *d, int count)
         memcpy(d->z + 2 * m, d->load + i * loads, (size_t)loads * sizeof *d->z);
         memcpy(d->z + 2 * m + loads, d->load_slope + i * loads, (size_t)loads * sizeof *d->z);
         memcpy(d->Z + i * size, d->z, (size_t)size * sizeof *d->z);
-        linalg_product(size, size, 1, d->whole, d->Z + i * size, d->z);
+        if (!d->storeys) /* else one stretch at a time, part by part */
+            linalg_product(size, size, 1, d->whole, d->Z + i * size, d->z);
     }
 }
 
@@ -287,12 +396,16 @@ static void cross(Linear *d, double t, double length, int is_whole, int count)
         linalg_product(d->size, d->size, count, d->exponential, d->Z, d->Z_next);
         d->Z = d->Z_next;
         d->Z_next = before;
+        if (d->storeys)
+            yield_in_step(d, h, before, d->Z);
         linalg_product(out, d->size, count, d->outputs, d->Z, Y);
         if (d->run->forces)
             linalg_product(n_q, d->size, count, d->coordinates, d->Z, d->Q + (size_t)k * (size_t)(n_q * count));
         add_power(d, count, d->Z, Y, k < parts ? h : 0.5 * h);
     }
     add_power_slope(d, count, d->Z, d->Y + (size_t)parts * (size_t)(out * count), -h * h / 12);
+    if (d->storeys)
+        memcpy(d->z, d->Z, (size_t)d->size * sizeof *d->z);
     if (t == 0 && d->loads > 1) /* a force may begin with a jump; Q is 0 at rest */
         look(d, 0, d->load[0], d->Y, d->Q);
     for (int i = 0; i < count; i++)
@@ -359,17 +472,20 @@ static Status prepare(Linear *d, const Motion *motion, Err *err)
 {
     const LinearSystem *s = d->s;
     const int n = s->n, apart = 2 * n, rate = apart + s->n_apart, power = rate + s->n_loss;
-    const int all = power + 1 + motion->n_force;
+    const int plastic = power + 1 + motion->n_force, all = plastic + (d->storeys ? n : 0);
     d->loads = 1 + motion->n_force;
-    d->rows = (Rows){0, n, apart, rate, power, all};
-    d->size = 2 * s->m + 2 * d->loads;
+    d->rows = (Rows){0, n, apart, rate, power, plastic, all};
+    d->at_force = 2 * s->m + 2 * d->loads;
+    d->size = d->at_force + (d->storeys ? 2 * n : 0);
     d->parts_max = (int)ceil(motion->dt_s / d->run->step) + 1;
     const int fit = BLOCK_NUMBERS / (d->parts_max * all);
-    d->stretches_max = d->s->m > LARGE || fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit < 1 ? 1 : fit;
+    d->stretches_max = d->storeys ? 1 : d->s->m > LARGE || fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit < 1 ? 1 : fit;
     d->store = carve_all(layout, d);
     if (!d->store)
         return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", n);
     set_acceleration(d);
+    if (d->storeys)
+        set_storeys(d);
     set_outputs(d);
     return STATUS_OK;
 }
@@ -406,6 +522,8 @@ static void report(const Linear *d, SimResult *result)
     result->stroke_m = largest_of(s->n_apart, d->apart_max);
     result->dashpot_n = s->n_apart > 0 ? s->loss[s->n_loss - 1] * largest_of(s->n_apart, d->rate_max) : 0;
     peak_monitor_report(&d->peaks, result);
+    if (d->storeys)
+        report_storeys(d, result);
     if (s->n_apart == 0)
         book_by_shares(d);
     energy_balance_close(result, s->n_building, s->like, s->n_loss - s->n_building, d->damped);
@@ -413,7 +531,7 @@ static void report(const Linear *d, SimResult *result)
 
 Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *run, SimResult *result, Err *err)
 {
-    Linear d = {.s = s, .run = run, .peaks.n = s->n};
+    Linear d = {.s = s, .run = run, .storeys = run->storeys, .peaks.n = s->n};
     memset(result, 0, sizeof *result);
     result->n_floors = result->n_modes = s->n;
     if (run->forces)
@@ -434,10 +552,11 @@ Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *
 }
 
 Status engine_linear(LinearKind kind, const Building *b, const CoreBeam *core, const LinearDevice *device,
-                     const Motion *motion, const EngineOptions *options, SimResult *result, Err *err)
+                     const SimModel *storeys, const Motion *motion, const EngineOptions *options, SimResult *result,
+                     Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
-    const LinearRun run = {options->duration, STEP[options->accuracy], options->forces, options};
+    const LinearRun run = {options->duration, STEP[options->accuracy], options->forces, options, storeys};
     LinearSystem s;
     TRY(linear_system_make(&s, kind, b, core, device, b->model.n, err));
     const Status status = linear_run(&s, motion, &run, result, err);

@@ -19,6 +19,9 @@
  *   int f dt = h (f_0/2 + f_1 + ... + f_n/2) + h^2/12 (f_0' - f_n') + O(h^4) (f_0''' - f_n''')
  * Peaks: sim/peak_monitor.h.
  *
+ * Storeys that yield (sim/storey.h): their forces c k p are further loads, straight lines over a step, which follow the
+ * drifts at its ends; order 2 in the step. Devices are those found for the building that does not yield.
+ *
  * Shapes   matrices by columns: entry (i, j) of a matrix with r rows is at [j r + i]
  * Life     linear_system_make -> linear_run ... -> linear_system_free (a zeroed one is fine)
  * Threads  a LinearSystem is read-only after it was made */
@@ -54,11 +57,13 @@ typedef struct {
     double duration, step;
     ForceMonitor *forces;
     const EngineOptions *sampling; /* whose samples are wanted; spaced evenly within the motion's; NULL: none */
+    const SimModel *storeys;       /* of which some yield: all else of it is left; NULL: none does */
 } LinearRun;
 Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *run, SimResult *result, Err *err);
 
-/* As of an engine (sim/engine.h), all modes, the step of options->accuracy. */
+/* storeys: as of LinearRun. As of an engine (sim/engine.h), all modes, the step of options->accuracy. */
 Status engine_linear(LinearKind kind, const Building *b, const CoreBeam *core, const LinearDevice *device,
-                     const Motion *motion, const EngineOptions *options, SimResult *result, Err *err);
+                     const SimModel *storeys, const Motion *motion, const EngineOptions *options, SimResult *result,
+                     Err *err);
 
 #endif

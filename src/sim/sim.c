@@ -327,12 +327,10 @@ static LinearKind linear_kind(SceneKind kind)
 static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
-    if (w->building->yields) {
-        result->outcome = RUN_ENGINE_FAILED;
-        snprintf(result->reason, sizeof result->reason, "storeys that yield are not followed with this device yet");
-        return STATUS_OK;
-    }
-    TRY(engine_linear(linear_kind(kind), w->building, &w->core, &w->device, scene->motion, &w->run, result, err));
+    if (w->building->yields)
+        TRY(model_set(&w->model, w->options, w->building, NULL, NULL, err));
+    TRY(engine_linear(linear_kind(kind), w->building, &w->core, &w->device, w->building->yields ? &w->model : NULL,
+                      scene->motion, &w->run, result, err));
     check_result(result, sim_energy_balance_max(&w->options->sim));
     return STATUS_OK;
 }
@@ -425,7 +423,7 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
                   Err *err)
 {
-    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL};
+    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL, NULL};
     LinearSystem s;
     Design d;
     design_of(&w->scene->design, x, &d);

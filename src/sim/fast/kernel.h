@@ -1,7 +1,7 @@
 /* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set.
  *
  * Shapes   (m_pad) modes: building from 0, the kept ones of the core from nb_pad; (n_pad) floors; (c_pad)
- *          channels: the gaps of the floors, and from n_pad on the storeys of a building of which some yield; else n_pad
+ *          channels: the gaps of the floors, and from n_pad on the storeys where some may yield; else n_pad
  * Storeys  w is z, the elastic drift, while p, the plastic one, is as at the start of the step: drift from `middle`;
  *          its bound `gap` is the yield drift; its force the change of c k p within the step. `held` is the rest.
  * Padding  a padded mode has omega = 1 and no coupling; a padded floor has an unreachable gap and unreachable peaks
@@ -39,8 +39,8 @@ typedef struct {
     vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
     vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
     double *compliance;             /* (COMPLIANCES, rows, c_pad) of all channels, a row per loaded one */
-    v4 *compliance_pair; /* (rows, rows) of channel i to channel j: d (w1_i, w1_i') / d (F, M) of j, its force at the end
-                            of the step and its mean force */
+    v4 *compliance_pair; /* (rows, rows) of channel i to channel j: d (w1_i, w1_i') / d (F, M) of j, its force at the
+                            end of the step and its mean force */
 } Level;
 
 /* The state at one end of a step. */
