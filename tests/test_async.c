@@ -5,7 +5,7 @@
 #include "searches.h"
 
 #include "base/random.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "evaluate/textbook.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 400, GENERATIONS_MAX = 120, WORKERS_MAX = 8 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "moga/archive.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "moga/search.h"
 #include "functions.h"
 #include "searches.h"

@@ -8,7 +8,7 @@
 #include "base/hash.h"
 #include "check.h"
 #include "moga/constants.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "moga/search.h"
 #include "searches.h"
 

@@ -5,7 +5,7 @@
 #include <sqlite3.h>
 
 #include "base/linalg.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "store/tables.h"
 #include "wfg.h"
 #include "study/study.h"

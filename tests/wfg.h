@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 /* Rows in descending order of the last objective. */
 static inline int wfg_compare(const void *a, const void *b, void *m)

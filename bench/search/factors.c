@@ -9,8 +9,8 @@
 #include "base/stat.h"
 #include "bench/search/families.h"
 #include "bench/search/reference.h"
-#include "moga/dominance.h"
-#include "moga/hypervolume.h"
+#include "base/dominance.h"
+#include "base/hypervolume.h"
 #include "study/study.h"
 
 static const double FACTOR_MAX = 20.0;

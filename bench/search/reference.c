@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "bench/search/families.h"
 #include "moga/directions.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 enum { MOVES = 500, STARTS = 4, STEPS_PER_VARIABLE = 100 };
 

@@ -8,7 +8,7 @@
 #include "base/json.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "store/run_read.h"
 #include "study/front_review.h"
 #include "study/improvement.h"

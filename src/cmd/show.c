@@ -9,7 +9,7 @@
 #include "base/visible.h"
 #include "base/figure.h"
 #include "base/units.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
 #include "store/output.h"

@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "base/stat.h"
 #include "evaluate/problem.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 /* Grows by doubling up to so many. */
 enum { MANY_ROWS = 100000 };

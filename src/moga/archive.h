@@ -7,7 +7,7 @@
  *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design,
  *             and the row before is none any more (replicates 0)
  *   usable    a design all of whose evaluations succeeded with finite numbers
- *   on_front  usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
+ *   on_front  usable, every constraint holds, no design of the archive dominates it surely (base/dominance.h)
  *
  * Up to date after each insertion without replicates; after one with replicates pareto_archive_update_noise is due.
  *

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 
 /* Least width of the box in an objective, as a share of its range over all designs. */
 static const double WIDTH_MIN = 0.01;

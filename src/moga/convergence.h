@@ -1,7 +1,7 @@
 /* moga/convergence.h -- when more evaluations gain no more: SearchConfig.stop_after.
  *
  *   h(n)   share that the first n designs dominate of the box about the front of all designs, from its ideal to
- *          ideal + 1.1 (nadir - ideal), by the fixed samples of moga/hypervolume.h
+ *          ideal + 1.1 (nadir - ideal), by the fixed samples of base/hypervolume.h
  *   gain   h(now) - h(now - stop_after). A search is over when it is no more than the standard error of h(now)
  *
  * The box follows the front, so that a gain counts wherever the front moves; an objective that hardly differs on the

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 /* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as
  * objectives and one, but no more than this. Jaszkiewicz and Lust, section V. */

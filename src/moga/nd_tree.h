@@ -4,7 +4,7 @@
  * nodes are passed over, or removed as a whole, by a look at their bounds; so that a point is compared with few others.
  * Bounds are not drawn in when points leave. Which points are nondominated does not depend on how they lie in the tree.
  *
- * Dominance  moga/dominance.h; equal points do not dominate each other, all of them stay
+ * Dominance  base/dominance.h; equal points do not dominate each other, all of them stay
  * Life cycle nd_tree_create -> (nd_tree_fill) -> nd_tree_insert ... -> nd_tree_free
  * Memory     grows with the points that are in, some 140 bytes each of 7 objectives
  * Threads    one at a time

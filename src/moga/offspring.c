@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "moga/variation.h"
 
 /* Distribution indices: Deb and Jain 2014. */

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 
 void screening_begin(Screening *q, const Common *c)
 {

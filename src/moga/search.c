@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 
 const char *stop_reason_words(StopReason reason)
 {

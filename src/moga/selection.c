@@ -4,7 +4,7 @@
 #include <stdint.h>
 
 #include "base/carve.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "moga/normalisation.h"
 
 struct Selection {

@@ -9,7 +9,7 @@
 #include "base/rprop.h"
 #include "base/stat.h"
 #include "moga/constants.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 /* Larger values, penalties say, would leave nothing of the others after standardisation. */
 static const double VALUE_MAX = 1e60;

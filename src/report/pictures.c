@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "motion/builtin.h"
 #include "report/gnuplot.h"
 #include "report/report.h"

@@ -6,7 +6,7 @@
 
 #include "base/json.h"
 #include "base/text.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "report/words.h"
 #include "settings/settings.h"
 #include "store/provenance.h"

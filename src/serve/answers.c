@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/json.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "report/report_json.h"
 #include "settings/settings.h"
 

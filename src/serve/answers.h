@@ -8,7 +8,7 @@
  *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same], "differences": settings in which they are two
  *            problems, whose fronts are no comparison}, both volumes in one
  *            box: from a fifth of the range of both fronts below their best to their worst, by fixed samples
- *            (moga/hypervolume.h), of the designs that were on a front so far
+ *            (base/hypervolume.h), of the designs that were on a front so far
  *
  * Ownership  the caller's reference; NULL: no memory, or a name that is no UTF-8
  * Threads    pure functions */

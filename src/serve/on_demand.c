@@ -9,7 +9,7 @@
 #include "base/json.h"
 #include "base/units.h"
 #include "evaluate/tower.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "motion/motion_scale.h"
 #include "report/report_json.h"
 #include "settings/settings.h"

@@ -9,7 +9,7 @@
 
 #include "evaluate/problem.h"
 #include "evaluate/scenario.h"
-#include "moga/dominance.h"
+#include "base/dominance.h"
 #include "moga/nd_tree.h"
 #include "settings/settings.h"
 #include "settings/options.h"

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "settings/settings.h"
 #include "store/export.h"
 #include "store/folder.h"

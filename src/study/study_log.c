@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "base/json.h"
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 #include "store/provenance.h"
 
 Status study_log_start(RunStore *store, int threads, const SearchOptions *used, size_t n, Err *err)

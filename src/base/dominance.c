@@ -1,4 +1,4 @@
-#include "moga/dominance.h"
+#include "base/dominance.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "moga/hypervolume.h"
+#include "base/hypervolume.h"
 
 #include <math.h>
 #include <stdlib.h>

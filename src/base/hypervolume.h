@@ -1,4 +1,4 @@
-/* moga/hypervolume.h -- Monte Carlo hypervolume of a growing set, kept up to date.
+/* base/hypervolume.h -- Monte Carlo hypervolume of a growing set, kept up to date.
  *
  *   share = samples of the box lower..reference that some member dominates / all samples
  *
@@ -7,8 +7,8 @@
  *
  * Life cycle  hypervolume_create -> hypervolume_add ... -> hypervolume_free
  * Threads     one Hypervolume per thread */
-#ifndef IMTET_MOGA_HYPERVOLUME_H
-#define IMTET_MOGA_HYPERVOLUME_H
+#ifndef IMTET_BASE_HYPERVOLUME_H
+#define IMTET_BASE_HYPERVOLUME_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-/* moga/dominance.h -- which design is better.
+/* base/dominance.h -- which design is better.
  *
  *   a dominates b   no worse in every objective and better in one
  *   ... surely      the same of a + its error and b - its error, one standard error of the means each: better by more
@@ -14,8 +14,8 @@
  *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort)
  *          Fishburn, J. Math. Psychol. 7 (1970) 144-149 (interval orders)
  *          Teich, EMO 2001, LNCS 1993, 314-328 (Pareto fronts of objectives known as intervals). */
-#ifndef IMTET_MOGA_DOMINANCE_H
-#define IMTET_MOGA_DOMINANCE_H
+#ifndef IMTET_BASE_DOMINANCE_H
+#define IMTET_BASE_DOMINANCE_H
 
 #include <stddef.h>
 
