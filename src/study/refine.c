@@ -14,6 +14,7 @@ static const double PREDICTABLE = 1e-3;
 
 typedef struct {
     const Run *run;
+    size_t row; /* of the run: the design itself */
     const RefineConfig *config;
     Refined *out;
     Adapter *adapter;
@@ -154,14 +155,17 @@ static void judge_gain(const Refine *r, const double F[])
     }
 }
 
-/* Both designs at twice the steps; F (2, n_obj) as above. */
+/* Both designs at twice the steps, or at those by which the run knows the first; F (2, n_obj) as above. */
 static Status compare_finer(Refine *r, const double F[], Err *err)
 {
     const size_t m = r->run->schema.n_obj;
     double G[2 * OBJECTIVES_MAX], unused[2 * OBJECTIVES_MAX];
     unsigned char ok[2] = {0};
-    SimOptions finer;
-    estimate_options(&r->run->settings->sim, &finer);
+    SimOptions finer = r->run->settings->sim;
+    if (r->run->table.row[r->row].level > 0)
+        run_steps(r->run, r->row, &finer);
+    else
+        estimate_options(&finer, &finer);
     TRY(open_simulator(r, &finer, r->replicates, err));
     TRY(queue_evaluate(r->queue, 2, r->out->designs.x, (const size_t[]){1, 1}, G, unused, ok, err));
     count(r, 2, 0, r->replicates);
@@ -219,7 +223,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
     TRY(refine_allows(h->settings, err));
     if (h->settings->problem.kind != PROBLEM_TOWER)
         used.replicates = 1;
-    Refine r = {.run = h, .config = &used, .out = out};
+    Refine r = {.run = h, .row = row, .config = &used, .out = out};
     const Status status = refine(&r, run_x(h, row), err);
     out->seconds = clock_seconds() - start;
     if (status == STATUS_OK)
