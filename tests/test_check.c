@@ -282,7 +282,7 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
     Err err = {0};
     CHECK_OK(motion_load(&m, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 1, &err), &err);
-    CHECK_OK(scene_summarise(&f, &b, &s.core, &m, 0.01, 0.01, &err), &err);
+    CHECK_OK(scene_summarise(&f, &b, &s.core, &s.building, &m, 0.01, 0.01, &err), &err);
     spectrum_psa(&m, zeta, 1, &period, &psa);
     assert_close(f.base_shear, psa / 9.81, 1e-12);
     assert_close(f.first_mode_mass, 1, 1e-12);

@@ -10,6 +10,7 @@
 #include "scene/building_svg.h"
 #include "settings/settings.h"
 #include "store/output.h"
+#include "scene/neighbour.h"
 
 /* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */
 static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;
@@ -47,7 +48,7 @@ static Status make_core(const Args *args, Model *m, Err *err)
     DesignSpace space;
     Designs d;
     m->design = (Design){.t_base = T_BASE_M, .t_top = T_TOP_M};
-    TRY(design_space_make(&space, &m->s.design, core->section, m->b.n, err));
+    TRY(design_space_make(&space, &m->s.design, core_section(core), m->b.n, err));
     if (word) {
         TRY(designs_take_one(&d, word, &space, err));
         design_of(&space, d.x, &m->design);
@@ -55,10 +56,10 @@ static Status make_core(const Args *args, Model *m, Err *err)
     }
     if (m->design.side > 0)
         core->width_m = m->design.side;
-    for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
+    for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI && !neighbour_is_given(core); k++)
         TRY(core_beam_first_hz(core, k, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, &m->by_theory[k],
                                err));
-    TRY(core_beam_make(&m->core, core, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, err));
+    TRY(core_make(&m->core, core, &m->s.building, &m->b, m->design.t_base, m->design.t_top, err));
     return building_joined_hz(&m->core, &m->b, m->zero_gap, err);
 }
 
@@ -107,8 +108,13 @@ static void print_building(const Model *m)
 static void print_core(const Model *m)
 {
     const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
+    if (neighbour_is_given(&m->s.core)) {
+        printf("neighbour of %.0f kg, %d floors, %s; first mode: %.4g Hz\n", m->core.mass_kg, m->core.top,
+               m->s.core.model, m->core.omega[0] / (2 * M_PI));
+        return;
+    }
     printf("core of %.0f kg", m->core.mass_kg);
-    if (m->s.core.section == CORE_EFFECTIVE)
+    if (core_section(&m->s.core) == CORE_EFFECTIVE)
         printf(" (effective section)");
     else
         printf(", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
@@ -129,7 +135,8 @@ static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *core
             modes, json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", b->model.omega[j] / (2 * M_PI), "mass_share",
                              share(b->model.gamma[j], building_mass(b)), "damping", b->model.zeta[j]));
         if (m->has_core)
-            json_array_append_new(cores, json_pack("{s:f, s:f, s:f}", "core_hz", m->core.omega[j] / (2 * M_PI),
+            json_array_append_new(cores, json_pack("{s:o, s:f, s:f}", "core_hz",
+                                                   json_number(j < m->core.top ? m->core.omega[j] / (2 * M_PI) : NAN),
                                                    "core_mass_share", share(m->core.gamma[j], moved_mass(m)),
                                                    "zero_gap_hz", m->zero_gap[j]));
     }
@@ -180,11 +187,11 @@ static void put_core(json_t *o, const Model *m, const json_t *cores)
     }
     json_object_update_new(
         o, json_pack("{s:f, s:f, s:f, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "t_base_m", m->design.t_base, "t_top_m",
-                     m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory",
-                     core_theory_word(m->s.core.theory), "core_timoshenko_hz", m->by_theory[CORE_TIMOSHENKO],
-                     "core_euler_bernoulli_hz", m->by_theory[CORE_EULER_BERNOULLI], "building_hz", json_numbers(n, hz),
-                     "building_mass_share", json_numbers(n, shares), "building_damping", json_numbers(n, b->zeta),
-                     "building_shapes", shapes, "building_horizontal", horizontal));
+                     m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory", core_word(&m->s.core),
+                     "core_timoshenko_hz", m->by_theory[CORE_TIMOSHENKO], "core_euler_bernoulli_hz",
+                     m->by_theory[CORE_EULER_BERNOULLI], "building_hz", json_numbers(n, hz), "building_mass_share",
+                     json_numbers(n, shares), "building_damping", json_numbers(n, b->zeta), "building_shapes", shapes,
+                     "building_horizontal", horizontal));
     json_object_foreach(json_array_get(cores, 0), key, value)
     {
         json_t *list = json_array();

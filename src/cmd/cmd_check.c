@@ -20,6 +20,7 @@
 #include "evaluate/adapter.h"
 #include "evaluate/device.h"
 #include "evaluate/tower.h"
+#include "scene/neighbour.h"
 
 typedef struct {
     int as_json;
@@ -148,7 +149,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     const int n = p->building.n;
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
     Err e = {0};
-    if (!note(c, design_space_make(&p->space, box, p->s->core.section, n, &e), "design", &e))
+    if (!note(c, design_space_make(&p->space, box, core_section(&p->s->core), n, &e), "design", &e))
         return 0;
     const DesignSpace *s = &p->space;
     design_bounds(s, box, lower, upper);
@@ -191,7 +192,7 @@ static void ask_about_plan(Check *c, const CheckedScene *p)
     const char *what;
     const double side = p->design.side > 0 ? p->design.side : p->s->core.width_m, width = plan_width(p, &what);
     char text[160];
-    if (p->s->core.section == CORE_EFFECTIVE || !(side > PLAN_SHARE_MAX * width))
+    if (core_section(&p->s->core) == CORE_EFFECTIVE || !(side > PLAN_SHARE_MAX * width))
         return;
     snprintf(text, sizeof text, "%.4g m is %.0f %% of the building's %s of %.4g m: is there room for such a core?",
              side, 100 * side / width, what, width);
@@ -205,8 +206,8 @@ static int summarise(Check *c, CheckedScene *p)
     design_of(&p->space, p->x, &p->design);
     if (p->design.side > 0)
         core.width_m = p->design.side;
-    const Status status =
-        scene_summarise(&p->summary, &p->building, &core, &p->motion, p->design.t_base, p->design.t_top, &e);
+    const Status status = scene_summarise(&p->summary, &p->building, &core, &p->s->building, &p->motion,
+                                          p->design.t_base, p->design.t_top, &e);
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
@@ -240,11 +241,10 @@ static void scene_json(Check *c, const CheckedScene *p)
                                   "base_shear_share", f->base_shear));
     json_object_set_new(c->out, "core",
                         json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "foundation",
-                                  s->core.foundation, "theory", core_theory_word(s->core.theory), "mass_kg",
-                                  f->core_mass_kg, "t_base_m", p->design.t_base, "t_top_m", p->design.t_top,
-                                  "first_mode_hz", f->core_hz, "clamped_hz", f->clamped_hz, "timoshenko_hz",
-                                  f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz, "modes_within_motion",
-                                  f->core_modes_within));
+                                  s->core.foundation, "theory", core_word(&s->core), "mass_kg", f->core_mass_kg,
+                                  "t_base_m", p->design.t_base, "t_top_m", p->design.t_top, "first_mode_hz", f->core_hz,
+                                  "clamped_hz", f->clamped_hz, "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz",
+                                  f->euler_bernoulli_hz, "modes_within_motion", f->core_modes_within));
     json_object_set_new(c->out, "motion",
                         json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s}", "record", s->motion.record,
                                   "samples", (json_int_t)p->motion.n, "duration_s", duration(&p->motion),

@@ -7,6 +7,7 @@
 #include "base/visible.h"
 #include "scene/design.h"
 #include "settings/options.h"
+#include "scene/neighbour.h"
 
 static Status allocate(Schema *schema, Err *err)
 {
@@ -18,7 +19,7 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
 {
     MeasureOrder order;
     DesignSpace design;
-    TRY(design_space_make(&design, &s->design, s->core.section, n_floors, err));
+    TRY(design_space_make(&design, &s->design, core_section(&s->core), n_floors, err));
     TRY(measures_order(&order, s->search.objectives, n_floors, err));
     *schema = (Schema){.n_var = (size_t)design.n_var,
                        .design = design,

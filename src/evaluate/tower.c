@@ -12,6 +12,7 @@
 #include "evaluate/tasks.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
+#include "scene/neighbour.h"
 
 /* A part of a task whose whole result is wanted. */
 typedef struct {
@@ -325,7 +326,7 @@ Status tower_space(const Settings *s, DesignSpace *out, Err *err)
     TRY(building_load(&b, &s->building, err));
     const int n_floors = b.n;
     building_free(&b);
-    return design_space_make(out, &s->design, s->core.section, n_floors, err);
+    return design_space_make(out, &s->design, core_section(&s->core), n_floors, err);
 }
 
 static Status make_room(Tower *t, Err *err)

@@ -218,7 +218,7 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     Beam beam[FLOORS_MAX];
     TRY(check(o, n, t_base_m, t_top_m, err));
     memset(c, 0, sizeof *c);
-    c->n = n;
+    c->n = c->top = n;
     TRY(foundation_parse(o->foundation, o->foundation_factor, &c->base, err));
     for (int e = 0; e < n; e++) {
         const CoreStorey section = core_beam_storey(o, n, e, t_base_m, t_top_m);

@@ -55,8 +55,9 @@ typedef struct {
     CoreSection section;
     CoreTheory theory;
     double width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
-    char foundation[OPTION_TEXT_MAX];                            /* fixed, or words of scene/foundation.h */
-    double foundation_factor;                                    /* of the ground's stiffness */
+    char model[OPTION_TEXT_MAX];      /* another building in its place (scene/neighbour.h), or none */
+    char foundation[OPTION_TEXT_MAX]; /* fixed, or words of scene/foundation.h */
+    double foundation_factor;         /* of the ground's stiffness */
     NumberList areas_m2, inertias_m4, shear_areas_m2, masses_kg; /* at base and top, or by storey; 0, none: no shear
                                                                   * deformation, density times area */
 } CoreOptions;

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "motion/spectrum.h"
 #include "scene/frame.h"
+#include "scene/neighbour.h"
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 
@@ -50,26 +51,35 @@ static double base_shear(const BuildingModel *m, const Motion *motion, double ma
     return sqrt(squares) / (mass * GRAVITY);
 }
 
-static Status summarise_core(SceneSummary *s, const CoreOptions *core, const double storey_m[], double t_base,
-                             double t_top, Err *err)
+/* First modes of the cantilever by both theories, and clamped. */
+static Status compare_theories(SceneSummary *s, const CoreOptions *core, const double storey_m[], double t_base,
+                               double t_top, Err *err)
 {
     const int n = s->n_floors;
     TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, n, storey_m, t_base, t_top, &s->timoshenko_hz, err));
     TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, n, storey_m, t_base, t_top, &s->euler_bernoulli_hz, err));
     CoreOptions clamped = *core;
     snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
-    TRY(core_beam_first_hz(&clamped, core->theory, n, storey_m, t_base, t_top, &s->clamped_hz, err));
+    return core_beam_first_hz(&clamped, core->theory, n, storey_m, t_base, t_top, &s->clamped_hz, err);
+}
+
+static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *of, const Building *b,
+                             double t_base, double t_top, Err *err)
+{
+    const int n = s->n_floors;
     CoreBeam *beam = malloc(sizeof *beam);
     if (!beam)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
-    const Status status = core_beam_make(beam, core, n, storey_m, t_base, t_top, err);
+    Status status = core_make(beam, core, of, b, t_base, t_top, err);
     if (status == STATUS_OK) {
         s->core_mass_kg = beam->mass_kg;
-        s->core_hz = beam->omega[0] / (2 * M_PI);
-        while (s->core_modes_within < n && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
+        s->core_hz = s->timoshenko_hz = s->euler_bernoulli_hz = s->clamped_hz = beam->omega[0] / (2 * M_PI);
+        while (s->core_modes_within < beam->top && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
             s->core_modes_within++;
     }
     free(beam);
+    if (status == STATUS_OK && !neighbour_is_given(core))
+        status = compare_theories(s, core, b->storey_m, t_base, t_top, err);
     return status;
 }
 
@@ -89,13 +99,13 @@ static void summarise_building(SceneSummary *s, const Building *b)
     s->first_mode_mass = b->gamma[0] * b->gamma[0] / s->mass_kg;
 }
 
-Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const Motion *motion,
-                       double t_base_m, double t_top_m, Err *err)
+Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const BuildingOptions *of,
+                       const Motion *motion, double t_base_m, double t_top_m, Err *err)
 {
     summarise_building(s, b);
     s->content_hz = 0.5 / motion->dt_s;
     s->base_shear = base_shear(&b->model, motion, s->mass_kg);
-    return summarise_core(s, core, b->storey_m, t_base_m, t_top_m, err);
+    return summarise_core(s, core, of, b, t_base_m, t_top_m, err);
 }
 
 /* ---- warnings ------------------------------------------------------------------------------------------------- */

@@ -31,8 +31,8 @@ typedef struct {
 } SceneSummary;
 
 /* motion: prepared. The core with these thicknesses. */
-Status scene_summarise(SceneSummary *out, const Building *b, const CoreOptions *core, const Motion *motion,
-                       double t_base_m, double t_top_m, Err *err);
+Status scene_summarise(SceneSummary *out, const Building *b, const CoreOptions *core, const BuildingOptions *of,
+                       const Motion *motion, double t_base_m, double t_top_m, Err *err);
 
 /* Ranges outside which a warning is given. */
 static const double PERIOD_PER_STOREY_MIN_S = 0.03, PERIOD_PER_STOREY_MAX_S = 0.3;

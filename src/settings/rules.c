@@ -9,6 +9,7 @@
 #include "scene/foundation.h"
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"
+#include "scene/neighbour.h"
 
 typedef struct {
     BrokenRuleFn broken;
@@ -44,6 +45,8 @@ static void check_core(const CoreOptions *o, const Rules *r)
     Err err;
     if (foundation_parse(o->foundation, 1, &(Foundation){0}, &err) != STATUS_OK)
         break_rule(r, "%s", err.text);
+    if (neighbour_is_given(o) && strcmp(o->foundation, "fixed") != 0)
+        break_rule(r, "core.foundation: is that of a cantilever; a building of core.model stands fixed");
 }
 
 static void check_variables(const Settings *s, const Rules *r)
@@ -51,16 +54,16 @@ static void check_variables(const Settings *s, const Rules *r)
     const DesignOptions *d = &s->design;
     DesignSpace space;
     Err err;
-    if (design_space_make(&space, d, s->core.section, 0, &err) != STATUS_OK) {
+    if (design_space_make(&space, d, core_section(&s->core), 0, &err) != STATUS_OK) {
         break_rule(r, "%s", err.text);
         return;
     }
-    if (space.has_side && s->core.section != CORE_BOX)
+    if (space.has_side && core_section(&s->core) != CORE_BOX)
         break_rule(r, "design.variables: side is that of core.section = box");
     if (space.has_side && 2 * d->thickness_m.at[1] > d->width_m.at[0])
         break_rule(r, "design.width_m: twice a thickness of %g m (design.thickness_m) does not fit into %g m",
                    d->thickness_m.at[1], d->width_m.at[0]);
-    if (s->core.section == CORE_BOX && 2 * d->thickness_m.at[1] > s->core.width_m)
+    if (core_section(&s->core) == CORE_BOX && 2 * d->thickness_m.at[1] > s->core.width_m)
         break_rule(r, "design.thickness_m: twice %g m does not fit into core.width_m = %g", d->thickness_m.at[1],
                    s->core.width_m);
 }

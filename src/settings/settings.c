@@ -105,6 +105,10 @@ static const Option OPTIONS[] = {
          "bouc_wen: loss of strength for every 2 elastic energies at yield that went in (docs/theory.md)"),
     REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, the same way"),
 
+    PATH(
+        core.model, "none", "none|guyan|appendix",
+        "another building in the place of the core, a neighbour that pounds: as building.model, with as many floors or "
+        "fewer (docs/building.md); none: the cantilever of the settings below"),
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
            "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
            "area given",

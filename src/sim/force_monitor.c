@@ -8,6 +8,7 @@
 #include "base/carve.h"
 #include "base/clones.h"
 #include "base/units.h"
+#include "scene/neighbour.h"
 
 /* Eight outputs, followed together:
  *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base
@@ -202,7 +203,7 @@ static void set_core_rows(ForceMonitor *m, const CoreBeam *core)
     for (int i = 0; i < n; i++) {
         if (core) {
             storey_forces(m, core->K, core->phi + i, n, outputs, outputs + n);
-            outputs[2 * n] = core->phi[(n - 1) * n + i];
+            outputs[2 * n] = core->phi[(core->top - 1) * n + i];
         }
         put_row(m, 0, i, 2 * n + 1, outputs, ROW_CORE);
         put_row(m, m->at_both, i, 2, (const double[]){outputs[0], outputs[n]}, ROW_CORE);
@@ -574,8 +575,8 @@ static void report_stresses(const ForceMonitor *m, SimForces *out)
 {
     const CoreOptions *o = &m->options.core;
     const double nu = o->poisson, plate = 4 * M_PI * M_PI * o->youngs_modulus_pa / (12 * (1 - nu * nu));
-    out->stress_known = m->nc > 0 && o->section != CORE_EFFECTIVE;
-    out->buckling_known = m->nc > 0 && o->section == CORE_BOX;
+    out->stress_known = m->nc > 0 && core_section(o) != CORE_EFFECTIVE;
+    out->buckling_known = m->nc > 0 && core_section(o) == CORE_BOX;
     for (int s = 0; s < m->n && out->stress_known; s++) {
         const CoreStorey c = core_beam_storey(o, m->n, s, m->thickness[0], m->thickness[1]);
         const double moment = fmax(out->core_moment_nm[s], s + 1 < m->n ? out->core_moment_nm[s + 1] : 0);

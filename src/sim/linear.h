@@ -11,11 +11,12 @@
  *   z' = [0 W; -W -D] z + [0; -Gamma] a + [0; Psi'] f,   D = P' diag(loss) P,   rate = P y'
  *
  * Every row of P is the rate of something that dissipates loss rate^2: modes of the building and of the core by their
- * own damping (q' and 2 zeta w), dashpots (their relative velocity and c), D is then full; rigidly connected, the modes
- * of both together, whose losses are booked under modes of building and core by their shares of the kinetic energy,
- * P_ik^2 of mode k. f: the forces on the floors. Over a step the loads are straight lines, and the step
- * is exact: (z, a, f, a', f') is multiplied by the exponential of one matrix (C. F. Van Loan, IEEE Trans. Autom. Control 23 (1978) 395); the only error is where we look. Energies are integrated by the
- * trapezoidal rule with its end correction (Euler-Maclaurin), straight stretch by straight stretch:
+ * own damping (q' and 2 zeta w), dashpots (their relative velocity and c), D is then full; rigidly connected, the
+ * modes of both together, whose losses are booked under modes of building and core by their shares of the kinetic
+ * energy, P_ik^2 of mode k. f: the forces on the floors. Over a step the loads are straight lines, and the step is
+ * exact: (z, a, f, a', f') is multiplied by the exponential of one matrix (C. F. Van Loan, IEEE Trans. Autom. Control
+ * 23 (1978) 395); the only error is where we look. Energies are integrated by the trapezoidal rule with its end
+ * correction (Euler-Maclaurin), straight stretch by straight stretch:
  *   int f dt = h (f_0/2 + f_1 + ... + f_n/2) + h^2/12 (f_0' - f_n') + O(h^4) (f_0''' - f_n''')
  * Peaks: sim/peak_monitor.h.
  *

@@ -173,7 +173,8 @@ static void make_links(LinearSystem *s, const Building *b, const CoreBeam *core,
         s->P[k * s->n_loss + k] = 1;
         for (int j = 0; j < n; j++) {
             s->psi[k * n + j] = k < nb ? b->model.phi[j * b->model.n + i] : 0;
-            s->apart[k * n + j] = k < nb ? b->model.phi[j * b->model.n + i] : -core->phi[j * n + i];
+            if (j < core->top)
+                s->apart[k * n + j] = k < nb ? b->model.phi[j * b->model.n + i] : -core->phi[j * n + i];
             s->P[k * s->n_loss + s->m + j] = s->apart[k * n + j];
         }
     }

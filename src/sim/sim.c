@@ -6,10 +6,11 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "base/linalg.h"
 #include "base/units.h"
 #include "motion/forces.h"
-#include "scene/core_beam.h"
+#include "scene/neighbour.h"
 #include "sim/as_built.h"
 #include "sim/engine.h"
 #include "sim/floor_filter.h"
@@ -22,6 +23,7 @@ struct Scene {
     const Motion *motion; /* borrowed */
     Building building;
     DesignSpace design;
+    CoreBeam *neighbour; /* NULL: the core is a beam of the design */
     const EngineEntry *engine;
     double *tail_input; /* (n of the motion), NULL without one */
     EngineOptions run;  /* of every run; each worker adds its own work space and sample function */
@@ -78,6 +80,18 @@ static Status set_tail_input(Scene *scene, Err *err)
     return tail_input(&scene->building.model, scene->motion, input, err);
 }
 
+static Status set_neighbour(Scene *scene, Err *err)
+{
+    const SceneOptions *o = &scene->options;
+    scene->neighbour = malloc(sizeof *scene->neighbour);
+    if (!scene->neighbour)
+        return fail(err, STATUS_NO_MEMORY, "core.model: out of memory");
+    TRY(core_make(scene->neighbour, &o->core, &o->building, &scene->building, 0, 0, err));
+    const size_t n = (size_t)scene->building.n;
+    scene->building.hash ^= hash_fnv1a(scene->neighbour->K, n * n * sizeof *scene->neighbour->K, HASH_SEED);
+    return STATUS_OK;
+}
+
 Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err)
 {
     *out = NULL;
@@ -97,7 +111,9 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
     Status status = building_load(&scene->building, &o->building, err);
     if (status == STATUS_OK)
-        status = design_space_make(&scene->design, &o->design, o->core.section, scene->building.n, err);
+        status = design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err);
+    if (status == STATUS_OK && neighbour_is_given(&o->core))
+        status = set_neighbour(scene, err);
     if (status == STATUS_OK && motion && motion->n_force > scene->building.n)
         status = fail(err, STATUS_BAD_DATA, "motion.forces: column floor_%02d_n; the building has %d floors",
                       motion->n_force, scene->building.n);
@@ -115,6 +131,7 @@ void scene_free(Scene *scene)
     if (scene) {
         building_free(&scene->building);
         free(scene->tail_input);
+        free(scene->neighbour);
     }
     free(scene);
 }
@@ -151,12 +168,12 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     design_of(&scene->design, x, &d);
     if (d.side > 0)
         options.width_m = d.side;
-    Status status = core_beam_make(core, &options, n, scene->building.storey_m, d.t_base, d.t_top, err);
+    Status status = core_make(core, &options, &scene->options.building, &scene->building, d.t_base, d.t_top, err);
     if (status == STATUS_OK)
         status = building_joined_hz(core, &scene->building, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
         building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
-        core_hz[i] = core->omega[i] / (2 * M_PI);
+        core_hz[i] = i < core->top ? core->omega[i] / (2 * M_PI) : NAN;
     }
     *core_mass_kg = core->mass_kg;
     free(core);
@@ -404,8 +421,27 @@ Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
     return STATUS_OK;
 }
 
+/* As built: the modulus is that of the whole neighbour. */
+static void take_neighbour(SimWorker *w)
+{
+    const CoreOptions *o = &w->options->core;
+    const double stiffness = o->youngs_modulus_pa / w->scene->options.core.youngs_modulus_pa;
+    const int n = w->building->n;
+    w->core = *w->scene->neighbour;
+    for (int i = 0; i < n * n; i++)
+        w->core.K[i] *= stiffness;
+    for (int i = 0; i < n; i++) {
+        w->core.omega[i] *= sqrt(stiffness);
+        w->core.zeta[i] = o->damping;
+    }
+}
+
 static Status make_core(SimWorker *w, const Design *d, Err *err)
 {
+    if (w->scene->neighbour) {
+        take_neighbour(w);
+        return STATUS_OK;
+    }
     if (d->side > 0 && w->options != &w->own_options) {
         w->own_options = *w->options;
         w->options = &w->own_options;
@@ -438,6 +474,10 @@ static Status set_impacts(SimWorker *w, const Design *d, Err *err)
 {
     TRY(model_set(&w->model, w->options, w->building, &w->core, NULL, err));
     TRY(model_set_gaps(&w->model, d->gap[0], d->gap[1], err));
+    for (int j = w->core.top; j < w->model.n; j++) { /* above a neighbour */
+        w->model.gap[j] = 1e300;
+        w->model.middle[j] = 0;
+    }
     /* as built: the modulus is that of all parts of the contact */
     const double built = w->options->contact.youngs_modulus_pa / w->scene->options.contact.youngs_modulus_pa;
     for (int j = 0; j < w->model.n; j++)

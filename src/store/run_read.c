@@ -12,6 +12,7 @@
 #include "settings/settings.h"
 #include "store/folder.h"
 #include "store/tables.h"
+#include "scene/neighbour.h"
 
 typedef struct {
     Run *run;
@@ -29,7 +30,7 @@ static Status no_memory(const Loading *l, size_t n, const char *what, Err *err)
 /* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
 static int floors_of(const Run *run, int n_var)
 {
-    int n = design_space_floors(&run->settings->design, run->settings->core.section, n_var);
+    int n = design_space_floors(&run->settings->design, core_section(&run->settings->core), n_var);
     if (n > 0)
         return n;
     json_t *all = json_loads(run->provenance, 0, NULL);

@@ -1,0 +1,79 @@
+#include "scene/neighbour.h"
+
+#include <math.h>
+#include <string.h>
+
+int neighbour_is_given(const CoreOptions *o)
+{
+    return o->model[0] && strcmp(o->model, "none") != 0;
+}
+
+CoreSection core_section(const CoreOptions *o)
+{
+    return neighbour_is_given(o) ? CORE_EFFECTIVE : o->section;
+}
+
+const char *core_word(const CoreOptions *o)
+{
+    return neighbour_is_given(o) ? o->model : core_theory_word(o->theory);
+}
+
+static Status check_floors(const Building *n, const Building *b, const char *model, Err *err)
+{
+    double z = 0, own = 0;
+    if (n->n > b->n)
+        return fail(err, STATUS_BAD_DATA,
+                    "core.model: %s has %d floors, the building %d: make the taller one building.model and the other "
+                    "core.model",
+                    model, n->n, b->n);
+    if (n->yields)
+        return fail(err, STATUS_BAD_DATA, "core.model: %s has storeys that yield; only those of building.model may",
+                    model);
+    for (int j = 0; j < n->n; j++) {
+        z += b->storey_m[j];
+        own += n->storey_m[j];
+        if (fabs(z - own) > LEVELS_M)
+            return fail(err, STATUS_BAD_DATA,
+                        "core.model: floor %d of %s is at %.3g m, that of the building at %.3g m; floors that meet "
+                        "are at one height within %g m",
+                        j + 1, model, own, z, LEVELS_M);
+    }
+    return STATUS_OK;
+}
+
+static void take_building(CoreBeam *c, const Building *n, int floors, double damping)
+{
+    memset(c, 0, sizeof *c);
+    c->n = floors;
+    c->top = n->n;
+    c->mass_kg = building_mass(n);
+    for (int i = 0; i < floors; i++) {
+        const int own = i < n->n;
+        c->omega[i] = n->omega[own ? i : n->n - 1];
+        c->zeta[i] = damping;
+        c->gamma[i] = own ? n->gamma[i] : 0;
+        for (int j = 0; own && j < n->n; j++) {
+            c->K[i * floors + j] = n->K[i * n->n + j];
+            c->M[i * floors + j] = n->M[i * n->n + j];
+            c->phi[i * floors + j] = n->phi[i * n->n + j];
+        }
+    }
+}
+
+Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, const Building *b, double t_base_m,
+                 double t_top_m, Err *err)
+{
+    if (!neighbour_is_given(o))
+        return core_beam_make(c, o, b->n, b->storey_m, t_base_m, t_top_m, err);
+    Building n;
+    BuildingOptions options = *of;
+    memcpy(options.model, o->model, sizeof options.model);
+    options.modes = 0;
+    options.yield_drift = 0;
+    TRY(building_load(&n, &options, err));
+    const Status status = check_floors(&n, b, o->model, err);
+    if (status == STATUS_OK)
+        take_building(c, &n, b->n, o->damping);
+    building_free(&n);
+    return status;
+}
