@@ -34,22 +34,12 @@ int ode_n_roots(const Ode *o)
 }
 
 /* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
-static long interval_of(const Ode *o, double t)
-{
-    return o->stop_at_samples ? o->interval : (long)floor(t / o->motion->dt_s);
-}
-
-static int ground_moves(const Ode *o, double t)
-{
-    const long k = interval_of(o, t);
-    return k >= 0 && k <= (long)o->motion->n - 2;
-}
-
 static double ground(const Ode *o, double t)
 {
     const Motion *motion = o->motion;
-    const long k = interval_of(o, t);
-    if (!ground_moves(o, t))
+    const long last = (long)motion->n - 2;
+    const long k = o->stop_at_samples ? o->interval : (long)floor(t / motion->dt_s);
+    if (k > last || k < 0)
         return 0;
     const double slope = (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s;
     return motion->accel[k] + slope * (t - (double)k * motion->dt_s);
@@ -71,13 +61,13 @@ CLONED static double energy_rates(const SimModel *model, const double v[], doubl
 }
 
 /* Modal load [m/s2 sqrt(kg)] of the forces on the floors, added to g (nb); returns its power [W] at q'. */
-static double add_forces(const Ode *o, double t, const double v[], double g[])
+static __attribute__((noinline)) double add_forces(const Ode *o, double t, const double v[], double g[])
 {
     const SimModel *model = o->model;
     const Motion *motion = o->motion;
+    const long k = o->stop_at_samples ? o->interval : (long)floor(t / motion->dt_s), width = motion->n_force;
     double power = 0;
-    for (int j = 0; j < motion->n_force && ground_moves(o, t); j++) {
-        const long k = interval_of(o, t), width = motion->n_force;
+    for (int j = 0; j < motion->n_force && k >= 0 && k <= (long)motion->n - 2; j++) {
         const double *f = motion->force + k * width + j;
         const double force = f[0] + (f[width] - f[0]) * (t / motion->dt_s - (double)k);
         const double *row = model->RT + (size_t)j * (size_t)model->m_pad;
