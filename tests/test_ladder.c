@@ -145,6 +145,19 @@ TEST(what_the_settings_have_stays_as_they_have_it)
     free(l);
 }
 
+TEST(a_neighbour_has_no_ground_and_no_beam)
+{
+    json_t *o = json_of("check configs/neighbours.ini --json --ladder"), *row;
+    size_t i;
+    json_array_foreach(json_object_get(json_object_get(o, "ladder"), "effects"), i, row)
+    {
+        const char *key = json_string_value(json_object_get(row, "setting"));
+        assert_true(strcmp(key, "core.foundation") != 0 && strcmp(key, "core.theory") != 0);
+    }
+    assert_true(i >= 4);
+    json_decref(o);
+}
+
 TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
 {
     double x[N + 2];

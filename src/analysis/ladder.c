@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "scene/frame.h"
+#include "scene/neighbour.h"
 #include "settings/settings.h"
 
 enum { REPLICATES = 8 };
@@ -68,8 +69,17 @@ static void set_values(const Job *job, int kind, const char *now, LadderEffect *
 static int is_there(const Job *job, int kind)
 {
     const Settings *s = job->s;
-    return kind == BETWEEN ? frame_is(s->building.model)
-                           : kind != END || s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
+    switch (kind) {
+    case BETWEEN:
+        return frame_is(s->building.model);
+    case SHEAR:
+    case GROUND:
+        return !neighbour_is_given(&s->core);
+    case END:
+        return s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
+    default:
+        return 1;
+    }
 }
 
 static Status list_effects(Job *job, Err *err)

@@ -9,9 +9,9 @@
  *              all, the largest change that is left out is put back, until it is
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
- * core, storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps: the
- * other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all modes of
- * the core. Under motion.record; impacts.
+ * core, storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps:
+ * the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
+ * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts.
  *
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
 #ifndef IMTET_ANALYSIS_LADDER_H
