@@ -214,8 +214,8 @@ static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, dou
         k->min_error = best;
 }
 
-/* Which of the n forms without an additive part is tried beside the present one; n: none. In turn, at every tuning while
- * all centres are in it, later at every second one: less is learnt of the form from one to the next. */
+/* Which of the n forms without an additive part is tried beside the present one; n: none. In turn, at every tuning
+ * while all centres are in it, later at every second one: less is learnt of the form from one to the next. */
 static size_t challenger_of(const Rbf *m, size_t n_forms)
 {
     if (m->n <= TUNE_CENTRES_MAX)
