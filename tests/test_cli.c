@@ -95,7 +95,6 @@ TEST(a_misunderstood_command_line_ends_with_2_and_a_suggestion)
     expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
     expect(2, "--set nonsense: write --set section.key=value", "building configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
-    expect(2, "--all and --select do not go together", "export results --all --select 5 --csv -");
     expect(66, "holds no run", "choose results");
 }
 
@@ -388,10 +387,8 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
 {
     write_in_place("own.ini", "[sim]\nduration_s = 5\n");
-    write_in_place("own.sqlite", "SQLite format 3");
     expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
     expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
-    expect(2, "is a database", "simulate @/own.ini --design none --history @/own.sqlite");
     char *settings = read_in_place("own.ini");
     assert_string_equal(settings, "[sim]\nduration_s = 5\n");
     free(settings);

@@ -192,12 +192,10 @@ Status args_number(const Args *args, const char *name, double least, double most
 
 Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err)
 {
-    const char *text = args_value(args, name);
-    char *end;
-    *value = text ? strtol(text, &end, 10) : otherwise;
-    return !text || (end != text && !*end && *value >= least && *value <= most)
-               ? STATUS_OK
-               : fail(err, STATUS_USAGE, "%s: '%.40s' is no whole number from %ld to %ld", name, text, least, most);
+    double number;
+    TRY(args_number(args, name, (double)least, (double)most, (double)otherwise, &number, err));
+    *value = (long)number;
+    return (double)*value == number ? STATUS_OK : fail(err, STATUS_USAGE, "%s: %g is no whole number", name, number);
 }
 
 Status args_alone(const Args *args, const char *name, const char *others, Err *err)

@@ -151,21 +151,14 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
 {
     size_t rows[NEAREST_MAX];
     const size_t n = run_nearest(run, rows);
-    const int is_whole = run->settings->search.fidelity == FIDELITY_OFF, none_succeeded = n == 0 && run->table.n > 0;
     TRY(export_nearest(summary->folder, run, n, rows, err));
-    if (none_succeeded && is_whole)
-        return fail(err, STATUS_INTERNAL,
-                    "none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
-                    summary->n_simulated, run->table.row[0].reason, summary->folder);
-    if (none_succeeded || strcmp(run->settings->search.limits, "none") == 0)
-        return fail(err, STATUS_INTERNAL, "%s; `imtet export %s --all --csv FILE` says why",
-                    is_whole ? "every design failed at least once" : "no evaluation of a design as a whole succeeded",
-                    summary->folder);
-    printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n", summary->folder,
-           summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
-    print_nearest(run, n, rows);
-    return fail(err, STATUS_UNMET, "search.limits: none of %zu designs keeps %.120s; the front is empty",
-                summary->n_simulated - summary->n_failed, run->settings->search.limits);
+    if (n > 0 && strcmp(run->settings->search.limits, "none") != 0) {
+        printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
+               summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
+               stop_reason_words(summary->stopped));
+        print_nearest(run, n, rows);
+    }
+    return run_why_empty(run, err);
 }
 
 static Status report(const Run *run, const StudySummary *summary, Err *err)

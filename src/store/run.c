@@ -329,8 +329,9 @@ Status run_why_empty(const Run *run, Err *err)
     const Settings *s = run->settings;
     snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
     if (run->table.n > 0 && n_ok == 0)
-        return fail(err, STATUS_INTERNAL, "%s: all %zu simulations failed; `imtet status` has the reasons", run->folder,
-                    run->table.n);
+        return fail(err, STATUS_INTERNAL,
+                    "%s: none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
+                    run->folder, run->table.n, run->table.row[0].reason, run->folder);
     if (run->n_generations == 0)
         return fail(err, STATUS_BAD_DATA,
                     "%s: there is no front before the initial sample is complete; %zu designs are simulated",
@@ -339,7 +340,9 @@ Status run_why_empty(const Run *run, Err *err)
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
                     s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
                     access(nearest, F_OK) == 0 ? nearest : "");
-    return fail(err, STATUS_BAD_DATA, "%s: the front is empty", run->folder);
+    return fail(err, STATUS_INTERNAL,
+                "%s: every design failed at least once; `imtet export %s --all --csv FILE` says why", run->folder,
+                run->folder);
 }
 
 /* Of the ids of the run; it has some. */

@@ -17,7 +17,8 @@
 
 /* -- the tables: a line for every column --------------------------------------------------------------------------- */
 
-typedef enum { WHOLE, MARK, REAL, TEXT, REASON, OUTCOME, KIND } FieldType;
+/* Of MOVED, MARK and KIND the digest knows nothing: they change after the row is written. */
+typedef enum { WHOLE, MOVED, MARK, REAL, TEXT, REASON, OUTCOME, KIND } FieldType;
 
 /* A column, and where the record of its row has the value. */
 typedef struct {
@@ -33,7 +34,7 @@ typedef struct {
 
 static const Field EVALUATION[] = {
     FIELD(Evaluation, id, "id", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(Evaluation, generation, "generation", "INTEGER NOT NULL", WHOLE),
+    FIELD(Evaluation, generation, "generation", "INTEGER NOT NULL", MOVED),
     FIELD(Evaluation, kind, "kind", "TEXT", KIND),
     FIELD(Evaluation, outcome, "outcome", "TEXT NOT NULL", OUTCOME),
     FIELD(Evaluation, reason, "reason", "TEXT NOT NULL", REASON),
@@ -362,101 +363,105 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
 
 /* -- records ------------------------------------------------------------------------------------------------------- */
 
-static int bind_number(sqlite3_stmt *s, int i, double value)
+/* A row that is written or read column by column, and the digest of what has passed. */
+typedef struct {
+    sqlite3_stmt *s;
+    int at; /* columns that have passed */
+    uint64_t digest;
+} Row;
+
+static void put_number(Row *r, double value)
 {
-    return isfinite(value) ? sqlite3_bind_double(s, i, value) : sqlite3_bind_null(s, i);
+    r->at++;
+    if (isfinite(value))
+        sqlite3_bind_double(r->s, r->at, value);
+    r->digest = digest_numbers(1, &value, r->digest);
 }
 
-static int bind_words(sqlite3_stmt *s, int i, const char *text)
+/* What is not bound is NULL. */
+static void put_text(Row *r, const char *text, int is_null)
 {
-    return text ? sqlite3_bind_text(s, i, text, -1, SQLITE_STATIC) : sqlite3_bind_null(s, i);
+    r->at++;
+    if (!is_null)
+        sqlite3_bind_text(r->s, r->at, text, -1, SQLITE_STATIC);
+    r->digest = digest_text(text, r->digest);
 }
 
-static int bind_field(sqlite3_stmt *s, int i, const Field *f, const char *record)
+static void put_field(Row *r, const Field *f, const char *record)
 {
     const void *at = record + f->at;
-    const char *text = at;
+    const EvaluationKind *kind = at;
+    const char *const *reason = at;
     switch (f->type) {
     case WHOLE:
-        return sqlite3_bind_int64(s, i, *(const long *)at);
-    case MARK:
-        return *(const int *)at == NEVER ? sqlite3_bind_null(s, i) : sqlite3_bind_int(s, i, *(const int *)at);
-    case REAL:
-        return bind_number(s, i, *(const double *)at);
-    case TEXT:
-        return bind_words(s, i, text[0] ? text : NULL);
-    case REASON:
-        text = *(const char *const *)at;
-        return bind_words(s, i, text ? text : "");
-    case OUTCOME:
-        return bind_words(s, i, outcome_word(*(const Outcome *)at));
-    default:
-        return bind_words(
-            s, i, *(const EvaluationKind *)at == KIND_UNFINISHED ? NULL : kind_word(*(const EvaluationKind *)at));
-    }
-}
-
-/* A reason is SQLite's until the next row. A word for no outcome counts as one, which its row's digest does not fit. */
-static void take_field(sqlite3_stmt *row, int i, const Field *f, char *record)
-{
-    void *at = record + f->at;
-    Outcome outcome;
-    switch (f->type) {
-    case WHOLE:
-        *(long *)at = (long)sqlite3_column_int64(row, i);
+    case MOVED:
+        sqlite3_bind_int64(r->s, ++r->at, *(const long *)at);
+        r->digest = digest_whole(f->type == WHOLE ? *(const long *)at : 0, r->digest);
         break;
     case MARK:
-        *(int *)at = (int)column_whole(row, i, NEVER);
+        r->at++;
+        if (*(const int *)at != NEVER)
+            sqlite3_bind_int(r->s, r->at, *(const int *)at);
         break;
     case REAL:
-        *(double *)at = column_number(row, i);
+        put_number(r, *(const double *)at);
         break;
     case TEXT:
-        snprintf(at, f->size, "%s", column_text(row, i));
+        put_text(r, at, *(const char *)at == 0);
         break;
     case REASON:
-        *(const char **)at = column_text(row, i);
+        put_text(r, *reason ? *reason : "", 0);
         break;
     case OUTCOME:
-        outcome = outcome_of_word(column_text(row, i));
-        *(Outcome *)at = outcome == OUTCOME_COUNT ? OUTCOME_ERROR : outcome;
+        put_text(r, outcome_word(*(const Outcome *)at), 0);
         break;
     case KIND:
-        *(EvaluationKind *)at = kind_of_word(column_text(row, i));
-        break;
+        r->at++;
+        if (*kind != KIND_UNFINISHED)
+            sqlite3_bind_text(r->s, r->at, kind_word(*kind), -1, SQLITE_STATIC);
     }
 }
 
-static uint64_t digest_field(const Field *f, const char *record, uint64_t hash)
+static const char *take_text(Row *r)
 {
-    const void *at = record + f->at;
+    const char *text = column_text(r->s, r->at++);
+    r->digest = digest_text(text, r->digest);
+    return text;
+}
+
+/* A reason is SQLite's until the next row. */
+static void take_field(Row *r, const Field *f, char *record)
+{
+    void *at = record + f->at;
     switch (f->type) {
     case WHOLE:
-        return digest_whole(*(const long *)at, hash);
+    case MOVED:
+        *(long *)at = (long)sqlite3_column_int64(r->s, r->at++);
+        r->digest = digest_whole(f->type == WHOLE ? *(long *)at : 0, r->digest);
+        break;
+    case MARK:
+        *(int *)at = (int)column_whole(r->s, r->at++, NEVER);
+        break;
     case REAL:
-        return digest_numbers(1, at, hash);
+        *(double *)at = column_number(r->s, r->at++);
+        r->digest = digest_numbers(1, at, r->digest);
+        break;
     case TEXT:
-        return digest_text(at, hash);
+        snprintf(at, f->size, "%s", take_text(r));
+        break;
     case REASON:
-        return digest_text(*(const char *const *)at ? *(const char *const *)at : "", hash);
+        *(const char **)at = take_text(r);
+        break;
     case OUTCOME:
-        return digest_text(outcome_word(*(const Outcome *)at), hash);
-    default:
-        return hash;
+        *(Outcome *)at = outcome_of_word(take_text(r));
+        break;
+    case KIND:
+        *(EvaluationKind *)at = kind_of_word(column_text(r->s, r->at++));
     }
 }
 
-static uint64_t digest_record(const TableColumns *t, const void *record)
-{
-    uint64_t hash = HASH_SEED;
-    for (size_t i = 0; i < t->n; i++)
-        hash = digest_field(&t->field[i], record, hash);
-    return hash;
-}
-
-/* INSERT with n places, and the fields bound to the first of them. */
-static Status prepare_insert(Database *db, const TableColumns *t, size_t n, const void *record, sqlite3_stmt **s,
-                             Err *err)
+/* INSERT with n places, and the fields in the first of them. */
+static Status begin_insert(Database *db, const TableColumns *t, size_t n, const void *record, Row *r, Err *err)
 {
     char sql[4200]; /* 2 for each of 2,000 columns */
     int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", t->name);
@@ -465,20 +470,21 @@ static Status prepare_insert(Database *db, const TableColumns *t, size_t n, cons
         sql[at++] = '?';
     }
     snprintf(sql + at, 2, ")");
-    TRY(database_statement(db, sql, s, err));
+    *r = (Row){.digest = HASH_SEED};
+    TRY(database_statement(db, sql, &r->s, err));
     for (size_t i = 0; i < t->n; i++)
-        bind_field(*s, (int)i + 1, &t->field[i], record);
+        put_field(r, &t->field[i], record);
     return STATUS_OK;
 }
 
 Status record_put(Database *db, RecordTable table, const void *record, Err *err)
 {
     const TableColumns *t = &RECORDS[table];
-    sqlite3_stmt *s;
-    TRY(prepare_insert(db, t, t->n + (size_t)t->has_digest, record, &s, err));
+    Row r;
+    TRY(begin_insert(db, t, t->n + (size_t)t->has_digest, record, &r, err));
     if (t->has_digest)
-        sqlite3_bind_int64(s, (int)t->n + 1, (long)digest_record(t, record));
-    return database_run(db, s, err);
+        sqlite3_bind_int64(r.s, r.at + 1, (long)r.digest);
+    return database_run(db, r.s, err);
 }
 
 typedef struct {
@@ -499,10 +505,11 @@ static Status take_record(sqlite3_stmt *row, void *user, Err *err)
         r->list = wider;
     }
     char *record = r->list + r->n++ * t->size;
+    Row taken = {.s = row, .digest = HASH_SEED};
     memset(record, 0, t->size);
     for (size_t i = 0; i < t->n; i++)
-        take_field(row, (int)i, &t->field[i], record);
-    if (t->has_digest && sqlite3_column_int64(row, (int)t->n) != (long)digest_record(t, record))
+        take_field(&taken, &t->field[i], record);
+    if (t->has_digest && sqlite3_column_int64(row, taken.at) != (long)taken.digest)
         return database_damaged(r->db, err, "%s %lld is not what was written", t->name, sqlite3_column_int64(row, 0));
     return STATUS_OK;
 }
@@ -520,37 +527,24 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 
 /* -- rows of evaluations ------------------------------------------------------------------------------------------- */
 
-/* Generation and kind are not in it (digest_kind). */
-static uint64_t digest_row(RowTable table, const Schema *s, const Evaluation *e)
-{
-    Numbers list[N_NUMBERS];
-    Evaluation row = *e;
-    row.generation = 0;
-    uint64_t hash = digest_record(&ROWS[table], &row);
-    numbers_of(table, s, list);
-    for (size_t k = 0; k < N_NUMBERS; k++)
-        hash = digest_numbers(list[k].n, array_of(e, &list[k]), hash);
-    return hash;
-}
-
 Status rows_insert(Database *db, RowTable table, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
     Numbers list[N_NUMBERS];
     Evaluation row = *e;
-    sqlite3_stmt *s;
+    Row r;
     for (size_t k = 0; k < schema->n_obj; k++)
         none[k] = NAN;
     row.f = e->outcome == OUTCOME_OK ? e->f : none;
     row.sd = e->sd ? e->sd : none;
-    TRY(prepare_insert(db, &ROWS[table], n_columns(table, schema), &row, &s, err));
-    int at = (int)ROWS[table].n + 1;
-    sqlite3_bind_int64(s, at, (long)(digest_row(table, schema, &row) ^ digest_kind(e->kind, e->generation)));
+    TRY(begin_insert(db, &ROWS[table], n_columns(table, schema), &row, &r, err));
+    const int digest_at = ++r.at;
     numbers_of(table, schema, list);
     for (size_t k = 0; k < N_NUMBERS; k++)
         for (size_t i = 0; i < list[k].n; i++)
-            bind_number(s, ++at, array_of(&row, &list[k])[i]);
-    return database_run(db, s, err);
+            put_number(&r, array_of(&row, &list[k])[i]);
+    sqlite3_bind_int64(r.s, digest_at, (long)(r.digest ^ digest_kind(e->kind, e->generation)));
+    return database_run(db, r.s, err);
 }
 
 /* The exclusive or that SQL lacks is (a | b) - (a & b). */
@@ -580,14 +574,17 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
     Evaluation *e = r->room.row;
-    int at = (int)ROWS[r->table].n;
+    Row taken = {.s = row, .digest = HASH_SEED};
     for (size_t i = 0; i < ROWS[r->table].n; i++)
-        take_field(row, (int)i, &ROWS[r->table].field[i], (char *)e);
-    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, at);
-    for (size_t k = 0; k < N_NUMBERS; k++)
+        take_field(&taken, &ROWS[r->table].field[i], (char *)e);
+    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at);
+    for (size_t k = 0; k < N_NUMBERS; k++) {
+        double *values = array_of(e, &r->list[k]);
         for (size_t i = 0; i < r->list[k].n; i++)
-            array_of(e, &r->list[k])[i] = column_number(row, ++at);
-    if (digest != (digest_row(r->table, r->schema, e) ^ digest_kind(e->kind, e->generation)))
+            values[i] = column_number(row, ++taken.at);
+        taken.digest = digest_numbers(r->list[k].n, values, taken.digest);
+    }
+    if (digest != (taken.digest ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
     evaluation_set_outcome(e, e->outcome, e->reason);
     return r->take(e, r->user, err);
