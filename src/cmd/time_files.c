@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/text.h"
 #include "base/units.h"
 #include "report/history.h"
 #include "motion/spectrum.h"
@@ -43,34 +42,24 @@ static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *er
 
 /* -- contacts one by one ------------------------------------------------------------------------------------------- */
 
-/* Of the run under way, which may be repeated with shorter steps. */
+/* Of designs by number; a run may be repeated with shorter steps: only the last attempt counts. */
 typedef struct {
-    FILE *rows; /* NULL: no memory */
-    char *text;
-    size_t length;
+    FILE *out;
     long design;
+    int attempt, wanted;
 } ContactRows;
-
-static void begin_rows(ContactRows *r)
-{
-    if (r->rows)
-        text_close(r->rows);
-    free(r->text);
-    r->rows = text_open(&r->text, &r->length);
-}
 
 static void add_contact(const SimContact *c, void *user)
 {
     ContactRows *r = user;
-    if (!c) /* a run begins */
-        begin_rows(r);
-    if (!c || !r->rows)
+    r->attempt += !c; /* a run begins */
+    if (!c || r->attempt != r->wanted)
         return;
-    fprintf(r->rows, "%ld,%d,%d,%d", r->design, c->floor + 1, c->side, c->open);
+    fprintf(r->out, "%ld,%d,%d,%d", r->design, c->floor + 1, c->side, c->open);
     print_cells(
-        r->rows, 8,
+        r->out, 8,
         (const double[]){c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost});
-    fputc('\n', r->rows);
+    fputc('\n', r->out);
 }
 
 static void write_contacts_header(FILE *out, int n_floors)
@@ -82,16 +71,9 @@ static void write_contacts_header(FILE *out, int n_floors)
 
 static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    ContactRows rows = {.design = number_of(job, i)};
-    begin_rows(&rows);
+    ContactRows rows = {.out = out, .design = number_of(job, i), .wanted = job->results[i].repeated + 1};
     sim_worker_contacts(worker, add_contact, &rows);
-    Status status = run_again(job, worker, i, err);
-    if ((!rows.rows || text_close(rows.rows) != 0) && status == STATUS_OK)
-        status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for the contacts of design %ld", rows.design);
-    if (status == STATUS_OK)
-        fwrite(rows.text, 1, rows.length, out);
-    free(rows.text);
-    return status;
+    return run_again(job, worker, i, err);
 }
 
 Status write_contacts(const TimeJob *job, const char *path, Err *err)
@@ -105,7 +87,7 @@ typedef struct {
     const SimWorker *worker;
     FILE *out;
     long design;
-    int n_floors, attempt, wanted; /* the run may be repeated with shorter steps: only the last attempt counts */
+    int n_floors, attempt, wanted;
 } HistoryRows;
 
 static void write_history_header(FILE *out, int n_floors)

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/csv.h"
+
 static void folder_of(const char *path, char folder[PATH_MAX])
 {
     const char *slash = strrchr(path, '/');
@@ -60,7 +62,9 @@ static Status open_at(Output *o, const char *path, int in_place, Err *err)
 Status output_open(Output *o, const char *path, Err *err)
 {
     struct stat there;
-    return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
+    TRY(open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err));
+    o->spares = o->temporary[0] != 0;
+    return STATUS_OK;
 }
 
 Status output_open_inside(Output *o, const char *path, Err *err)
@@ -95,7 +99,11 @@ void output_sync_folder(const char *path)
 
 Status output_close(Output *o, Err *err)
 {
-    Status status = output_sync(o->stream, o->path, err);
+    Status status = o->spares && file_was_read(o->path)
+                        ? fail(err, STATUS_USAGE, "%s: was read or written by this command; name another file", o->path)
+                        : output_sync(o->stream, o->path, err);
+    if (o->spares)
+        file_note(o->stream);
     if (status == STATUS_OK)
         status = give_name(o, err);
     if (fclose(o->stream) != 0 && status == STATUS_OK)

@@ -27,8 +27,8 @@ static int is_lower(const char *key, const char *is, const char *was)
 static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
 {
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
-        snprintf(d->first, sizeof d->first, "%s is %.*s there, now %.*s", key, visible_cut(was, SHOWN), was,
-                 visible_cut(is, SHOWN), is);
+        snprintf(d->first, sizeof d->first, "%s is %.*s%s there, now %.*s%s", key, visible_cut(was, SHOWN), was,
+                 strlen(was) > SHOWN ? "..." : "", visible_cut(is, SHOWN), is, strlen(is) > SHOWN ? "..." : "");
     d->n_limits += is_limit;
     d->n_lowered += is_limit && is_lower(key, is, was);
     d->n_others += !is_limit;
