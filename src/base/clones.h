@@ -2,20 +2,17 @@
  *
  *   CLONED      x86-64-v4 (AVX-512), x86-64-v3 (AVX2), any
  *   CLONED_V3   x86-64-v3, any: kernels written in vectors of four doubles
- *   CLONED_AVX  AVX, any: the same without fused multiply-add, hence the same numbers everywhere
  *
  * The choice runs before sanitizers are set up, and clang has another syntax: there, one version for any processor. */
 #ifndef IMTET_BASE_CLONES_H
 #define IMTET_BASE_CLONES_H
 
 #if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CLONED     __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#define CLONED_V3  __attribute__((target_clones("arch=x86-64-v3", "default")))
-#define CLONED_AVX __attribute__((target_clones("avx", "default")))
+#define CLONED    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define CLONED_V3 __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define CLONED
 #define CLONED_V3
-#define CLONED_AVX
 #endif
 
 #endif

@@ -1,9 +1,7 @@
 #include "motion/spectrum.h"
 
 #include <math.h>
-#include <stdint.h>
 
-#include "base/clones.h"
 #include "base/units.h"
 
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
@@ -130,110 +128,82 @@ static double largest_inside(const Interval *in, double dt, double v_end)
     return largest;
 }
 
-/* ---- four oscillators at once ------------------------------------------------------------------------------------ */
+/* ---- over the motion ----------------------------------------------------------------------------------------------- */
 
-typedef double v4 __attribute__((vector_size(32))); /* twice what every x86-64 and every ARM64 computes at once */
-typedef int64_t m4 __attribute__((vector_size(32)));
-enum { LANES = 4 };
-
-/* What an interval of length dt does to four oscillators, and what the bounds on |u| need. */
+/* What an interval of length dt does, and what the bounds on |u| need. */
 typedef struct {
-    v4 uu, uv, vu, vv, I1, I2;          /* u' = uu u + uv v - I1 a - I2 slope, v' = vu u + vv v - uv a - I1 slope */
-    v4 per_ww, lag, per_w, ww, damping; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
-    double dt, chord;                   /* dt^4 / 64 */
-} Flow4;
+    double uu, uv, vu, vv, I1, I2;          /* u' = uu u + uv v - I1 a - I2 slope, v' = vu u + vv v - uv a - I1 slope */
+    double per_ww, lag, per_w, ww, damping; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
+    double dt, chord;                       /* dt^4 / 64 */
+} Step;
 
-static Flow4 flow4(const Oscillator o[LANES], double dt)
+static Step step_of(const Oscillator *o, double dt)
 {
-    Flow4 g = {.dt = dt, .chord = pow(dt, 4) / 64};
-    for (int k = 0; k < LANES; k++) {
-        const Flow f = flow(&o[k], dt);
-        g.ww[k] = o[k].w * o[k].w;
-        g.per_ww[k] = o[k].per_ww;
-        g.per_w[k] = o[k].w * o[k].per_ww;
-        g.damping[k] = 2 * o[k].zeta * o[k].w;
-        g.lag[k] = g.damping[k] * o[k].per_ww;
-        g.uu[k] = f.h1 + g.damping[k] * f.h;
-        g.uv[k] = f.h;
-        g.vu[k] = -g.ww[k] * f.h;
-        g.vv[k] = f.h1;
-        g.I1[k] = f.I1;
-        g.I2[k] = f.I2;
-    }
+    const Flow f = flow(o, dt);
+    Step g = {.uv = f.h,
+              .vv = f.h1,
+              .I1 = f.I1,
+              .I2 = f.I2,
+              .per_ww = o->per_ww,
+              .per_w = o->w * o->per_ww,
+              .ww = o->w * o->w,
+              .damping = 2 * o->zeta * o->w,
+              .dt = dt,
+              .chord = pow(dt, 4) / 64};
+    g.lag = g.damping * g.per_ww;
+    g.uu = f.h1 + g.damping * f.h;
+    g.vu = -g.ww * f.h;
     return g;
 }
 
-typedef struct {
-    v4 u, v, largest;
-} State4;
-
-#define MAGNITUDE(x) ((v4)((m4)(x)&INT64_MAX)) /* all but the sign */
-
-/* Raises the largest |u| to what is in the interval from `begin` to y, where |u| may be larger than it was so far and
- * is at both ends: where |u''| <= c, u lies less than dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j
- * there, is a free vibration: c^2 = r^2 + (j / w)^2. A good bound for periods much longer than dt; `bounded` by the
- * other one. */
-static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const Flow4 *g, const State4 *begin,
-                                                  State4 *y, double a, double slope, const m4 *bounded)
+/* Can |u| become larger inside the interval than it was so far and is at both ends? Where |u''| <= c, u lies less than
+ * dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. A
+ * good bound for periods much longer than dt. */
+static int may_rise(const Step *g, const Interval *in, double largest, double u_end)
 {
-    const v4 r = -a - g->damping * begin->v - g->ww * begin->u, j = -slope - g->damping * r - g->ww * begin->v;
-    const v4 above = g->chord * (r * r + j * j * g->per_ww);
-    const v4 room0 = y->largest - MAGNITUDE(begin->u), room1 = y->largest - MAGNITUDE(y->u);
-    const m4 nowhere = *bounded | ((above <= room0 * room0) & (above <= room1 * room1));
-    for (int k = 0; k < LANES; k++)
-        if (!nowhere[k]) {
-            const Interval in = {.o = &o[k], .y = {begin->u[k], begin->v[k]}, .a = a, .slope = slope};
-            y->largest[k] = fmax(y->largest[k], largest_inside(&in, g->dt, y->v[k]));
-        }
+    const double r = -in->a - g->damping * in->y.v - g->ww * in->y.u, j = -in->slope - g->damping * r - g->ww * in->y.v;
+    const double above = g->chord * (r * r + j * j * g->per_ww);
+    const double room0 = largest - fabs(in->y.u), room1 = largest - fabs(u_end);
+    return !(above <= room0 * room0 && above <= room1 * room1);
 }
 
 /* Advances y over an interval and raises the largest |u| to what is in it. u is a line p (what the ground's line leads
  * to in the end) and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) /
  * w)^2). A good bound for short periods. */
-static inline void cross(const Oscillator o[LANES], const Flow4 *g, State4 *y, double a, double slope)
+static void cross(const Oscillator *o, const Step *g, State *y, double *largest, double a, double slope)
 {
-    const State4 begin = *y;
-    const v4 rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
-    const v4 e = begin.u - p, de = (begin.v - rise) * g->per_w, square = e * e + de * de;
-    const v4 room0 = begin.largest - MAGNITUDE(p), room1 = begin.largest - MAGNITUDE(p + rise * g->dt);
-    const m4 nowhere = (room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1);
-    y->u = g->uu * begin.u + g->uv * begin.v - a * g->I1 - slope * g->I2;
-    y->v = g->vu * begin.u + g->vv * begin.v - a * g->uv - slope * g->I1;
-    const v4 reached = MAGNITUDE(y->u);
-    const m4 higher = reached > begin.largest;
-    y->largest = (v4)(((m4)reached & higher) | ((m4)begin.largest & ~higher));
-    if (!(nowhere[0] & nowhere[1] & nowhere[2] & nowhere[3]))
-        look_inside(o, g, &begin, y, a, slope, &nowhere);
+    const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
+    const double rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
+    const double e = in.y.u - p, de = (in.y.v - rise) * g->per_w, square = e * e + de * de;
+    const double room0 = *largest - fabs(p), room1 = *largest - fabs(p + rise * g->dt);
+    y->u = g->uu * in.y.u + g->uv * in.y.v - a * g->I1 - slope * g->I2;
+    y->v = g->vu * in.y.u + g->vv * in.y.v - a * g->uv - slope * g->I1;
+    *largest = fmax(*largest, fabs(y->u));
+    if (!(room0 >= 0 && room1 >= 0 && square <= room0 * room0 && square <= room1 * room1) &&
+        may_rise(g, &in, *largest, y->u))
+        *largest = fmax(*largest, largest_inside(&in, g->dt, y->v));
 }
 
-/* Over the motion and then half a period of each of them at rest. */
-CLONED_AVX static void largest_displacements(const Motion *m, const Oscillator o[LANES], double largest[LANES])
+/* Over the motion and then half a period at rest. */
+static double largest_displacement(const Motion *m, const Oscillator *o)
 {
-    State4 y = {0};
-    const Flow4 g = flow4(o, m->dt_s);
+    const double half_period = M_PI / o->wd;
+    const Step g = step_of(o, m->dt_s);
+    Interval rest = {.o = o};
+    double largest = 0;
     for (size_t i = 0; i + 1 < m->n; i++)
-        cross(o, &g, &y, m->accel[i], (m->accel[i + 1] - m->accel[i]) / m->dt_s);
-    for (int k = 0; k < LANES; k++) {
-        const double half_period = M_PI / o[k].wd;
-        const Interval in = {.o = &o[k], .y = {y.u[k], y.v[k]}};
-        const State end = state_at(&in, half_period);
-        largest[k] = fmax(y.largest[k], fmax(fabs(end.u), largest_inside(&in, half_period, end.v)));
-    }
+        cross(o, &g, &rest.y, &largest, m->accel[i], (m->accel[i + 1] - m->accel[i]) / m->dt_s);
+    const State end = state_at(&rest, half_period);
+    return fmax(largest, fmax(fabs(end.u), largest_inside(&rest, half_period, end.v)));
 }
 
 void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], double psa[])
 {
 #pragma omp parallel for schedule(dynamic)
-    for (size_t first = 0; first < n; first += LANES) {
-        Oscillator o[LANES];
-        double largest[LANES];
-        for (size_t k = 0; k < LANES; k++) { /* idle lanes repeat the last one */
-            const double period = T[first + k < n ? first + k : n - 1], w = 2 * M_PI / (period > 0 ? period : 1);
-            o[k] = (Oscillator){.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
-        }
-        largest_displacements(m, o, largest);
-        for (size_t k = 0; k < LANES && first + k < n; k++) /* a rigid one moves with the ground */
-            psa[first + k] = T[first + k] > 0 ? o[k].w * o[k].w * largest[k] : motion_peak(m);
+    for (size_t i = 0; i < n; i++) {
+        const double w = 2 * M_PI / T[i]; /* a rigid one moves with the ground */
+        const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
+        psa[i] = T[i] > 0 ? w * w * largest_displacement(m, &o) : motion_peak(m);
     }
 }
 

@@ -9,7 +9,6 @@
 
 #include "evaluate/problem.h"
 #include "evaluate/scenario.h"
-#include "base/dominance.h"
 #include "moga/nd_tree.h"
 #include "settings/settings.h"
 #include "settings/options.h"
@@ -97,30 +96,8 @@ void run_minimise(const Run *run, size_t row, double f[])
         f[k] = minimised(run, row, k);
 }
 
-/* Polished designs compete with the front of the search, which was found without them. */
-static void admit_polished(Run *run)
-{
-    const size_t first = run_first_polished(run);
-    const Evaluation *row = run->table.row;
-    RunPlace *place = run->place;
-    const size_t m = run->schema.n_obj;
-    double a[OBJECTIVES_MAX], b[OBJECTIVES_MAX];
-    for (size_t i = first; i < run->table.n; i++)
-        place[i].on_front = row[i].kind == KIND_POLISHED && place[i].ok && !(row[i].violation > 0.0);
-    for (size_t i = first; i < run->table.n; i++)
-        for (size_t j = 0; j < run->table.n && place[i].on_front; j++) {
-            if (j == i || !place[j].on_front)
-                continue;
-            run_minimise(run, i, a);
-            run_minimise(run, j, b);
-            if (dominates(m, a, b))
-                place[j].on_front = 0;
-            else if (dominates(m, b, a))
-                place[i].on_front = 0;
-        }
-}
-
-/* Where designs have other values than the search knew: of all that were ever on its front. */
+/* Of the front of the search, or of all that were ever on it where designs have other values than the search knew, and
+ * of the polished designs, which it was found without. */
 static Status form_again(Run *run, Err *err)
 {
     NdTree *tree;
@@ -130,8 +107,10 @@ static Status form_again(Run *run, Err *err)
         F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail(err, STATUS_NO_MEMORY, "no memory for the front");
     for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
         RunPlace *p = &run->place[i];
+        const int is_candidate =
+            run->table.row[i].kind == KIND_POLISHED || (run->finer.n > 0 ? p->entered != NEVER : p->on_front);
         p->on_front = 0;
-        if (!p->ok || p->entered == NEVER || run->table.row[i].violation > 0.0)
+        if (!p->ok || !is_candidate || run->table.row[i].violation > 0.0)
             continue;
         run_minimise(run, i, F + i * run->schema.n_obj);
         status = nd_tree_insert(tree, F, i, &change, err);
@@ -143,6 +122,11 @@ static Status form_again(Run *run, Err *err)
         nd_tree_free(tree);
     free(F);
     return status;
+}
+
+static int run_has_polished(const Run *run)
+{
+    return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
 }
 
 static void list_front(Run *run)
@@ -158,9 +142,8 @@ Status run_settle_front(Run *run, Err *err)
     run->front = calloc(run->table.n + 1, sizeof *run->front);
     if (!run->front)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
-    if (run->finer.n > 0)
+    if (run->finer.n > 0 || run_has_polished(run))
         TRY(form_again(run, err));
-    admit_polished(run);
     list_front(run);
     return STATUS_OK;
 }
@@ -196,11 +179,6 @@ size_t run_evaluations(const Run *run, size_t first)
     for (size_t i = first; i < run->table.n; i++)
         sum += cost_of(run, &cost, i);
     return sum / cost.whole;
-}
-
-static int run_has_polished(const Run *run)
-{
-    return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
 }
 
 void run_drop_polished(Run *run)
