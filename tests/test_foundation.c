@@ -277,6 +277,13 @@ TEST(the_core_on_a_rotational_spring_has_its_known_frequencies_and_response)
     assert_close(r.ed1_pct, 2.565, 5e-3);
     assert_close(r.edcs_pct, 1.691, 5e-3);
     assert_close(r.forces.contact_force_max_n, 7.99e6, 1e-2);
+    s.building.yield_drift = 0.006;
+    const SimResult both = simulated(&s, record, 0.008, 11, SCENE_IMPACT);
+    assert_close(both.j1_m, 0.441140, 1e-3);
+    assert_close(both.j3_g, 4.0661, 1e-2);
+    assert_close(both.ductility, 1.405, 1e-2);
+    assert_close(both.plastic_drift_ratio, 0.002427, 1e-2);
+    assert_close(both.ed_hysteresis_pct, 1.206, 5e-3);
 }
 
 TEST(both_engines_agree_on_soft_ground_and_their_books_close)
