@@ -25,7 +25,16 @@
 enum { PROMISED = 4, N_PATTERNS = 8 };
 static const double PROMISE[PROMISED] = {1e-3, 3e-3, 1e-2, 1e-2}, STEPS_PREDICTABLE = 32;
 
-typedef enum { GAPS_LOG_UNIFORM, GAPS_WIDE, GAPS_THREE_FLOORS, GAPS_SMALL, GAPS_GROWING, GAPS_EQUAL, N_GAPS } GapKind;
+typedef enum {
+    GAPS_LOG_UNIFORM,
+    GAPS_WIDE,
+    GAPS_THREE_FLOORS,
+    GAPS_SMALL,
+    GAPS_GROWING,
+    GAPS_EQUAL,
+    GAPS_YIELDING,
+    N_GAPS
+} GapKind;
 
 typedef struct {
     const SceneOptions *options;
@@ -38,6 +47,7 @@ typedef struct {
 typedef struct {
     Motion motion; /* its samples are its own: motion_free */
     double duration, width, x[FLOORS_MAX + 2];
+    double yield_drift; /* [-] 0: no storey yields */
     CoreTheory theory;
 } PromiseCase;
 

@@ -339,15 +339,20 @@ static double twice_energy_about_rest(const FastWork *k)
     return k->yields ? lanes_sum(sum) : twice_energy(k, &k->now, 0, k->mf);
 }
 
+/* Bouc-Wen flows at any drift: of what the drifts still move, no more than this share is left out. */
+static const double SETTLED_FLOW = 1e-3;
+
 /* Can a storey yield once more with so much energy [J] about rest? |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
 static int storeys_may_yield(const FastWork *k, double energy)
 {
+    const StoreyLaw *law = &k->model->storey_law;
     const double *D = k->E + k->n_pad;
+    const double share = law->kind == HYSTERESIS_BILINEAR ? 1 : pow(SETTLED_FLOW, 1 / law->exponent);
     for (int j = 0; k->yields && j < k->n; j++) {
         double soft = 0;
         for (int i = 0; i < k->model->nb; i++)
             soft += D[i * k->c_pad + j] * D[i * k->c_pad + j] * scalars_const(k->flexibility)[i];
-        if (sqrt(2 * energy * soft) + scalars_const(k->rest)[j] > scalars_const(k->gap)[k->n_pad + j])
+        if (sqrt(2 * energy * soft) + scalars_const(k->rest)[j] > share * k->model->yield_m[j])
             return 1;
     }
     return 0;
