@@ -122,7 +122,8 @@ typedef struct {
         *u_ddot;            /* (n_floors) displacements and absolute accelerations of a linear scene, which has no q, v
                                  and force here; else NULL */
     const double *damped_j; /* (n_modes) */
-    double input_j, contacts_j; /* by the ground; taken by the contacts: lost, stored, clamped */
+    double input_j, contacts_j; /* by the ground; taken by the contacts: lost, stored, clamped; and by storeys
+                                    that yield, less what K u has of them too much */
 } SimSample;
 
 /* Called at t = 0 and then every `spacing`, again from t = 0 when the run is repeated with shorter steps. */

@@ -263,6 +263,19 @@ static void record_forces(Ode *o, double t, const double y[])
                                                           .in_contact = in_contact});
 }
 
+/* [J] Hysteresis less what the modes hold of the storeys too much. */
+static double taken_by_storeys(const Ode *o, const double y[])
+{
+    const SimModel *model = o->model;
+    const double *W = y + storeys_at(o) + model->n;
+    double d[FLOORS_MAX], sum = 0;
+    if (model->yields)
+        storeys_drifts(model, y, d);
+    for (int j = 0; model->yields && j < model->n; j++)
+        sum += W[j] - 0.5 * model->yield_n_m[j] * d[j] * d[j];
+    return sum;
+}
+
 /* Shows a state to who asked for samples. */
 static void send_sample(Ode *o, double t, double spacing, const double y[])
 {
@@ -285,7 +298,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
     if (o->with_energies) {
         s.damped_j = y + 2 * m;
         s.input_j = y[3 * m];
-        s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y);
+        s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken_by_storeys(o, y);
     }
     o->options->sample(&s, o->options->sample_user);
 }
