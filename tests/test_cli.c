@@ -387,9 +387,8 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
 {
     write_in_place("own.ini", "[sim]\nduration_s = 5\n");
-    expect(2, "own.ini: was read or written", "simulate @/own.ini --design none --history @/own.ini");
-    expect(2, "a.csv: was read or written",
-           "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
+    expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
+    expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
     char *settings = read_in_place("own.ini");
     assert_string_equal(settings, "[sim]\nduration_s = 5\n");
     free(settings);
@@ -426,10 +425,14 @@ TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
     expect(2, "linked.csv, which a run needs", "spectrum builtin:kobe-like --csv @/linked.csv");
     expect(2, "held/log.jsonl, which a run needs", "building guyan --svg @/held/log.jsonl");
     expect(2, "held/settings.ini, which a run needs", "report @/nowhere --out @/held/settings.ini");
-    expect(2, "a.csv: was read or written", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");
-    expect(2, "motion.csv: was read or written", "simulate @/tower.ini --design none --csv @/motion.csv");
-    expect(2, "K.csv: was read or written", "building @/tower.ini --svg @/tower/K.csv");
-    expect(2, "motion.csv: was read or written", "spectrum @/motion.csv --csv @/motion.csv");
+    expect(2, "one.csv, which the command reads", "evaluate @/held --records @/records --csv @/records/one.csv");
+    expect(2, "a.csv, which the command reads", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");
+    expect(2, "motion.csv, which a setting names", "simulate @/tower.ini --design none --csv @/motion.csv");
+    expect(2, "K.csv, which a setting names", "building @/tower.ini --svg @/tower/K.csv");
+    expect(2, "motion.csv, which the command reads", "spectrum @/motion.csv --csv @/motion.csv");
+    write_in_place("moved.csv", "t,a_g\n0,0\n0.01,0.1\n0.02,0\n");
+    expect(2, "moved.csv, which the command reads",
+           "polish @/held --set motion.record=@/moved.csv --design 1 --csv @/moved.csv");
     char *kept = read_in_place("held/front.csv");
     assert_string_equal(kept, "id\n");
     free(kept);

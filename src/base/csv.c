@@ -3,7 +3,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,43 +16,6 @@ static int is_left_pipe(const char *path)
 {
     struct stat about;
     return strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode);
-}
-
-/* Of the whole process. */
-static struct {
-    pthread_mutex_t lock;
-    size_t n;
-    struct stat *file;
-} been_read = {.lock = PTHREAD_MUTEX_INITIALIZER};
-
-static int is_listed(const struct stat *s)
-{
-    size_t i = 0;
-    while (i < been_read.n && (been_read.file[i].st_dev != s->st_dev || been_read.file[i].st_ino != s->st_ino))
-        i++;
-    return i < been_read.n;
-}
-
-int file_was_read(const char *path)
-{
-    struct stat s;
-    pthread_mutex_lock(&been_read.lock);
-    const int was = stat(path, &s) == 0 && is_listed(&s);
-    pthread_mutex_unlock(&been_read.lock);
-    return was;
-}
-
-void file_note(FILE *f)
-{
-    struct stat s;
-    pthread_mutex_lock(&been_read.lock);
-    if (fstat(fileno(f), &s) == 0 && !is_listed(&s)) {
-        struct stat *wider = realloc(been_read.file, (been_read.n + 1) * sizeof *wider);
-        been_read.file = wider ? wider : been_read.file;
-        if (wider)
-            wider[been_read.n++] = s;
-    }
-    pthread_mutex_unlock(&been_read.lock);
 }
 
 static Status read_stream(FILE *f, const char *path, size_t largest, char **text, size_t *length, Err *err)
@@ -83,7 +45,6 @@ Status file_read(const char *path, size_t largest, char **text, size_t *length, 
     if (!f)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
     const Status status = read_stream(f, path, largest, text, length, err);
-    file_note(f);
     fclose(f);
     if (status != STATUS_OK) {
         free(*text);

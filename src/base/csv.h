@@ -8,12 +8,11 @@
  *             Cells are parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
  *
  * Ownership  Lines borrow path and text; table_read allocates, table_free releases (an empty one is fine)
- * Threads    no state but the list of files that were read, which is locked.   Errors  "PATH:LINE: what was found" */
+ * Threads    no state.   Errors  "PATH:LINE: what was found" */
 #ifndef IMTET_BASE_CSV_H
 #define IMTET_BASE_CSV_H
 
 #include <stddef.h>
-#include <stdio.h>
 
 #include "base/status.h"
 
@@ -21,9 +20,6 @@
  * is given up. */
 enum { FILE_LARGEST = 1 << 28 }; /* far above any record */
 Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err);
-/* Was it read by this process, or noted, under any name? */
-int file_was_read(const char *path);
-void file_note(FILE *f);
 
 /* ---- lines and cells --------------------------------------------------------------------------------------------- */
 

@@ -263,7 +263,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
         return first;
     linalg_use(s->search.blas);
-    return STATUS_OK;
+    return outputs_spare(args, s, err);
 }
 
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)

@@ -292,6 +292,14 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
 static const char *const FILES[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
 
+int building_reads(const char *name)
+{
+    int k = 0;
+    while (k < KINDS && strcmp(name, FILES[k]) != 0)
+        k++;
+    return k < KINDS || frame_reads(name);
+}
+
 /* Is there one kind of model? */
 static Status check_kind(const char *folder, int has[KINDS], Err *err)
 {

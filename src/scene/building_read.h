@@ -27,4 +27,7 @@ BuildingUnit building_unit(BuildingUnits units);
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err);
 void building_files_free(BuildingFiles *b);
 
+/* Is a file of this name read from the folder of a building? */
+int building_reads(const char *name);
+
 #endif

@@ -103,6 +103,7 @@ void frame_free(Frame *f);
 
 /* Is the model a frame: a folder that holds nodes.csv, guyan, or an OpenSees model, a file that ends in .tcl? */
 int frame_is(const char *model);
+int frame_reads(const char *name); /* from its folder */
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err);
 
 typedef struct {

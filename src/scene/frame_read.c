@@ -130,6 +130,14 @@ static const SheetForm SHEETS[] = {
 };
 enum { N_SHEETS = sizeof SHEETS / sizeof SHEETS[0], N_REQUIRED = N_SHEETS - 2 };
 
+int frame_reads(const char *name)
+{
+    int i = 0;
+    while (i < N_SHEETS && strcmp(name, SHEETS[i].file) != 0)
+        i++;
+    return i < N_SHEETS;
+}
+
 static int is_tcl(const char *model)
 {
     const size_t n = strlen(model);

@@ -544,6 +544,25 @@ void settings_make_absolute(Settings *s)
         table_change_files(s, i, make_absolute, NULL);
 }
 
+typedef struct {
+    const char *key;
+    SettingFn take;
+    void *user;
+} EachPath;
+
+static void take_path(char path[OPTION_TEXT_MAX], void *user)
+{
+    const EachPath *e = user;
+    e->take(e->key, path, e->user);
+}
+
+void settings_each_path(const Settings *s, SettingFn take, void *user)
+{
+    Settings copy = *s;
+    for (int i = 0; i < N_OPTIONS; i++)
+        table_change_files(&copy, i, take_path, &(EachPath){OPTIONS[i].key, take, user});
+}
+
 Status settings_put(Settings *s, const char *key, const char *value, Err *err)
 {
     int i = 0;

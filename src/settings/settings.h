@@ -43,6 +43,9 @@ void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn di
 typedef void (*SettingFn)(const char *key, const char *value, void *user);
 void settings_each(const Settings *s, SettingFn take, void *user);
 
+/* The same for every file or folder that a setting reads, one by one. */
+void settings_each_path(const Settings *s, SettingFn take, void *user);
+
 Status settings_put(Settings *s, const char *key, const char *value, Err *err);
 
 /* "section.key=value" as given to --set. */

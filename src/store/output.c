@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/csv.h"
-
 static void folder_of(const char *path, char folder[PATH_MAX])
 {
     const char *slash = strrchr(path, '/');
@@ -62,9 +60,7 @@ static Status open_at(Output *o, const char *path, int in_place, Err *err)
 Status output_open(Output *o, const char *path, Err *err)
 {
     struct stat there;
-    TRY(open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err));
-    o->spares = o->temporary[0] != 0;
-    return STATUS_OK;
+    return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
 }
 
 Status output_open_inside(Output *o, const char *path, Err *err)
@@ -99,11 +95,7 @@ void output_sync_folder(const char *path)
 
 Status output_close(Output *o, Err *err)
 {
-    Status status = o->spares && file_was_read(o->path)
-                        ? fail(err, STATUS_USAGE, "%s: was read or written by this command; name another file", o->path)
-                        : output_sync(o->stream, o->path, err);
-    if (o->spares)
-        file_note(o->stream);
+    Status status = output_sync(o->stream, o->path, err);
     if (status == STATUS_OK)
         status = give_name(o, err);
     if (fclose(o->stream) != 0 && status == STATUS_OK)

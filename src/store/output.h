@@ -3,8 +3,7 @@
  * Life cycle  output_open -> fprintf(o.stream, ...) -> output_close, or output_abandon to leave things as they were
  * A regular file (or one that is not there yet) is written without a name and put into its place after fsync; a device
  * or a pipe is written in place; the path "-" is standard output. Errors of every write are seen by output_close:
- * STATUS_IO with file and cause. A file that this process has read (base/csv.h) or written is not replaced: STATUS_USAGE.
- */
+ * STATUS_IO with file and cause. */
 #ifndef IMTET_STORE_OUTPUT_H
 #define IMTET_STORE_OUTPUT_H
 
@@ -16,7 +15,6 @@
 typedef struct {
     FILE *stream;
     char path[PATH_MAX], temporary[PATH_MAX]; /* temporary: empty when written in place */
-    int spares;                               /* what was read */
 } Output;
 
 Status output_open(Output *o, const char *path, Err *err);
