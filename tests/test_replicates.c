@@ -62,7 +62,11 @@ TEST(one_replicate_under_one_record_is_the_simulation_itself)
     run_designs(&s, 1, &out);
     for (int i = 0; i < DESIGNS; i++)
         for (int k = 0; k < N_MEASURES; k++) {
-            assert_same_number(out.sum[i].mean[k], measure_value(&out.shown[i], k));
+            const double own = measure_value(&out.shown[i], k);
+            if (isnan(own)) /* what the scene does not have: the rotation of a fixed base */
+                assert_true(isnan(out.sum[i].mean[k]));
+            else
+                assert_same_number(out.sum[i].mean[k], own);
             assert_true(isnan(out.sum[i].sd[k]));
         }
 }
@@ -119,7 +123,8 @@ TEST(without_contact_there_is_no_spread)
     problem_close(&p);
     assert_int_equal(sum.n_failed, 0);
     for (int k = 0; k < N_MEASURES; k++)
-        assert_at_most(sum.sd[k], 1e-12 * fabs(sum.mean[k]));
+        if (!isnan(measure_value(&shown, k)))
+            assert_at_most(sum.sd[k], 1e-12 * fabs(sum.mean[k]));
 }
 
 /* Replicates 0..3 and, asked for again, 4..7 are other ones; the rule of each is a function of seed and number alone. */

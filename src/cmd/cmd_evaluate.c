@@ -458,7 +458,8 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
     Schema schema;
     Designs d;
     TRY(tower_space(s, &space, err));
-    TRY(designs_steps(args, word, &s->sim, err));
+    if (!args_gives(args, "sim.accuracy"))
+        TRY(designs_steps(word, &s->sim, err));
     TRY(designs_take_one(&d, word, &space, err));
     Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {

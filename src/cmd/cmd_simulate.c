@@ -393,7 +393,8 @@ static Status run(const Args *args, Err *err)
     TRY(choose_kind(args, &job, err));
     TRY(check_times(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
-    TRY(designs_steps(args, args_value(args, "--design"), &s.sim, err));
+    if (!args_gives(args, "sim.accuracy"))
+        TRY(designs_steps(args_value(args, "--design"), &s.sim, err));
     if (args_has(args, "--horizon"))
         return show_horizon(args, &s, err);
     if (args_has(args, "--sensitivity"))

@@ -213,12 +213,12 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
                 word, first);
 }
 
-Status designs_steps(const Args *args, const char *word, SimOptions *sim, Err *err)
+Status designs_steps(const char *word, SimOptions *sim, Err *err)
 {
     Place p;
     Run run;
     size_t row;
-    if (!word || strlen(word) >= sizeof p.path || args_gives(args, "sim.accuracy"))
+    if (!word || strlen(word) >= sizeof p.path)
         return STATUS_OK;
     find_place(word, &p);
     if (!p.is_run)

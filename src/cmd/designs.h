@@ -12,7 +12,6 @@
 #define IMTET_CMD_DESIGNS_H
 
 #include "base/json.h"
-#include "cmd/args.h"
 #include "scene/design.h"
 #include "store/run.h"
 
@@ -25,9 +24,9 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
-/* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim, unless
- * sim.accuracy is given on the command line. Of a file nothing is known, and of a word that is no design nothing said. */
-Status designs_steps(const Args *args, const char *word, SimOptions *sim, Err *err);
+/* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim. Of a
+ * file nothing is known, and of a word that is no design nothing said. */
+Status designs_steps(const char *word, SimOptions *sim, Err *err);
 
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
 int run_drop_name(char *path);

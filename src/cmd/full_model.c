@@ -150,7 +150,8 @@ static Status take_designs(const Args *args, const char *folder, Job *job, SimOp
         snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
         word = own;
     }
-    TRY(designs_steps(args, word, sim, err));
+    if (!args_gives(args, "sim.accuracy"))
+        TRY(designs_steps(word, sim, err));
     TRY(designs_take(&job->designs, word, &job->space, err));
     job->n = job->designs.n;
     return STATUS_OK;

@@ -78,7 +78,7 @@ void show_verdicts(const Schema *schema, const double natural[], const Baseline 
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);
 
-/* ---- what is implausible but no fault ----------------------------------------------------------------------------- */
+/* ---- what is implausible but no fault ---------------------------------------------------------------------------- */
 
 /* "warning: KEY: TEXT" on standard error; user is not read. */
 void warn_on_stderr(const char *key, const char *text, void *user);

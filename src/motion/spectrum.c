@@ -128,7 +128,7 @@ static double largest_inside(const Interval *in, double dt, double v_end)
     return largest;
 }
 
-/* ---- over the motion ----------------------------------------------------------------------------------------------- */
+/* ---- over the motion --------------------------------------------------------------------------------------------- */
 
 /* What an interval of length dt does, and what the bounds on |u| need. */
 typedef struct {

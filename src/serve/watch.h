@@ -1,8 +1,9 @@
 /* serve/watch.h -- the runs that are served, each as it is now: read again when its files have changed.
  *
- * It is read, as `imtet status` does, by whoever asks for it where its files have changed since then; nothing is written
- * and no lock kept, so that the run does not know of it. A tenth of a processor at most is spent on reading one; a run
- * that is not asked for again in time is released with the next question, and what was simulated of it with it.
+ * It is read, as `imtet status` does, by whoever asks for it where its files have changed since then; nothing is
+ * written and no lock kept, so that the run does not know of it. A tenth of a processor at most is spent on reading
+ * one; a run that is not asked for again in time is released with the next question, and what was simulated of it with
+ * it.
  *
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
  * Ownership   a Look is shared and read-only; it is released by the last watch_give

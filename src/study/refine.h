@@ -7,8 +7,8 @@
  *   2 NLopt on the simulator (study/polish.h)
  *   3 design and result once more, with replicates that no step has used:
  *         error_k = root((sd_start_k^2 + sd_end_k^2) / replicates)
- *   4 both at twice the steps of the engine (analysis/estimate.h), where it has such, or at those by which the run knows
- *     the design: the same gain must be there
+ *   4 both at twice the steps of the engine (analysis/estimate.h), where it has such, or at those by which the run
+ *     knows the design: the same gain must be there
  *
  * A gain counts where it is more than REFINE_GAIN_MIN and more than twice sum_k weight_k error_k / range_k (as if all
  * errors went together), and no kept objective lost more than it may and twice its error. With a single replicate the

@@ -1,5 +1,5 @@
-/* study/study_log.h -- what a study writes into log.jsonl of its run (store_event): that it starts, every generation with what
- * it cost, why it ends.
+/* study/study_log.h -- what a study writes into log.jsonl of its run (store_event): that it starts, every generation
+ * with what it cost, why it ends.
  *
  * Threads  as the store */
 #ifndef IMTET_STUDY_STUDY_LOG_H
