@@ -155,6 +155,24 @@ static void stiff_and_soft_core(Trial *t)
     }
 }
 
+/* At 0.3 g and above 1 g. */
+static void weak_storeys(Trial *t)
+{
+    static const double YIELD_DRIFT[] = {1e-4, 1e-3, 0.01}, FACTOR[] = {3.5, 1};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 6; i += t->size == SIZE_QUICK ? 4 : 1) {
+        Tower tower;
+        char what[60];
+        open_tower(t, &tower, seconds_for(t, 3));
+        for (size_t k = 0; k < tower.motion.n; k++)
+            tower.motion.accel[k] *= FACTOR[i % 2];
+        tower.settings.building.yield_drift = YIELD_DRIFT[i / 2];
+        snprintf(what, sizeof what, "yield drift %g, record x %g", YIELD_DRIFT[i / 2], FACTOR[i % 2]);
+        compare_with_finest(t, &tower, what);
+        bench_tower_close(&tower);
+    }
+}
+
 /* ---- the record -------------------------------------------------------------------------------------------------- */
 
 static void mirrored(Trial *t)
@@ -301,6 +319,7 @@ static const Case CASES[] = {
     {"zero-gap", "no gap on any floor tends to the rigidly connected building, without a storm of events", zero_gap},
     {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
     {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},
+    {"storeys", "storeys that yield at next to nothing, under 0.3 g and 1 g, against `fast` at fine", weak_storeys},
     {"ground", "a core on ground from next to nothing to rock, against `fast` at fine", hard_and_soft_ground},
     {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
     {"zero-padded-record", "zeros before or behind the record change no objective", padded},
