@@ -101,7 +101,9 @@ static RunOutcome walk(FixedStep *m, const FixedStepMethod *method, void *work, 
 
 static void explain(const FixedStep *m, SimResult *result)
 {
-    if (result->outcome == RUN_OUT_OF_STEPS)
+    if (m->model->yields)
+        snprintf(result->reason, sizeof result->reason, "follows no storeys that yield");
+    else if (result->outcome == RUN_OUT_OF_STEPS)
         snprintf(result->reason, sizeof result->reason, "more than %.0e steps would be needed", STEPS_MAX);
     else if (result->outcome == RUN_NOT_FINITE)
         snprintf(result->reason, sizeof result->reason, "t = %.6g s, step %.3g s: the response is not finite", m->t,
@@ -120,7 +122,7 @@ Status fixed_step_run(const FixedStepMethod *method, void *work, const SimModel 
     result->n_modes = model->n;
     const double step_max = options->tolerance > 0 ? options->tolerance : method->step[options->accuracy];
     const unsigned mode = denormal_off();
-    result->outcome = walk(&m, method, work, motion, options->duration, step_max);
+    result->outcome = model->yields ? RUN_ENGINE_FAILED : walk(&m, method, work, motion, options->duration, step_max);
     denormal_restore(mode);
     if (result->outcome == RUN_OK)
         energy_account_report(&m.account, &m.contacts, options, m.q, m.v, result);
