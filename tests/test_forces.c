@@ -212,7 +212,7 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
     double storeys[64], one[64];
     for (int i = 0; i < 64; i++)
         storeys[i] = one[i] = core.omega[i] = 1;
-    core.n = n;
+    core.n = core.top = n;
     const Building b = {.n = n,
                         .K = zero,
                         .M = zero,

@@ -43,5 +43,5 @@ void list_change(char list[LIST_MAX], ListItemFn change, void *user)
 
 int list_is_given(const char *list)
 {
-    return strcmp(list, "none") != 0;
+    return list[0] && strcmp(list, "none") != 0;
 }

@@ -13,8 +13,8 @@
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
-/* Of a table of a run the columns of variables alone, in their order; one that is not there is named later. */
-static void drop_results(Table *t, const DesignSpace *space)
+/* Of a table of a run the columns of variables alone, in their order. */
+static Status drop_results(Table *t, const char *path, const DesignSpace *space, Err *err)
 {
     size_t kept = 0;
     char name[TABLE_NAME_MAX];
@@ -22,7 +22,8 @@ static void drop_results(Table *t, const DesignSpace *space)
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
         if (from < (int)kept)
-            continue;
+            return fail(err, STATUS_BAD_DATA, "%s: no column %s, which a design of %d floors has (design.variables)",
+                        path, name, space->n_floors);
         for (size_t i = 0; i < t->n_rows; i++)
             t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + (size_t)from];
         snprintf(t->names[kept++], TABLE_NAME_MAX, "%s", name);
@@ -30,6 +31,7 @@ static void drop_results(Table *t, const DesignSpace *space)
     for (size_t i = 0; i < t->n_rows; i++)
         memmove(t->values + i * kept, t->values + i * t->n_cols, kept * sizeof *t->values);
     t->n_cols = kept;
+    return STATUS_OK;
 }
 
 /* Row `row` becomes the only one. */
@@ -84,7 +86,7 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
     TRY(there);
     Status status = take_ids(&t, &ids, err);
     if (status == STATUS_OK && ids)
-        drop_results(&t, space);
+        status = drop_results(&t, path, space, err);
     if (status == STATUS_OK)
         status = design_of_table(d, &t, path, space, err);
     table_free(&t);

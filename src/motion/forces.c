@@ -46,6 +46,8 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
                     t->names[0]);
     for (size_t c = 1; c < t->n_cols; c++) {
         TRY(floor_of(t, c, &floor, err));
+        if (table_column(t, t->names[c]) != (int)c)
+            return fail(err, STATUS_BAD_DATA, "%s: column '%s' is there twice", t->path, t->names[c]);
         m->n_force = floor > m->n_force ? floor : m->n_force;
     }
     TRY(check_rows(t, err));

@@ -11,7 +11,7 @@
 
 static Status check_is_there(const char *path, const char *key, Err *err)
 {
-    if (builtin_name(path) || access(path, R_OK) == 0)
+    if (builtin_name(path) || strcmp(path, "none") == 0 || access(path, R_OK) == 0)
         return STATUS_OK;
     return fail(err, STATUS_MISSING,
                 "%s: a record of the run is not there; where it was moved, say so: --set motion.%s", path, key);
