@@ -95,6 +95,7 @@ TEST(a_misunderstood_command_line_ends_with_2_and_a_suggestion)
     expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
     expect(2, "--set nonsense: write --set section.key=value", "building configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
+    expect(2, "--all and --select do not go together", "export results --all --select 5 --csv -");
     expect(66, "holds no run", "choose results");
 }
 
@@ -387,8 +388,11 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 TEST(no_output_replaces_a_file_that_is_read_a_run_or_another_output)
 {
     write_in_place("own.ini", "[sim]\nduration_s = 5\n");
+    write_in_place("own.sqlite", "SQLite format 3");
     expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
     expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
+    expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/./a.csv");
+    expect(2, "is a database", "simulate @/own.ini --design none --history @/own.sqlite");
     char *settings = read_in_place("own.ini");
     assert_string_equal(settings, "[sim]\nduration_s = 5\n");
     free(settings);
@@ -427,12 +431,15 @@ TEST(no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names)
     expect(2, "held/settings.ini, which a run needs", "report @/nowhere --out @/held/settings.ini");
     expect(2, "one.csv, which the command reads", "evaluate @/held --records @/records --csv @/records/one.csv");
     expect(2, "a.csv, which the command reads", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");
-    expect(2, "motion.csv, which a setting names", "simulate @/tower.ini --design none --csv @/motion.csv");
-    expect(2, "K.csv, which a setting names", "building @/tower.ini --svg @/tower/K.csv");
+    expect(2, "motion.csv, which motion.record names", "simulate @/tower.ini --design none --csv @/motion.csv");
+    expect(2, "K.csv, which building.model names", "building @/tower.ini --svg @/tower/K.csv");
     expect(2, "motion.csv, which the command reads", "spectrum @/motion.csv --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads", "export @/held --csv @/motion.csv");
     write_in_place("moved.csv", "t,a_g\n0,0\n0.01,0.1\n0.02,0\n");
     expect(2, "moved.csv, which the command reads",
            "polish @/held --set motion.record=@/moved.csv --design 1 --csv @/moved.csv");
+    expect(2, "motion.csv, which the command reads", "choose @/held/run.sqlite --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads", "simulate configs/quick.ini --design @/held:1 --csv @/motion.csv");
     char *kept = read_in_place("held/front.csv");
     assert_string_equal(kept, "id\n");
     free(kept);

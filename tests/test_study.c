@@ -352,20 +352,23 @@ TEST(a_design_that_fails_when_it_is_polished_is_named_with_its_reason)
     free(path);
 }
 
-/* The first simulations of the second run are the front of the first one. */
-TEST(a_search_begins_with_given_designs)
+/* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
+TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
 {
     write_in_place("sphere.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\n"
                                  "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
     free(output_of("optimize @/sphere.ini --out @/earlier"));
     free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
     free(output_of("export @/later --all --csv @/all.csv"));
-    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv");
+    free(output_of("export @/earlier --select 3 --csv @/three.csv"));
+    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv"),
+         *three_path = in_place("three.csv");
     char *all, *line;
     size_t length;
-    Table front;
+    Table front, three;
     Err err = {0};
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
+    CHECK_OK(table_read(&three, three_path, 1, &err), &err);
     CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
     line = strchr(all, '\n') + 1;
     for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
@@ -373,16 +376,24 @@ TEST(a_search_begins_with_given_designs)
         assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
         assert_same_number(x, front.values[i * front.n_cols + 1]);
     }
+    assert_int_equal(three.n_rows, 3);
+    char *said = output_of("choose @/earlier"), knee[40];
+    snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
+    assert_non_null(strstr(said, knee));
     free(output_of("polish @/earlier --design knee --improve f1 --keep f1 --evals 60")); /* a gain enters the archive */
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
     char *with_polished = read_in_place("polished-too.csv");
     assert_non_null(strstr(with_polished, ",polished,ok,"));
     free(with_polished);
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
+    expect(2, "--select: 'many' is no number from 1", "export @/earlier --select many --csv -");
+    free(said);
     free(all);
     table_free(&front);
+    table_free(&three);
     free(front_path);
     free(all_path);
+    free(three_path);
 }
 
 TEST(a_textbook_problem_is_written_design_by_design)

@@ -1,15 +1,31 @@
+#include <stdlib.h>
+
 #include "cmd/commands.h"
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
 
+/* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
+static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
+{
+    long wanted;
+    TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
+    size_t *rows = calloc((size_t)wanted, sizeof *rows);
+    if (!rows)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
+    const Status status = export_designs(f, run, EXPORT_FRONT, run_spread_out(run, (size_t)wanted, 1, rows), rows, err);
+    free(rows);
+    return status;
+}
+
 static Status write_table(const Args *args, const Run *run, Err *err)
 {
     Output o;
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    const int is_all = args_has(args, "--all");
-    const Status status = export_designs(o.stream, run, is_all ? EXPORT_ALL : EXPORT_FRONT,
-                                         is_all ? run->table.n : run->n_front, is_all ? NULL : run->front, err);
+    const Status status = args_has(args, "--select") ? write_selected(args, run, o.stream, err)
+                          : args_has(args, "--all")
+                              ? export_designs(o.stream, run, EXPORT_ALL, run->table.n, NULL, err)
+                              : export_designs(o.stream, run, EXPORT_FRONT, run->n_front, run->front, err);
     return output_end(&o, status, err);
 }
 
@@ -18,6 +34,7 @@ static Status run(const Args *args, Err *err)
     Run run;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
+    TRY(args_alone(args, "--all", "--select", err));
     TRY(run_read(&run, args->operand, err));
     Status status = args_has(args, "--json") ? export_json(stdout, &run, err) : STATUS_OK;
     if (status == STATUS_OK && args_has(args, "--csv"))
@@ -29,6 +46,7 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     {"--csv", "FILE", NULL, 0, "where it goes; -: standard output"},
     {"--all", NULL, NULL, 0, "every design that was evaluated, with its outcome, instead of the front"},
+    {"--select", "N", NULL, 0, "N designs of the front that are spread over it, the knee first, instead of all of it"},
     {"--json", NULL, NULL, 0, "settings, columns, every design and every generation, as JSON on standard output"},
     OPTION_END,
 };

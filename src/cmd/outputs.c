@@ -38,6 +38,23 @@ static void folder_of(const char *path, char folder[PATH_MAX])
     snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
 }
 
+static const char *name_in(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The same name in the same folder, there or not, however it was typed. */
+static int is_same_place(const char *one, const char *other)
+{
+    struct stat a, b;
+    char folder[2][PATH_MAX];
+    folder_of(one, folder[0]);
+    folder_of(other, folder[1]);
+    return strcmp(name_in(one), name_in(other)) == 0 && stat(folder[0], &a) == 0 && stat(folder[1], &b) == 0 &&
+           a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 /* Is it that file, or one in that folder, which is no run's and holds more than pictures? */
 static int is_read_from(const char *out, const char *place)
 {
@@ -54,13 +71,46 @@ static int is_read_from(const char *out, const char *place)
     return is.st_dev == other.st_dev && is.st_ino == other.st_ino;
 }
 
-/* word: a file, a folder, or a design of one: FILE:N, RUN:ID. */
+typedef struct {
+    const char *out;
+    char reader[80]; /* empty: no setting names it */
+} Looking;
+
+static void compare(const char *key, const char *path, void *user)
+{
+    Looking *l = user;
+    struct stat is;
+    const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
+    if (is_read_from(l->out, path) && (!is_folder || building_reads(name_in(l->out))))
+        snprintf(l->reader, sizeof l->reader, "%s names", key);
+}
+
+/* What a run reads when a design of it is simulated again, by the settings in its folder. */
+static int is_read_by_run(const char *out, const char *folder)
+{
+    Settings s;
+    char file[PATH_MAX];
+    Looking l = {.out = out};
+    if (!folder_is_run(folder) || snprintf(file, sizeof file, "%s/settings.ini", folder) >= PATH_MAX)
+        return 0;
+    settings_defaults(&s);
+    if (settings_read(&s, file, NULL, NULL, &(Err){0}) == STATUS_OK)
+        settings_each_path(&s, compare, &l);
+    return l.reader[0] != 0;
+}
+
+static int is_read_at(const char *out, const char *place)
+{
+    return is_read_from(out, place) || is_read_by_run(out, place);
+}
+
+/* word: a file, a folder, a run, or one of its designs: FILE:N, RUN:ID. */
 static int is_read(const char *out, const char *word)
 {
     char place[PATH_MAX];
     const char *colon = strrchr(word, ':');
     snprintf(place, sizeof place, "%.*s", colon ? (int)(colon - word) : 0, word);
-    return is_read_from(out, word) || (colon && is_read_from(out, place));
+    return is_read_at(out, word) || (colon && is_read_at(out, place));
 }
 
 static Status refuse(const Given *out, const char *reader, Err *err)
@@ -70,29 +120,35 @@ static Status refuse(const Given *out, const char *reader, Err *err)
 }
 
 /* Is there a folder that takes it? The folder of --out may be made by the command. */
+static Status check_place(const Given *out, Err *err)
+{
+    char folder[PATH_MAX];
+    folder_of(out->value, folder);
+    if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", out->value, strerror(errno));
+    return STATUS_OK;
+}
+
 static Status check_one(const Args *args, const Given *out, Err *err)
 {
     int n_readers = 0;
     struct stat is;
-    char folder[PATH_MAX];
-    folder_of(out->value, folder);
     if (folder_keeps(out->value))
         return refuse(out, "a run needs", err);
     if (stat(out->value, &is) == 0 && S_ISREG(is.st_mode) && !(is.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)))
         return refuse(out, "is write-protected", err);
-    if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
-        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", out->value, strerror(errno));
+    TRY(check_place(out, err));
     for (int j = 0; j < args->n_operands; j++)
-        n_readers += is_read(out->value, args->operands[j]);
+        n_readers += is_read(out->value, j > 0 ? args->operands[j] : args->operand); /* of run.sqlite its folder */
     for (int j = 0; j < args->n_given; j++) {
         const Given *other = &args->given[j];
-        const char *value = other->value, *equals = value ? strchr(value, '=') : NULL;
-        if (other == out || !value)
+        if (other == out || !other->value)
             continue;
-        if (is_written(other) && strcmp(value, out->value) == 0)
+        if (is_written(other) && is_same_place(other->value, out->value))
             return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
                         other->option->name, out->value);
-        n_readers += !is_written(other) && (is_read(out->value, value) || (equals && is_read(out->value, equals + 1)));
+        const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;
+        n_readers += !is_written(other) && is_read(out->value, equals ? equals + 1 : other->value);
     }
     return n_readers ? refuse(out, "the command reads", err) : STATUS_OK;
 }
@@ -108,30 +164,14 @@ Status outputs_check(const Args *args, Err *err)
     return STATUS_OK;
 }
 
-typedef struct {
-    const char *out;
-    int is_named; /* by a setting */
-} Looking;
-
-/* Of a building's folder only its own files count. */
-static void compare(const char *key, const char *path, void *user)
-{
-    Looking *l = user;
-    struct stat is;
-    const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
-    const char *slash = strrchr(l->out, '/');
-    (void)key;
-    l->is_named |= is_read_from(l->out, path) && (!is_folder || building_reads(slash ? slash + 1 : l->out));
-}
-
 Status outputs_spare(const Args *args, const Settings *s, Err *err)
 {
     for (int i = 0; i < args->n_given; i++) {
         Looking l = {.out = args->given[i].value};
         if (is_written(&args->given[i]))
             settings_each_path(s, compare, &l);
-        if (l.is_named)
-            return refuse(&args->given[i], "a setting names", err);
+        if (l.reader[0])
+            return refuse(&args->given[i], l.reader, err);
     }
     return STATUS_OK;
 }

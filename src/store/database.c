@@ -363,6 +363,23 @@ static Status open_without_locks(Database **out, const char *path, Err *err)
     return check(*out, err);
 }
 
+static int may_write_beside(const char *path)
+{
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    return access(path, W_OK) == 0 && access(folder, W_OK) == 0;
+}
+
+/* A commit that a killed writer left half done is rolled back by whoever may write. */
+static Status open_and_recover(Database **out, const char *path, Err *err)
+{
+    char real[PATH_MAX];
+    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE, err));
+    bound_rows(*out);
+    return prepare(*out, DATABASE_READ, err);
+}
+
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
 {
     char real[PATH_MAX];
@@ -381,7 +398,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     const int code = sqlite3_errcode((*out)->db) & 0xff;
     if (status != STATUS_OK && mode == DATABASE_READ && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY)) {
         database_close(*out);
-        status = open_without_locks(out, path, err);
+        status = may_write_beside(path) ? open_and_recover(out, path, err) : open_without_locks(out, path, err);
     }
     if (status != STATUS_OK) {
         database_close(*out);

@@ -57,9 +57,22 @@ static Status open_at(Output *o, const char *path, int in_place, Err *err)
     return STATUS_OK;
 }
 
+static int is_database(const char *path)
+{
+    static const char MAGIC[] = "SQLite format 3";
+    char head[sizeof MAGIC] = "";
+    FILE *f = fopen(path, "re");
+    const int is = f && fread(head, sizeof MAGIC - 1, 1, f) == 1 && strcmp(head, MAGIC) == 0;
+    if (f)
+        fclose(f);
+    return is;
+}
+
 Status output_open(Output *o, const char *path, Err *err)
 {
     struct stat there;
+    if (lstat(path, &there) == 0 && S_ISREG(there.st_mode) && is_database(path))
+        return fail(err, STATUS_USAGE, "%s is a database, which is not replaced; name another file", path);
     return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
 }
 
