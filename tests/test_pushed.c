@@ -14,6 +14,14 @@
 #include "sim/engine.h"
 #include "sim/sim.h"
 
+/* A file of the test's folder; until the next call. */
+static const char *at(const char *name)
+{
+    static char path[512];
+    snprintf(path, sizeof path, "%s/%s", place.folder, name);
+    return path;
+}
+
 /* -- one mass ------------------------------------------------------------------------------------------------------ */
 
 static const double MASS = 2e5, OMEGA = 2 * M_PI * 0.8, STEP = 1e-3, FORCE = 3e5;
@@ -101,9 +109,9 @@ static const double MASSES[] = {2.1e5, 1.9e5, 1.5e5};
 static SceneOptions three_storeys(Engine engine)
 {
     SceneOptions o = scene_defaults();
-    mkdir(in_place("three"), 0777);
+    mkdir(at("three"), 0777);
     write_in_place("three/storeys.csv", STOREYS);
-    snprintf(o.building.model, sizeof o.building.model, "%s", in_place("three"));
+    snprintf(o.building.model, sizeof o.building.model, "%s", at("three"));
     o.sim.engine = engine;
     o.sim.accuracy = ACCURACY_FINE;
     return o;
@@ -172,7 +180,7 @@ static void blast_on_tower(Motion *m, const char *record)
     Err err = {0};
     write_in_place("blast.csv", "time_s,floor_05_n,floor_06_n,floor_07_n\n0,3e7,4e7,2e7\n0.1,0,0,0\n12,0,0,0\n");
     snprintf(o.record, sizeof o.record, "%s", record);
-    snprintf(o.forces, sizeof o.forces, "%s", in_place("blast.csv"));
+    snprintf(o.forces, sizeof o.forces, "%s", at("blast.csv"));
     CHECK_OK(motion_open(m, &o, &err), &err);
     CHECK_OK(motion_scale(m, &o, &err), &err);
     assert_int_equal(m->n_force, 7);
@@ -237,8 +245,8 @@ TEST(histories_of_a_pushed_building_show_the_accelerations_that_the_peaks_are_of
                    "--history @/h.csv --every 0.01 --csv @/r.csv"));
     Table h, r;
     Err err = {0};
-    CHECK_OK(table_read(&h, in_place("h.csv"), TABLE_HEADED, &err), &err);
-    CHECK_OK(table_read(&r, in_place("r.csv"), TABLE_WORDS, &err), &err);
+    CHECK_OK(table_read(&h, at("h.csv"), TABLE_HEADED, &err), &err);
+    CHECK_OK(table_read(&r, at("r.csv"), TABLE_WORDS, &err), &err);
     double most = 0, wanted;
     for (size_t i = 0; i < h.n_rows; i++)
         most = fmax(most, fabs(h.values[i * h.n_cols + (size_t)table_column(&h, "accel_20_g")]));

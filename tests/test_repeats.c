@@ -70,8 +70,9 @@ TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
         }
         confirmed += h.place[i].on_front && n > 1.0;
     }
-    assert_int_equal(repeats, REPEATS);
-    assert_int_equal(h.n_repeats, REPEATS);
+    assert_int_equal(repeats, h.n_repeats); /* at most the share that is asked for: none is made when the search ends */
+    assert_at_most(h.n_repeats, REPEATS);
+    assert_at_most(REPEATS / 2, h.n_repeats);
     assert_at_most(2, confirmed);
     run_free(&h);
 }
@@ -88,8 +89,10 @@ TEST(the_exports_and_status_tell_of_repeats)
     size_t n = 0;
     for (const char *at = all; (at = strstr(at, ",repeat,")); at++)
         n++;
-    assert_int_equal(n, REPEATS);
-    assert_non_null(strstr(said, "\n  repeats                  12\n"));
+    char line[60];
+    snprintf(line, sizeof line, "\n  repeats                  %zu\n", n);
+    assert_at_most(REPEATS / 2, n);
+    assert_non_null(strstr(said, line));
     free(all);
     free(said);
 }
