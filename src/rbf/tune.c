@@ -214,20 +214,12 @@ static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, dou
         k->min_error = best;
 }
 
-/* Which of the n forms without an additive part is tried beside the present one; n: none. In turn, at every tuning
- * while all centres are in it, later at every second one: less is learnt of the form from one to the next. */
-static size_t challenger_of(const Rbf *m, size_t n_forms)
-{
-    if (m->n <= TUNE_CENTRES_MAX)
-        return m->n_tuned % n_forms;
-    return m->n_tuned % 2 == 0 ? m->n_tuned / 2 % n_forms : n_forms;
-}
-
-/* The first time every form is tried; later the present one, a challenger without an additive part and one with it. */
+/* The first time every form is tried; later the present one and, in turn, one challenger without an additive part and
+ * one with it. */
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
-    const size_t challenger = challenger_of(m, n_forms);
+    const size_t challenger = m->n_tuned % n_forms;
     const int is_first = m->n_tuned == 0, steps = is_first ? TUNE_STEPS_FIRST : TUNE_STEPS;
     k->min_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
