@@ -355,9 +355,10 @@ static size_t append(Screening *q, const Archive *a, Batch *b, size_t n, size_t 
 static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hypervolume **out, Err *err)
 {
     const size_t m = a->n_obj;
-    double *lower = calloc(2 * m, sizeof *lower), *reference = lower + m;
+    double *lower = calloc(2 * m, sizeof *lower);
     if (!lower)
         return fail(err, STATUS_NO_MEMORY, "no memory for a box of %zu objectives", m);
+    double *reference = lower + m;
     for (size_t k = 0; k < m; k++) {
         double min = INFINITY, max = -INFINITY;
         for (size_t i = 0; i < q->n_front; i++) {
