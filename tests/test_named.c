@@ -216,7 +216,7 @@ static int stop_after(void *user)
 
 TEST(what_an_interrupted_study_names_is_known_too)
 {
-    static const char SHORT[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 10\n"
+    static const char SHORT[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 4\n"
                                 "[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\nthreads = 2\n";
     const Settings s = settings_of(SHORT, "run-cut");
     StudySummary summary;
