@@ -152,6 +152,7 @@ TEST(every_bad_file_is_refused_with_its_reason)
         {"stars.at2", ":5: '********' is not a number"},
         {"velocity.at2", ":3: not an acceleration: 'VELOCITY TIME SERIES"},
         {"velocity_only.csv", ": none of its channels is an acceleration: 1 'velocity_m_s'"},
+        {"spectrum_commented.csv", ": none of its channels is an acceleration: 1 'PSa [m/s^2]'"},
         {"no_unit.at2", "set motion.unit"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
@@ -163,6 +164,33 @@ TEST(every_bad_file_is_refused_with_its_reason)
         assert_null(m.accel);
         if (strncmp(err.text, path, strlen(path)) != 0 || !strstr(err.text, BAD[i].says))
             fail_msg("%s: the message should contain '%s' and is '%s'", path, BAD[i].says, err.text);
+    }
+}
+
+/* A unit that is given makes no motion of a spectrum; a comment of other words above the columns names none. */
+TEST(a_comment_heads_columns_where_it_begins_with_times_or_periods)
+{
+    static const struct {
+        const char *head, *says; /* NULL: a motion */
+    } CASES[] = {
+        {"# T [s], PSa [m/s^2]", "none of its channels is an acceleration"},
+        {"% T [s]  PSa [m/s^2]\n# 5 % damped", "none of its channels is an acceleration"},
+        {"// Period (s)\tSa (g)", "heads a spectrum"},
+        {"# time [s], velocity [m/s]", "none of its channels is an acceleration"},
+        {"# time_s, acc_m_s2", NULL},
+        {"# time series, of something", NULL},
+        {"# Kobe, 1995", NULL},
+        {"# period: 3 s, damping: 5 %", NULL},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        char text[400];
+        Motion m;
+        Err err = {0};
+        snprintf(text, sizeof text, "%s\n0.02,0.5\n0.04,-0.5\n0.06,0.25\n", CASES[i].head);
+        const Status s = parse(&m, text, UNIT_M_S2, &err);
+        if ((s == STATUS_OK) != !CASES[i].says || (CASES[i].says && !strstr(err.text, CASES[i].says)))
+            fail_msg("%s: %s", CASES[i].head, err.text);
+        motion_free(&m);
     }
 }
 

@@ -140,6 +140,28 @@ TEST(choose_marks_what_cannot_be_predicted)
     run_free(&run);
 }
 
+/* A simulation has five copies of the design, the run up to eight. */
+TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
+{
+    Run run = run_here();
+    int n_unpredictable = 0;
+    for (size_t i = 0; i < run.finer.n; i++) {
+        const size_t row = run_find(&run, run.finer.row[i].id);
+        char words[300];
+        if (!run_is_unpredictable(&run, row))
+            continue;
+        n_unpredictable++;
+        snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
+        json_t *o = json_of(words), *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
+        for (size_t k = 0; k < run.schema.n_obj; k++)
+            assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));
+        json_decref(o);
+    }
+    if (!n_unpredictable)
+        print_message("skipped: every design that the run names can be predicted\n");
+    run_free(&run);
+}
+
 /* Three designs of two objectives: the second was on the front until the first came, which was better by its error. */
 TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_back)
 {

@@ -459,7 +459,7 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
     Designs d;
     TRY(tower_space(s, &space, err));
     if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(word, &s->sim, err));
+        TRY(designs_steps(word, &s->sim, NULL, err));
     TRY(designs_take_one(&d, word, &space, err));
     Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {

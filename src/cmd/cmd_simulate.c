@@ -25,6 +25,7 @@ typedef struct {
     SimTask *tasks;            /* (n) */
     SimResult *results;        /* (n) */
     double *error, *sd;        /* (n, N_MEASURES) of analysis/estimate.h; NULL: no estimate */
+    Known known[N_MEASURES];   /* of the one design that a run names */
     int has_parts;             /* replicates or further records, summed up by the rule of a study */
     ReplicateSummary *summary; /* (n) where there are some */
 } Job;
@@ -96,7 +97,13 @@ static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
     if (!job->error)
         return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
     job->sd = job->error + n;
-    return estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err);
+    TRY(estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err));
+    for (int k = 0; k < N_MEASURES; k++) { /* a run has more copies: of the same response their deviation holds */
+        const Known *known = &job->known[k];
+        if (known->sd > 0 && fabs(measure_value(&job->results[0], k) - known->value) <= known->sd)
+            job->sd[k] = fmax(job->sd[k], known->sd);
+    }
+    return STATUS_OK;
 }
 
 /* Of design i, of an array of all designs. */
@@ -394,7 +401,7 @@ static Status run(const Args *args, Err *err)
     TRY(check_times(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(args_value(args, "--design"), &s.sim, err));
+        TRY(designs_steps(args_value(args, "--design"), &s.sim, job.known, err));
     if (args_has(args, "--horizon"))
         return show_horizon(args, &s, err);
     if (args_has(args, "--sensitivity"))

@@ -215,11 +215,22 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
                 word, first);
 }
 
-Status designs_steps(const char *word, SimOptions *sim, Err *err)
+static void take_known(const Run *run, size_t row, Known known[])
+{
+    const Evaluation *e = &run->table.row[row];
+    for (size_t k = 0; e->err && run_is_unpredictable(run, row) && k < run->schema.n_obj + run->schema.n_extra; k++) {
+        const size_t n_obj = run->schema.n_obj;
+        known[run->schema.order.of[k]] = (Known){k < n_obj ? run_f(run, row)[k] : e->extra[k - n_obj], e->err[k]};
+    }
+}
+
+Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err)
 {
     Place p;
     Run run;
     size_t row;
+    for (int k = 0; known && k < N_MEASURES; k++)
+        known[k] = (Known){NAN, NAN};
     if (!word || strlen(word) >= sizeof p.path)
         return STATUS_OK;
     find_place(word, &p);
@@ -233,6 +244,8 @@ Status designs_steps(const char *word, SimOptions *sim, Err *err)
         if (sim->steps_per_contact != before)
             fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n",
                     run.table.row[row].id, ldexp(1.0, (int)run.table.row[row].level));
+        if (known)
+            take_known(&run, row, known);
     }
     run_free(&run);
     return status;

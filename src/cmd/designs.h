@@ -24,9 +24,14 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
-/* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim. Of a
- * file nothing is known, and of a word that is no design nothing said. */
-Status designs_steps(const char *word, SimOptions *sim, Err *err);
+/* What a run knows of a measure of a design that cannot be predicted; NAN: nothing. */
+typedef struct {
+    double value, sd;
+} Known;
+
+/* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim; and
+ * known (N_MEASURES; NULL: not wanted). Of a file nothing is known, and of a word that is no design nothing said. */
+Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err);
 
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
 int run_drop_name(char *path);

@@ -151,7 +151,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, SimOp
         word = own;
     }
     if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(word, sim, err));
+        TRY(designs_steps(word, sim, NULL, err));
     TRY(designs_take(&job->designs, word, &job->space, err));
     job->n = job->designs.n;
     return STATUS_OK;

@@ -3,7 +3,8 @@
  *   header    lines that begin with # % ! or //, and lines of words above the numbers, hold pairs "key = value" or
  *             "key: value": unit (m/s2, cm/s2, gal, g), step ("dt = 1/200 s", "sampling rate: 100"), number of samples
  *             ("npts = 4000"); what is stated twice must agree. Anything else in them is passed over
- *   names     the last line of words names the columns; a unit in a name, "acc [m/s2]" or "acc_m_s2", wins
+ *   names     the last line of words names the columns, else a comment that begins with the name of times or periods;
+ *             a unit in a name, "acc [m/s2]" or "acc_m_s2", wins
  *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of
  *             samples or rows that follow; npts alone in the first row
  *   times     the column that is named so, else the first where it has no other name; with another name, which may be
@@ -26,7 +27,7 @@ typedef struct {
     Record *r;
     Lines *l;
     const ReadHints *hints;
-    Lines start, names;            /* names.from == NULL: no line of words */
+    Lines start, names, above;     /* from == NULL: no line of words, no comment that heads columns */
     size_t n_names, width, n_rows; /* width: numbers of the first row */
     size_t odd_row, odd_width;     /* the first row that is not as wide */
     int odd_line, is_one;          /* odd_line 0: none; is_one: one column, no comma parts anything */
@@ -199,6 +200,19 @@ static Cell next_name(const Lines *l, const char **p)
     return c;
 }
 
+/* A comment that parts names as a table does, of which the first is one of times or periods. */
+static void take_heading(Plain *t, const Lines *l)
+{
+    Lines h = *l;
+    while (h.from < h.to && strchr("#%!/ ", *h.from))
+        h.from++;
+    const char *p = h.from;
+    const Cell first = next_name(&h, &p);
+    if (!text_is(HOLDS, h.from, h.to, "=|:") && (has_marks(&h) || text_is(HOLDS, h.from, h.to, "[|(|_")) &&
+        (names_times(first) || names_frequency(first)))
+        t->above = h;
+}
+
 /* Name k, from 0. */
 static Cell name_at(const Plain *t, size_t k)
 {
@@ -336,6 +350,8 @@ static Status read_rows(Plain *t, Err *err)
             continue;
         if (is_comment(l) || (t->n_rows == 0 && is_words(l) && memchr(l->from, '=', (size_t)(l->to - l->from)))) {
             take_pairs(t, l);
+            if (t->n_rows == 0)
+                take_heading(t, l);
         } else if (t->n_rows == 0 && is_words(l)) {
             if (t->names.from)
                 take_pairs(t, &t->names);
@@ -413,6 +429,8 @@ static Status read_table(Plain *t, Err *err)
     take_count(t);
     if (t->names.from && !is_named(t))
         take_pairs(t, &t->names);
+    if (!t->names.from && t->above.from)
+        take_names(t, &t->above);
     if (t->wrong.text[0]) {
         *err = t->wrong;
         return STATUS_BAD_DATA;
