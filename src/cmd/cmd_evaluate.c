@@ -24,6 +24,7 @@ typedef struct {
     long id; /* in the run; 0: none */
     const double *x;
     const char *word; /* as it was asked for */
+    Known known[N_MEASURES];
 } Chosen;
 
 /* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
@@ -414,6 +415,9 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
         return fail(err, STATUS_BAD_DATA, "%s: holds no ground motion that can be read", args_value(args, "--records"));
     }
     TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
+    for (size_t i = 0; i < e->n_records * e->n_levels; i++)
+        if (e->run[i].error_known)
+            known_raise(c->known, &e->run[i].result[EVALUATED_DESIGN], e->run[i].sd);
     return give(args, c, e, err);
 }
 
@@ -443,10 +447,13 @@ static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, con
     size_t row;
     Designs other;
     TRY(design_of_run(run, word, &row, &other, err));
-    const int is_own = row < run->table.n;
-    if (is_own)
+    Chosen c = {.schema = &run->schema, .x = other.x, .word = word};
+    if (row < run->table.n) {
+        c.id = run->table.row[row].id;
+        c.x = run_x(run, row);
         run_steps(run, row, &s->sim);
-    const Chosen c = {&run->schema, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
+        known_of_run(run, row, c.known);
+    }
     const Status status = s->problem.kind == PROBLEM_TOWER ? evaluate(args, s, &c, err) : is_no_tower(err);
     design_free(&other);
     return status;
@@ -457,13 +464,15 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
     DesignSpace space;
     Schema schema;
     Designs d;
+    Chosen c = {.schema = &schema, .word = word};
     TRY(tower_space(s, &space, err));
     if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(word, &s->sim, NULL, err));
+        TRY(designs_steps(word, &s->sim, c.known, err));
     TRY(designs_take_one(&d, word, &space, err));
     Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {
-        status = evaluate(args, s, &(Chosen){&schema, 0, d.x, word}, err);
+        c.x = d.x;
+        status = evaluate(args, s, &c, err);
         schema_free(&schema);
     }
     design_free(&d);

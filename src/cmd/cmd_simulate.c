@@ -98,11 +98,7 @@ static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
     job->sd = job->error + n;
     TRY(estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err));
-    for (int k = 0; k < N_MEASURES; k++) { /* a run has more copies: of the same response their deviation holds */
-        const Known *known = &job->known[k];
-        if (known->sd > 0 && fabs(measure_value(&job->results[0], k) - known->value) <= known->sd)
-            job->sd[k] = fmax(job->sd[k], known->sd);
-    }
+    known_raise(job->known, job->results, job->sd);
     return STATUS_OK;
 }
 

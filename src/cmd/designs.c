@@ -215,13 +215,19 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
                 word, first);
 }
 
-static void take_known(const Run *run, size_t row, Known known[])
+void known_of_run(const Run *run, size_t row, Known known[])
 {
     const Evaluation *e = &run->table.row[row];
-    for (size_t k = 0; e->err && run_is_unpredictable(run, row) && k < run->schema.n_obj + run->schema.n_extra; k++) {
-        const size_t n_obj = run->schema.n_obj;
+    const size_t n_obj = run->schema.n_obj;
+    for (size_t k = 0; run_is_unpredictable(run, row) && k < n_obj + run->schema.n_extra; k++)
         known[run->schema.order.of[k]] = (Known){k < n_obj ? run_f(run, row)[k] : e->extra[k - n_obj], e->err[k]};
-    }
+}
+
+void known_raise(const Known known[], const SimResult *r, double sd[])
+{
+    for (int k = 0; k < N_MEASURES; k++)
+        if (known[k].sd > 0 && fabs(measure_value(r, k) - known[k].value) <= known[k].sd)
+            sd[k] = fmax(sd[k], known[k].sd);
 }
 
 Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err)
@@ -229,8 +235,6 @@ Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err)
     Place p;
     Run run;
     size_t row;
-    for (int k = 0; known && k < N_MEASURES; k++)
-        known[k] = (Known){NAN, NAN};
     if (!word || strlen(word) >= sizeof p.path)
         return STATUS_OK;
     find_place(word, &p);
@@ -245,7 +249,7 @@ Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err)
             fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n",
                     run.table.row[row].id, ldexp(1.0, (int)run.table.row[row].level));
         if (known)
-            take_known(&run, row, known);
+            known_of_run(&run, row, known);
     }
     run_free(&run);
     return status;

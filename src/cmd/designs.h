@@ -24,13 +24,19 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
 /* The same where one design is wanted: a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
-/* What a run knows of a measure of a design that cannot be predicted; NAN: nothing. */
+/* What a run knows of a measure of a design that cannot be predicted; sd 0: nothing. */
 typedef struct {
     double value, sd;
 } Known;
+void known_of_run(const Run *run, size_t row, Known known[]);
+
+/* The larger of sd (N_MEASURES) and the known one where the result has the known value within that: a run has simulated
+ * more copies than sd comes from. */
+void known_raise(const Known known[], const SimResult *r, double sd[]);
 
 /* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim; and
- * known (N_MEASURES; NULL: not wanted). Of a file nothing is known, and of a word that is no design nothing said. */
+ * known (N_MEASURES, zeroed; NULL: not wanted). Of a file nothing is known, and of a word that is no design nothing
+ * said. */
 Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err);
 
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
