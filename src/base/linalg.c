@@ -213,7 +213,10 @@ void linalg_product_of_rows(int n, int m, const double A[], const double B[], do
 
 void linalg_product(int r, int k, int c, const double A[], const double B[], double C[])
 {
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, r, c, k, 1, A, r, B, k, 0, C, r);
+    if (c == 1) /* a product of matrices would copy A first */
+        cblas_dgemv(CblasColMajor, CblasNoTrans, r, k, 1, A, r, B, 1, 0, C, 1);
+    else
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, r, c, k, 1, A, r, B, k, 0, C, r);
 }
 
 void linalg_exponential(int n, double A[], double out[], double work[])

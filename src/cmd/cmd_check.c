@@ -258,9 +258,9 @@ static void scene_json(Check *c, const CheckedScene *p)
 /* What a study does beside its simulations, for the time that it takes: per evaluation and objective, growing with the
  * root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and
  * record. Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives,
- * within 30 %, and of `imtet evaluate` of the quick study. Their simulations: of 16 designs for the gaps, and some
- * with baselines. */
-static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045;
+ * within 30 %, and of `imtet evaluate` of the quick study and of configs/engineer.ini. Their simulations: of 16 designs
+ * for the gaps, and some with baselines. */
+static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 4, BOUC_WEN = 12;
 enum { CLOSING_SIMULATIONS = 24 };
 
 /* Wall times [s] of a study: search and baselines beside the simulations, and all of it. */
@@ -273,6 +273,8 @@ static void expected_times(const CheckedScene *p, long simulations, long threads
     const double growth = sqrt((double)p->space.n_var / VARIABLES);
     *search_s = o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
     *baselines_s = DEVICES_S * (double)p->building.n * n_records;
+    if (p->building.yields)
+        *baselines_s *= p->s->building.hysteresis == HYSTERESIS_BOUC_WEN ? BOUC_WEN : YIELDING;
     *all_s = all * each_s / (double)threads + *search_s + *baselines_s;
 }
 

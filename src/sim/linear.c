@@ -120,7 +120,8 @@ static void set_answer(Linear *d)
         drifts_of(d, d->exponential + (size_t)(d->at_force + d->s->n + j) * (size_t)d->size, d->answer + j * d->s->n);
 }
 
-/* Iterations of a step, whose share of the building's stiffness in its inertia is small: each gains its square. */
+/* Iterations of a step at most, whose share of the building's stiffness in its inertia is small: each gains its square.
+ */
 enum { ROUNDS = 6 };
 
 /* The state z1 at the end of a step of h from z0, so far with the forces of the start: the plastic drifts follow the
@@ -133,12 +134,14 @@ static void yield_in_step(Linear *d, double h, const double z0[], double z1[])
     drifts_of(d, z0, d0);
     drifts_of(d, z1, free);
     memcpy(d1, free, sizeof d1);
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0, moved = 1; round < ROUNDS && moved; round++) {
+        moved = 0;
         for (int j = 0; j < n; j++) {
-            const double k = b->yield_n_m[j], p0 = k > 0 ? z0[d->at_force + j] / k : 0;
+            const double k = b->yield_n_m[j], p0 = k > 0 ? z0[d->at_force + j] / k : 0, before = rate[j];
             e[j] = d->spent[j];
             p[j] = k > 0 ? storey_advance(&b->storey_law, b->yield_m[j], d0[j], d1[j], p0, &e[j]) : 0;
             rate[j] = k * (p[j] - p0) / h;
+            moved |= rate[j] != before;
         }
         linalg_product(n, n, 1, d->answer, rate, d1);
         for (int j = 0; j < n; j++)

@@ -21,7 +21,7 @@
  * Peaks: sim/peak_monitor.h.
  *
  * Storeys that yield (sim/storey.h): their forces c k p are further loads, straight lines over a step, which follow the
- * drifts at its ends; order 2 in the step. Devices are those found for the building that does not yield.
+ * drifts at its ends; order 2 in the step.
  *
  * Shapes   matrices by columns: entry (i, j) of a matrix with r rows is at [j r + i]
  * Life     linear_system_make -> linear_run ... -> linear_system_free (a zeroed one is fine)

@@ -459,11 +459,14 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
                   Err *err)
 {
-    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL, NULL};
+    const SimModel *storeys = w->building->yields ? &w->model : NULL;
+    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL, storeys};
     LinearSystem s;
     Design d;
     design_of(&w->scene->design, x, &d);
     TRY(make_core(w, &d, err));
+    if (storeys)
+        TRY(model_set(&w->model, w->options, w->building, NULL, NULL, err));
     TRY(linear_system_make(&s, linear_kind(kind), w->building, &w->core, &w->device, sketch->n_modes, err));
     const Status status = linear_run(&s, w->scene->motion, &run, result, err);
     linear_system_free(&s);
