@@ -1,6 +1,8 @@
 #include "base/json.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,23 +29,57 @@ json_t *json_words(const char *text)
     return string;
 }
 
-json_t *json_append(json_t *list, json_t *value)
+static json_t *next_value(char type, va_list *values)
 {
-    if (json_array_append_new(list, value) == 0)
-        return list;
-    json_decref(list);
-    return NULL;
+    const char *text;
+    switch (type) {
+    case 'd':
+        return json_integer(va_arg(*values, int));
+    case 'l':
+    case 'z':
+        return json_integer(va_arg(*values, long));
+    case 'c':
+        return json_boolean(va_arg(*values, int));
+    case 'g':
+        return json_number(va_arg(*values, double));
+    case 's':
+        text = va_arg(*values, const char *);
+        return text ? json_words(text) : NULL;
+    default:
+        return va_arg(*values, json_t *);
+    }
+}
+
+json_t *json_put(json_t *o, const char *members, ...)
+{
+    char key[64];
+    va_list values;
+    va_start(values, members);
+    for (const char *at = members; *at; at += strspn(at, " ")) {
+        const size_t n = strcspn(at, "=");
+        snprintf(key, sizeof key, "%.*s", (int)n, at);
+        at += n + 2; /* behind =% */
+        json_object_set_new(o, key, next_value(*at, &values));
+        at += strcspn(at, " ");
+    }
+    va_end(values);
+    return o;
 }
 
 json_t *json_numbers_every(size_t step, size_t n, const double values[])
 {
     json_t *list = json_array();
     for (size_t i = 0; i < n; i += step)
-        list = json_append(list, json_number(values[i]));
+        json_array_append_new(list, json_number(values[i]));
     return list;
 }
 
 json_t *json_numbers(size_t n, const double values[])
 {
     return json_numbers_every(1, n, values);
+}
+
+json_t *json_pair(size_t n, const double one[], const double other[])
+{
+    return json_pack("[o, o]", json_numbers(n, one), json_numbers(n, other));
 }

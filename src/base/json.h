@@ -1,7 +1,9 @@
-/* base/json.h -- numbers as JSON.
+/* base/json.h -- objects and numbers as JSON.
  *
- * Ownership  the caller's reference. Errors  no memory: NULL, never a list with a value less; json_pack refuses the
- *            whole then */
+ *   json_of("n=%zu peak_g=%g name=%s done=%c floors=%p", n, peak, name, is_done, json_numbers(n_floors, values))
+ *
+ * Ownership  the caller's reference
+ * Errors     none: refused memory ends the program (json_memory, main.c), so that nothing is half there */
 #ifndef IMTET_BASE_JSON_H
 #define IMTET_BASE_JSON_H
 
@@ -14,7 +16,12 @@ json_t *json_numbers_every(size_t step, size_t n, const double values[]); /* eve
 /* A name or a path of users: what is no UTF-8, and so no JSON, becomes \xE4. */
 json_t *json_words(const char *text);
 
-/* Takes value over; list, or NULL where one of the two is or there is no memory (list is released then). */
-json_t *json_append(json_t *list, json_t *value);
+/* Members of an object in their order, "KEY=TYPE KEY=TYPE ..." with the types of printf, so that the compiler checks
+ * the values: %d, %ld, %zu; %g: json_number; %s: json_words; %c: a boolean; %p: a json_t, which is taken over. NULL for
+ * %s or %p: that member is left out. Returns o. */
+__attribute__((format(printf, 2, 3))) json_t *json_put(json_t *o, const char *members, ...);
+#define json_of(...) json_put(json_object(), __VA_ARGS__)
+
+json_t *json_pair(size_t n, const double one[], const double other[]); /* [[...], [...]] */
 
 #endif

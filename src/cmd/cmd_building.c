@@ -129,16 +129,15 @@ static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *core
     double z = 0;
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
-        json_array_append_new(floors, json_pack("{s:i, s:f, s:f, s:f}", "floor", j + 1, "z_m", z, "storey_m",
-                                                b->storey_m[j], "mass_kg", building_floor_mass(b, j)));
-        json_array_append_new(
-            modes, json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", b->model.omega[j] / (2 * M_PI), "mass_share",
-                             share(b->model.gamma[j], building_mass(b)), "damping", b->model.zeta[j]));
+        json_array_append_new(floors, json_of("floor=%d z_m=%g storey_m=%g mass_kg=%g", j + 1, z, b->storey_m[j],
+                                              building_floor_mass(b, j)));
+        json_array_append_new(modes,
+                              json_of("mode=%d hz=%g mass_share=%g damping=%g", j + 1, b->model.omega[j] / (2 * M_PI),
+                                      share(b->model.gamma[j], building_mass(b)), b->model.zeta[j]));
         if (m->has_core)
-            json_array_append_new(cores, json_pack("{s:o, s:f, s:f}", "core_hz",
-                                                   json_number(j < m->core.top ? m->core.omega[j] / (2 * M_PI) : NAN),
-                                                   "core_mass_share", share(m->core.gamma[j], moved_mass(m)),
-                                                   "zero_gap_hz", m->zero_gap[j]));
+            json_array_append_new(cores, json_of("core_hz=%g core_mass_share=%g zero_gap_hz=%g",
+                                                 j < m->core.top ? m->core.omega[j] / (2 * M_PI) : NAN,
+                                                 share(m->core.gamma[j], moved_mass(m)), m->zero_gap[j]));
     }
 }
 
@@ -148,7 +147,7 @@ static void print_table(const Model *m)
     add_rows(m, floors, modes, cores);
     for (size_t j = 0; j < json_array_size(floors); j++) {
         json_t *row = json_array_get(floors, j);
-        json_object_set_new(row, "period_s", json_real(2 * M_PI / m->b.model.omega[j]));
+        json_put(row, "period_s=%g", 2 * M_PI / m->b.model.omega[j]);
         json_object_update(row, json_array_get(modes, j));
         if (m->has_core)
             json_object_update(row, json_array_get(cores, j));
@@ -185,13 +184,12 @@ static void put_core(json_t *o, const Model *m, const json_t *cores)
         json_array_append_new(shapes, json_shape(b, m->b.n, (int)i));
         json_array_append_new(horizontal, json_boolean(b->like[i] >= 0));
     }
-    json_object_update_new(
-        o, json_pack("{s:f, s:f, s:f, s:s, s:f, s:f, s:o, s:o, s:o, s:o, s:o}", "t_base_m", m->design.t_base, "t_top_m",
-                     m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory", core_word(&m->s.core),
-                     "core_timoshenko_hz", m->by_theory[CORE_TIMOSHENKO], "core_euler_bernoulli_hz",
-                     m->by_theory[CORE_EULER_BERNOULLI], "building_hz", json_numbers(n, hz), "building_mass_share",
-                     json_numbers(n, shares), "building_damping", json_numbers(n, b->zeta), "building_shapes", shapes,
-                     "building_horizontal", horizontal));
+    json_put(o,
+             "t_base_m=%g t_top_m=%g core_mass_kg=%g core_theory=%s core_timoshenko_hz=%g core_euler_bernoulli_hz=%g "
+             "building_hz=%p building_mass_share=%p building_damping=%p building_shapes=%p building_horizontal=%p",
+             m->design.t_base, m->design.t_top, m->core.mass_kg, core_word(&m->s.core), m->by_theory[CORE_TIMOSHENKO],
+             m->by_theory[CORE_EULER_BERNOULLI], json_numbers(n, hz), json_numbers(n, shares), json_numbers(n, b->zeta),
+             shapes, horizontal);
     json_object_foreach(json_array_get(cores, 0), key, value)
     {
         json_t *list = json_array();
@@ -205,9 +203,8 @@ static Status print_json(const Model *m, Err *err)
 {
     json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
     add_rows(m, floors, modes, cores);
-    json_t *o = json_pack("{s:o, s:f, s:i, s:i, s:o, s:o}", "model", json_words(m->s.building.model), "mass_kg",
-                          building_mass(&m->b), "nodes", m->frame.n[FRAME_NODES], "elements",
-                          m->frame.n[FRAME_ELEMENTS], "floors", floors, "modes", modes);
+    json_t *o = json_of("model=%s mass_kg=%g nodes=%d elements=%d floors=%p modes=%p", m->s.building.model,
+                        building_mass(&m->b), m->frame.n[FRAME_NODES], m->frame.n[FRAME_ELEMENTS], floors, modes);
     if (m->has_core)
         put_core(o, m, cores);
     json_decref(cores);

@@ -86,7 +86,7 @@ static int note(Check *c, Status status, const char *key, const Err *e)
 static void warn(const char *key, const char *text, void *user)
 {
     Check *c = user;
-    json_array_append_new(c->warnings, json_pack("{s:s, s:s}", "key", key, "text", text));
+    json_array_append_new(c->warnings, json_of("key=%s text=%s", key, text));
     if (!c->as_json)
         fprintf(stderr, "warning: %s: %s\n", key, text);
 }
@@ -232,25 +232,21 @@ static void scene_json(Check *c, const CheckedScene *p)
     size_t n_periods = 0;
     while (n_periods < 3 && f->period_s[n_periods] > 0)
         n_periods++;
-    json_object_set_new(c->out, "building",
-                        json_pack("{s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:o, s:f, s:f}", "model", s->building.model,
-                                  "floors", f->n_floors, "height_m", f->height_m, "mass_kg", f->mass_kg, "weight_n",
-                                  f->mass_kg * GRAVITY, "floor_mass_min_kg", f->floor_mass_min_kg, "floor_mass_max_kg",
-                                  f->floor_mass_max_kg, "damping", f->damping[0], "period_s",
-                                  json_numbers(n_periods, f->period_s), "first_mode_mass_share", f->first_mode_mass,
-                                  "base_shear_share", f->base_shear));
-    json_object_set_new(c->out, "core",
-                        json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "foundation",
-                                  s->core.foundation, "theory", core_word(&s->core), "mass_kg", f->core_mass_kg,
-                                  "t_base_m", p->design.t_base, "t_top_m", p->design.t_top, "first_mode_hz", f->core_hz,
-                                  "clamped_hz", f->clamped_hz, "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz",
-                                  f->euler_bernoulli_hz, "modes_within_motion", f->core_modes_within));
-    json_object_set_new(c->out, "motion",
-                        json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:s}", "record", s->motion.record,
-                                  "samples", (json_int_t)p->motion.n, "duration_s", duration(&p->motion),
-                                  "recorded_peak_g", p->recorded_g, "peak_g", motion_peak(&p->motion) / GRAVITY,
-                                  "scale", p->motion.scale, "stretch", s->motion.stretch, "content_hz", f->content_hz,
-                                  "processed", p->motion.processed));
+    json_put(c->out, "building=%p core=%p motion=%p",
+             json_of("model=%s floors=%d height_m=%g mass_kg=%g weight_n=%g floor_mass_min_kg=%g floor_mass_max_kg=%g "
+                     "damping=%g period_s=%p first_mode_mass_share=%g base_shear_share=%g",
+                     s->building.model, f->n_floors, f->height_m, f->mass_kg, f->mass_kg * GRAVITY,
+                     f->floor_mass_min_kg, f->floor_mass_max_kg, f->damping[0], json_numbers(n_periods, f->period_s),
+                     f->first_mode_mass, f->base_shear),
+             json_of("foundation=%s theory=%s mass_kg=%g t_base_m=%g t_top_m=%g first_mode_hz=%g clamped_hz=%g "
+                     "timoshenko_hz=%g euler_bernoulli_hz=%g modes_within_motion=%d",
+                     s->core.foundation, core_word(&s->core), f->core_mass_kg, p->design.t_base, p->design.t_top,
+                     f->core_hz, f->clamped_hz, f->timoshenko_hz, f->euler_bernoulli_hz, f->core_modes_within),
+             json_of("record=%s samples=%ld duration_s=%g recorded_peak_g=%g peak_g=%g scale=%g stretch=%g "
+                     "content_hz=%g processed=%s",
+                     s->motion.record, p->motion.n, duration(&p->motion), p->recorded_g,
+                     motion_peak(&p->motion) / GRAVITY, p->motion.scale, s->motion.stretch, f->content_hz,
+                     p->motion.processed));
 }
 
 /* ---- the study ------------------------------------------------------------------------------------------------ */
@@ -284,13 +280,13 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
     json_t *names = json_array();
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(names, json_words(schema_objective(schema, k)->name));
-    json_object_set_new(c->out, "objectives", names);
+    json_put(c->out, "objectives=%p", names);
     if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
         warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
     if (missing && strcmp(objectives, "auto") != 0)
         warn("search.objectives", missing, c);
     else if (missing)
-        json_object_set_new(c->out, "missing", json_string(missing));
+        json_put(c->out, "missing=%s", missing);
 }
 
 /* The design to try is simulated once. */
@@ -310,13 +306,11 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     expected_times(p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")),
                    &search_s, &baselines_s, &all_s);
-    json_object_set_new(c->out, "study",
-                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f, s:f, s:f}", "variables",
-                                  p->space.n_var, "gap_m", s->design.gap_m.at[0], s->design.gap_m.at[1], "thickness_m",
-                                  s->design.thickness_m.at[0], s->design.thickness_m.at[1], "simulations",
-                                  (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
-                                  "impacts", (json_int_t)r.impacts, "search_s", search_s, "baselines_s", baselines_s,
-                                  "seconds", all_s));
+    json_put(c->out, "study=%p",
+             json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%ld "
+                     "search_s=%g baselines_s=%g seconds=%g",
+                     p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
+                     simulations, threads, r.seconds, r.impacts, search_s, baselines_s, all_s));
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */
@@ -334,9 +328,7 @@ static void open_study(Check *c, const Settings *s, const CheckedScene *p)
         if (json_array_size(c->faults) == 0)
             describe_study(c, p, adapter_problem(adapter));
     } else {
-        json_object_set_new(
-            c->out, "problem",
-            json_pack("{s:I, s:I}", "variables", (json_int_t)schema->n_var, "objectives", (json_int_t)schema->n_obj));
+        json_put(c->out, "problem=%p", json_of("variables=%ld objectives=%ld", schema->n_var, schema->n_obj));
     }
     adapter_close(adapter);
 }
@@ -359,21 +351,19 @@ static json_t *ladder_json(const Ladder *l)
     for (size_t i = 0; i < l->n; i++) {
         const LadderEffect *e = &l->effect[i];
         json_t *row = figures_row(effects);
-        json_object_set_new(row, "without", json_string(e->words));
+        json_put(row, "without=%s", e->words);
         put_changes(row, e->change);
-        json_object_update_new(row, json_pack("{s:f, s:s, s:s, s:s, s:s, s:s}", "costs_ms", 1e3 * e->cost_s, "verdict",
-                                              e->is_needed ? "needed" : "not", "is_set", e->is_set ? "yes" : "no",
-                                              "setting", e->key, "with", e->with, "otherwise", e->without));
+        json_put(row, "costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s", 1e3 * e->cost_s,
+                 e->is_needed ? "needed" : "not", e->is_set ? "yes" : "no", e->key, e->with, e->without);
         json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
     }
     for (int k = 0; k < LADDER_MEASURES; k++)
         json_object_set_new(all, measure(LADDER_MEASURE[k])->name, json_number(l->value[k]));
-    json_object_set_new(all, "ms", json_real(1e3 * l->all_s));
+    json_put(all, "ms=%g", 1e3 * l->all_s);
     put_changes(tolerance, l->tolerance);
     put_changes(set, l->off);
-    json_object_set_new(set, "ms", json_real(1e3 * l->set_s));
-    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "effects", effects, "with_all", all, "tolerance", tolerance, "enough",
-                     set, "settings", settings);
+    json_put(set, "ms=%g", 1e3 * l->set_s);
+    return json_of("effects=%p with_all=%p tolerance=%p enough=%p settings=%p", effects, all, tolerance, set, settings);
 }
 
 static void list_ladder(json_t *ladder)
@@ -399,7 +389,7 @@ static void climb(Check *c, const CheckedScene *p)
     const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), ladder, &e)
                                  : fail(&e, STATUS_NO_MEMORY, "no memory for a ladder");
     if (note(c, status, "--ladder", &e))
-        json_object_set_new(c->out, "ladder", ladder_json(ladder));
+        json_put(c->out, "ladder=%p", ladder_json(ladder));
     free(ladder);
 }
 
@@ -461,8 +451,7 @@ static Status run(const Args *args, Err *err)
     Settings s;
     c.faults = json_array();
     c.warnings = json_array();
-    json_object_set_new(c.out, "faults", c.faults);
-    json_object_set_new(c.out, "warnings", c.warnings);
+    json_put(c.out, "faults=%p warnings=%p", c.faults, c.warnings);
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
         warn_of_settings(&s, warn, &c);

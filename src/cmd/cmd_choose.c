@@ -217,18 +217,17 @@ static json_t *describe(const Run *run, const Picks *p)
     for (size_t i = 0; i < p->n; i++) {
         const Evaluation *e = &run->table.row[p->pick[i].row];
         double error[OBJECTIVES_MAX];
-        json_t *pick = json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id", (json_int_t)e->id,
-                                 "objectives", json_values(s, s->n_var, s->n_obj, NULL, run_f(run, p->pick[i].row)),
-                                 "limited", json_values(s, s->n_var + s->n_obj, s->n_limited, s->limited, e->extra),
-                                 "variables", json_values(s, 0, s->n_var, NULL, e->x));
+        json_t *pick = json_of("name=%s id=%ld objectives=%p limited=%p variables=%p", p->pick[i].name, e->id,
+                               json_values(s, s->n_var, s->n_obj, NULL, run_f(run, p->pick[i].row)),
+                               json_values(s, s->n_var + s->n_obj, s->n_limited, s->limited, e->extra),
+                               json_values(s, 0, s->n_var, NULL, e->x));
         if (run_likely(run, p->pick[i].row, error))
-            json_object_set_new(pick, "error",
-                                json_pack("{s:o, s:b}", "likely", json_values(s, s->n_var, s->n_obj, NULL, error),
-                                          "unpredictable", run_is_unpredictable(run, p->pick[i].row)));
+            json_put(pick, "error=%p",
+                     json_of("likely=%p unpredictable=%c", json_values(s, s->n_var, s->n_obj, NULL, error),
+                             run_is_unpredictable(run, p->pick[i].row)));
         json_array_append_new(picks, pick);
     }
-    return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
-                     (json_int_t)p->n_left, "designs", picks);
+    return json_of("run=%s front=%ld within_limits=%ld designs=%p", run->folder, run->n_front, p->n_left, picks);
 }
 
 static Status show(const Args *args, const Run *run, const Picks *p, Err *err)

@@ -48,7 +48,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
                e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
             json_t *row = figures_row(table);
-            json_object_set_new(row, "pga_g", json_real(e->level[l]));
+            json_put(row, "pga_g=%g", e->level[l]);
             for (int i = 0; i < n_shown(order); i++) {
                 for (int f = 0; f < IDA_FRACTILES; f++)
                     figure_text(ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]), NAN, NAN,
@@ -78,7 +78,7 @@ static json_t *ida_json(const Evaluations *e)
 {
     static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
     json_t *o = json_object();
-    json_object_set_new(o, "pga_g", json_numbers(e->n_levels, e->level));
+    json_put(o, "pga_g=%p", json_numbers(e->n_levels, e->level));
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
@@ -171,22 +171,19 @@ static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const ch
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     json_t *o = json_object();
-    json_object_set_new(o, "record", json_words(run->record->path));
-    json_object_set_new(o, "pga_g", json_number(run->pga_g));
-    json_object_set_new(o, "scale", json_number(run->scale));
-    json_object_set_new(o, "stretch", json_number(run->stretch));
+    json_put(o, "record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
     for (size_t c = 0; c < evaluated_cases(e, run); c++)
         json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_cases(e, run) == N_WITH_DEVICES) {
         json_t *tmd = json_object_get(o, "tmd"), *links = json_object_get(o, "links");
-        json_object_set_new(tmd, "tmd_hz", json_number(run->device[EVALUATED_TMD].device.tmd_hz));
-        json_object_set_new(tmd, "tmd_damping", json_number(run->device[EVALUATED_TMD].device.tmd_damping));
-        json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].device.link_ns_m));
+        json_put(tmd, "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
+                 run->device[EVALUATED_TMD].device.tmd_damping);
+        json_put(links, "link_ns_m=%g", run->device[EVALUATED_LINKS].device.link_ns_m);
     }
     if (run->error_known)
         put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
-        json_object_set_new(o, "replicates", json_replicates(&run->replicates));
+        json_put(o, "replicates=%p", json_replicates(&run->replicates));
     return o;
 }
 
@@ -198,15 +195,12 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
             json_array_append_new(records, describe(e, &e->run[i]));
     for (size_t i = 0; i < e->n_records; i++)
         if (e->record[i].readable != STATUS_OK)
-            json_array_append_new(
-                unreadable, json_pack("{s:s, s:s}", "record", e->record[i].path, "reason", e->record[i].why.text));
-    json_object_set_new(all, "run", json_words(args->operand));
-    json_object_set_new(all, "design", c->id > 0 ? json_integer(c->id) : json_words(c->word));
-    json_object_set_new(all, "variables_m", json_numbers(c->schema->n_var, c->x));
-    json_object_set_new(all, "records", records);
-    json_object_set_new(all, "unreadable", unreadable);
+            json_array_append_new(unreadable, json_of("record=%s reason=%s", e->record[i].path, e->record[i].why.text));
+    json_put(all, "run=%s design=%p variables_m=%p records=%p unreadable=%p", args->operand,
+             c->id > 0 ? json_integer(c->id) : json_words(c->word), json_numbers(c->schema->n_var, c->x), records,
+             unreadable);
     if (e->level)
-        json_object_set_new(all, "ida", ida_json(e));
+        json_put(all, "ida=%p", ida_json(e));
     return show_json(all, err);
 }
 
@@ -216,9 +210,7 @@ static json_t *begin_row(json_t *table, const char *record, EvaluatedCase which,
 {
     static const char *const KEYS[] = {"pga_g", "scale", "stretch"};
     json_t *row = figures_row(table);
-    json_object_set_new(row, "record", json_words(record));
-    json_object_set_new(row, "scene", json_string(EVALUATION_CASES[which].key));
-    json_object_set_new(row, "outcome", json_string(outcome));
+    json_put(row, "record=%s scene=%s outcome=%s", record, EVALUATION_CASES[which].key, outcome);
     for (int i = 0; i < 3; i++)
         json_object_set_new(row, KEYS[i], json_number(motion[i]));
     return row;

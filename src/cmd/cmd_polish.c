@@ -105,7 +105,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
         const double *values;
     } more[] = {{"_before", start->f}, {"_before_sd", start->sd}, {"_sd", end->sd}, {"_error", r->error}};
     json_t *table = json_array(), *row = figures_row(table);
-    json_object_set_new(row, "polished_from", json_integer(w->run->table.row[w->row].id));
+    json_put(row, "polished_from=%ld", w->run->table.row[w->row].id);
     for (size_t j = 0; j < schema->n_var; j++)
         json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
     put_objectives(row, schema, "", end->f);

@@ -110,14 +110,13 @@ static const double *row_of(const double *all, size_t i)
 
 static json_t *describe(const Job *job, size_t i, const Motion *m)
 {
-    json_t *o = json_pack("{s:I, s:o, s:f, s:f, s:f, s:o}", "design", (json_int_t)number_of(job, i), "record",
-                          json_words(m->name), "pga_g", motion_peak(m) / GRAVITY, "scale", m->scale, "stretch",
-                          m->stretch, "processed", json_words(m->processed));
+    json_t *o = json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", number_of(job, i), m->name,
+                        motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed);
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
         put_errors(o, row_of(job->error, i), row_of(job->sd, i));
     if (job->has_parts)
-        json_object_set_new(o, "replicates", json_replicates(&job->summary[i]));
+        json_put(o, "replicates=%p", json_replicates(&job->summary[i]));
     return o;
 }
 
@@ -137,11 +136,11 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     for (size_t i = 0; i < job->n; i++) {
         const Measured m = measured(&job->results[i]);
         json_t *row = figures_row(table);
-        json_object_set_new(row, "design", json_integer(number_of(job, i)));
+        json_put(row, "design=%ld", number_of(job, i));
         put_measures(row, "", m.value, NULL, NULL);
         if (job->has_parts)
             put_replicates(row, &job->summary[i]);
-        json_object_set_new(row, "outcome", json_string(outcome_word(measure_outcome(m.outcome))));
+        json_put(row, "outcome=%s", outcome_word(measure_outcome(m.outcome)));
     }
     return figures_csv(table, path, err);
 }
@@ -227,10 +226,9 @@ static const double HORIZON_CHANGE = 1e-12; /* of the gaps, between the two runs
 
 static Status print_horizon_json(const Horizon *h, const ReplicateSummary *r, Err *err)
 {
-    return show_json(json_pack("{s:o, s:o, s:o, s:o, s:o}", "end_s", json_number(h->end_s), "distance",
-                               json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), "reached_s",
-                               json_numbers(HORIZON_LEVELS, h->reached_s), "distance_at_end",
-                               json_number(h->distance_at_end), "replicates", json_replicates(r)),
+    return show_json(json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h->end_s,
+                             json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), json_numbers(HORIZON_LEVELS, h->reached_s),
+                             h->distance_at_end, json_replicates(r)),
                      err);
 }
 
@@ -292,11 +290,8 @@ static json_t *describe_slopes(const Sensitivity *s)
     json_t *slopes = json_object();
     for (int k = 0; k < N_MEASURES; k++)
         if (isfinite(s->slope[k]))
-            json_object_set_new(
-                slopes, measure(k)->name,
-                json_pack("{s:o, s:o}", "slope", json_number(s->slope[k]), "error", json_number(s->error[k])));
-    return json_pack("{s:s, s:f, s:f, s:o}", "parameter", s->name, "value", s->value, "step", s->step, "slopes",
-                     slopes);
+            json_object_set_new(slopes, measure(k)->name, json_of("slope=%g error=%g", s->slope[k], s->error[k]));
+    return json_of("parameter=%s value=%g step=%g slopes=%p", s->name, s->value, s->step, slopes);
 }
 
 static json_t *rows_of(size_t n, const Sensitivity list[])
@@ -304,9 +299,7 @@ static json_t *rows_of(size_t n, const Sensitivity list[])
     json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
         json_t *row = figures_row(table);
-        json_object_set_new(row, "parameter", json_string(list[i].name));
-        json_object_set_new(row, "value", json_number(list[i].value));
-        json_object_set_new(row, "step", json_number(list[i].step));
+        json_put(row, "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
         put_measures(row, "_slope", list[i].slope, "_error", list[i].error);
     }
     return table;
@@ -320,9 +313,7 @@ static void print_slopes(size_t n, const Sensitivity list[])
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];
         json_t *row = figures_row(table);
-        json_object_set_new(row, "parameter", json_string(s->name));
-        json_object_set_new(row, "value", json_number(s->value));
-        json_object_set_new(row, "step", json_number(s->step));
+        json_put(row, "parameter=%s value=%g step=%g", s->name, s->value, s->step);
         for (size_t k = 0; k < sizeof SHOWN / sizeof SHOWN[0]; k++)
             figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step, NAN);
     }

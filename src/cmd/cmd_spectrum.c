@@ -287,10 +287,9 @@ static void draw_all(FILE *script, const void *user)
 /* Figures of the motion; recorded: without base line and filters, where it has such. */
 static void add_figures(json_t *o, const MotionFigures *f)
 {
-    json_object_update_new(o, json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "pga_m_s2", f->pga_m_s2, "pga_g",
-                                        f->pga_m_s2 / GRAVITY, "pgv_m_s", f->pgv_m_s, "pgd_m", f->pgd_m, "duration_s",
-                                        f->duration_s, "arias_m_s", f->arias_m_s, "cav_m_s", f->cav_m_s, "d5_95_s",
-                                        f->d5_95_s));
+    json_put(o, "pga_m_s2=%g pga_g=%g pgv_m_s=%g pgd_m=%g duration_s=%g arias_m_s=%g cav_m_s=%g d5_95_s=%g",
+             f->pga_m_s2, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m, f->duration_s, f->arias_m_s, f->cav_m_s,
+             f->d5_95_s);
 }
 
 /* All but the histories, which may be long. */
@@ -299,28 +298,28 @@ static json_t *describe(const Spectrum *s)
     const MotionFigures *r = &s->recorded;
     const Motion *m = &s->motion;
     Curve c[CURVES_MAX];
-    json_t *o = json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I, s:f, s:f, s:f, s:f}", "motion", json_words(m->name),
-                          "format", m->format, "channel", json_words(m->channel), "processed", json_words(m->processed),
-                          "corrected", is_corrected(s), "warning", json_words(m->warning), "samples", (json_int_t)m->n,
-                          "scale", m->scale, "stretch", m->stretch, "step_s", m->dt_s, "damping", DAMPING);
+    json_t *o = json_of("motion=%s format=%s channel=%s processed=%s corrected=%c warning=%s samples=%ld scale=%g "
+                        "stretch=%g step_s=%g damping=%g",
+                        m->name, m->format, m->channel, m->processed, is_corrected(s), m->warning, m->n, m->scale,
+                        m->stretch, m->dt_s, DAMPING);
     add_figures(o, &s->figures);
     curves_of_one(s, c);
     for (size_t k = 0; k < CURVES_MAX; k++)
         if (c[k].x && c[k].x != s->recorded_psa)
             json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
     if (s->is_processed)
-        json_object_set_new(o, "recorded",
-                            json_pack("{s:f, s:f, s:f, s:o}", "pga_m_s2", r->pga_m_s2, "pgv_m_s", r->pgv_m_s, "pgd_m",
-                                      r->pgd_m, "psa_m_s2", json_numbers(N_PERIODS, s->recorded_psa)));
+        json_put(o, "recorded=%p",
+                 json_of("pga_m_s2=%g pgv_m_s=%g pgd_m=%g psa_m_s2=%p", r->pga_m_s2, r->pgv_m_s, r->pgd_m,
+                         json_numbers(N_PERIODS, s->recorded_psa)));
     if (s->code.kind)
-        json_object_set_new(o, "target_misfit", json_number(target_misfit(m, &s->code)));
+        json_put(o, "target_misfit=%g", target_misfit(m, &s->code));
     return o;
 }
 
 /* The members of o, without the brackets around them. */
 static Status print_members(json_t *o, Err *err)
 {
-    const int failed = !o || json_dumpf(o, stdout, JSON_EMBED | JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
+    const int failed = json_dumpf(o, stdout, JSON_EMBED | JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
     json_decref(o);
     return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
 }

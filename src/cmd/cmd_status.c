@@ -23,13 +23,11 @@ static json_t *json_generations(const Run *run)
     json_t *list = json_array();
     for (size_t i = 0; i < run->n_generations; i++) {
         const RunGeneration *g = &run->generation[i];
-        json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "number",
-                                              (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
-                                              (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
-                                              json_number(g->hypervolume), "hypervolume_error",
-                                              json_number(hypervolume_error(g->hypervolume)), "surrogate_error",
-                                              json_number(g->surrogate_error), "seconds", json_number(g->seconds),
-                                              "finished", g->finished));
+        json_array_append_new(list,
+                              json_of("number=%ld simulated=%ld failed=%ld front=%ld hypervolume=%g "
+                                      "hypervolume_error=%g surrogate_error=%g seconds=%g finished=%s",
+                                      g->number, g->simulated, g->failed, g->front, g->hypervolume,
+                                      hypervolume_error(g->hypervolume), g->surrogate_error, g->seconds, g->finished));
     }
     return list;
 }
@@ -68,12 +66,10 @@ static json_t *json_sessions(const Run *run)
         const RunSession *s = &run->session[i];
         const Effort e = effort_of(run, i);
         json_array_append_new(
-            list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "started", s->started,
-                            "ended", s->ended[0] ? s->ended : NULL, "stopped", s->stopped[0] ? s->stopped : NULL,
-                            "host", s->host, "pid", (json_int_t)s->pid, "threads", (json_int_t)s->threads,
-                            "simulated_before", (json_int_t)s->simulated_before, "seconds", json_number(s->seconds),
-                            "waiting_share", json_number(e.waiting), "surrogate_share", json_number(e.surrogate),
-                            "search_share", json_number(e.search), "busy_share", json_number(e.busy)));
+            list, json_of("started=%s ended=%s stopped=%s host=%s pid=%ld threads=%ld simulated_before=%ld seconds=%g "
+                          "waiting_share=%g surrogate_share=%g search_share=%g busy_share=%g",
+                          s->started, s->ended[0] ? s->ended : NULL, s->stopped[0] ? s->stopped : NULL, s->host, s->pid,
+                          s->threads, s->simulated_before, s->seconds, e.waiting, e.surrogate, e.search, e.busy));
     }
     return list;
 }
@@ -88,7 +84,7 @@ static json_t *json_failures(const Run *run)
         if (run->place[i].ok)
             continue;
         if (!json_object_get(o, word))
-            json_object_set_new(o, word, json_pack("{s:i, s:s}", "count", 0, "first", e->reason));
+            json_object_set_new(o, word, json_of("count=%d first=%s", 0, e->reason));
         json_t *count = json_object_get(json_object_get(o, word), "count");
         json_integer_set(count, json_integer_value(count) + 1);
     }
@@ -97,23 +93,19 @@ static json_t *json_failures(const Run *run)
 
 static json_t *describe(const char *folder, const Run *run, const Standing *s)
 {
-    json_t *o = json_pack(
-        "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
-        state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals", (json_int_t)s->max_evals,
-        "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
-        "repeats", (json_int_t)run->n_repeats, "hypervolume", json_number(s->hypervolume), "simulations_per_second",
-        json_number(progress_rate(&s->progress)), "seconds", json_number(s->seconds), "seconds_left",
-        json_number(s->left_s), "failures", json_failures(run));
+    json_t *o = json_of("run=%s state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld polished=%ld repeats=%ld "
+                        "hypervolume=%g simulations_per_second=%g seconds=%g seconds_left=%g failures=%p",
+                        folder, state_words(s->state), s->progress.simulated, s->max_evals, s->n_failed, run->n_front,
+                        s->n_polished, run->n_repeats, s->hypervolume, progress_rate(&s->progress), s->seconds,
+                        s->left_s, json_failures(run));
     if (s->state == RUN_RUNNING)
-        json_object_set_new(o, "process",
-                            json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
+        json_put(o, "process=%p", json_of("pid=%ld host=%s", s->holder.pid, s->holder.host));
     if (s->n_lost > 0)
-        json_object_set_new(o, "lost", json_integer((json_int_t)s->n_lost));
+        json_put(o, "lost=%ld", s->n_lost);
     const NamedCost named = named_cost(run);
     if (named.n > 0) {
-        json_object_set_new(o, "named", json_integer((json_int_t)named.n));
-        json_object_set_new(o, "named_unpredictable", json_integer((json_int_t)named.n_unpredictable));
-        json_object_set_new(o, "named_time_share", json_number(named.share));
+        json_put(o, "named=%ld named_unpredictable=%ld named_time_share=%g", named.n, named.n_unpredictable,
+                 named.share);
     }
     return o;
 }
@@ -123,14 +115,13 @@ static void describe_more(json_t *o, const Run *run, const Standing *s)
 {
     FrontReview review = front_review(run);
     Err err = {0};
-    json_object_set_new(o, "generations", json_generations(run));
-    json_object_set_new(o, "sessions", json_sessions(run));
+    json_put(o, "generations=%p sessions=%p", json_generations(run), json_sessions(run));
     if (review.n_gaps > 0 && s->state == RUN_FINISHED) /* a run under way has no time for it */
         front_review_of_run(run, &review, &err);
-    json_object_set_new(o, "front_review", review.n_gaps > 0 ? json_review(&review) : json_null());
+    json_put(o, "front_review=%p", review.n_gaps > 0 ? json_review(&review) : json_null());
     if (err.code != STATUS_OK) {
-        json_object_set_new(json_object_get(o, "front_review"), "never_closing", json_null());
-        json_object_set_new(json_object_get(o, "front_review"), "never_closing_unknown", json_words(err.text));
+        json_put(json_object_get(o, "front_review"), "never_closing=%p never_closing_unknown=%s", json_null(),
+                 err.text);
     }
 }
 
@@ -143,17 +134,15 @@ static void add_run(json_t *list, const char *folder)
     Standing s;
     Err err = {0};
     json_t *row = figures_row(list);
-    json_object_set_new(row, "run", json_words(folder));
+    json_put(row, "run=%s", folder);
     if (run_read(&run, folder, &err) != STATUS_OK) {
-        json_object_update_new(row, json_pack("{s:s, s:o}", "state", "unreadable", "reason", json_words(err.text)));
+        json_put(row, "state=%s reason=%s", "unreadable", err.text);
         return;
     }
     standing_of(&s, folder, &run);
-    json_object_update_new(row, json_pack("{s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "state", state_words(s.state),
-                                          "simulated", (json_int_t)s.progress.simulated, "max_evals",
-                                          (json_int_t)s.max_evals, "failed", (json_int_t)s.n_failed, "front",
-                                          (json_int_t)run.n_front, "hypervolume", json_number(s.hypervolume), "started",
-                                          run.n_sessions > 0 ? run.session[run.n_sessions - 1].started : "-"));
+    json_put(row, "state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld hypervolume=%g started=%s",
+             state_words(s.state), s.progress.simulated, s.max_evals, s.n_failed, run.n_front, s.hypervolume,
+             run.n_sessions > 0 ? run.session[run.n_sessions - 1].started : "-");
     run_free(&run);
 }
 
@@ -170,7 +159,7 @@ static void print_runs(json_t *list)
             json_object_set(row, " ", json_object_get(row, "reason"));
         json_object_del(row, "reason");
         if (slash)
-            json_object_set_new(row, "run", json_string(slash + 1));
+            json_put(row, "run=%s", slash + 1);
     }
     figures_print(list);
 }
@@ -243,7 +232,7 @@ static Status run(const Args *args, Err *err)
     json_t *o = describe(folder, &run, &standing);
     if (status == STATUS_OK && args_has(args, "--json")) {
         describe_more(o, &run, &standing);
-        json_object_set_new(o, "expected_gain", json_number(expected));
+        json_put(o, "expected_gain=%g", expected);
         status = show_json(json_incref(o), err);
     } else if (status == STATUS_OK) {
         print_head(folder, &run, &standing, o);

@@ -41,6 +41,7 @@ static double relative(double reduced, double full)
 
 static json_t *describe(const Job *job, size_t i)
 {
+    const Motion *m = &job->found.motion;
     const SimResult *reduced = &job->found.result[REDUCED][i], *full = &job->found.result[FULL][i];
     double error[N_MEASURES];
     json_t *o = json_object(), *of_reduced = json_object();
@@ -48,14 +49,11 @@ static json_t *describe(const Job *job, size_t i)
         error[k] = relative(measure_value(reduced, k), measure_value(full, k));
     put_measures(of_reduced, "", error, NULL, NULL);
     if (job->designs.x)
-        json_object_set_new(o, "design", json_integer(number_of(job, i)));
-    json_object_update_new(
-        o, json_pack("{s:o, s:f, s:f, s:f, s:{s:i, s:i}, s:o, s:o, s:o}", "record", json_words(job->found.motion.name),
-                     "pga_g", motion_peak(&job->found.motion) / GRAVITY, "scale", job->found.motion.scale, "stretch",
-                     job->found.motion.stretch, "degrees_of_freedom", WORDS[REDUCED], job->found.dofs[REDUCED],
-                     WORDS[FULL], job->found.dofs[FULL], WORDS[REDUCED], json_result(job->kind, reduced), WORDS[FULL],
-                     json_result(job->kind, full), "error", of_reduced));
-    return o;
+        json_put(o, "design=%ld", number_of(job, i));
+    return json_put(o, "record=%s pga_g=%g scale=%g stretch=%g degrees_of_freedom=%p reduced=%p full=%p error=%p",
+                    m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch,
+                    json_of("reduced=%d full=%d", job->found.dofs[REDUCED], job->found.dofs[FULL]),
+                    json_result(job->kind, reduced), json_result(job->kind, full), of_reduced);
 }
 
 static void add_design(json_t *table, const Job *job, const char *word, size_t i)
@@ -69,7 +67,7 @@ static void add_design(json_t *table, const Job *job, const char *word, size_t i
                        job->found.error ? job->found.error + i * N_MEASURES : NULL, NULL);
     }
     json_t *row = figures_row(table);
-    json_object_set_new(row, "", json_string("  error of the reduced"));
+    json_put(row, "=%s", "  error of the reduced");
     for (int o = 0; o < job->order.n_obj; o++) {
         const int k = job->order.of[o];
         snprintf(text, sizeof text, "%.3f %%",

@@ -25,9 +25,8 @@ static void compare(Selftest *t, const char *name, const char *quantity, double 
     const int agrees = fabs(value - wanted) <= tolerance * fabs(wanted); /* 0 for NaN */
     t->n++;
     t->n_wrong += !agrees;
-    json_array_append_new(t->checks,
-                          json_pack("{s:s, s:s, s:o, s:f, s:f, s:b}", "case", name, "quantity", quantity, "value",
-                                    json_number(value), "stored", wanted, "tolerance", tolerance, "agrees", agrees));
+    json_array_append_new(t->checks, json_of("case=%s quantity=%s value=%g stored=%g tolerance=%g agrees=%c", name,
+                                             quantity, value, wanted, tolerance, agrees));
     if (!agrees && !t->as_json)
         printf("%s: %s is %.10g, stored %.10g (relative difference %.1e, allowed %.1e)\n", name, quantity, value,
                wanted, fabs(value / wanted - 1), tolerance);
@@ -212,8 +211,8 @@ static Status check_search(Selftest *t, Err *err)
 static Status verdict(Selftest *t, double seconds, Err *err)
 {
     if (t->as_json)
-        TRY(show_json(json_pack("{s:b, s:s, s:f, s:O}", "trusted", t->n_wrong == 0, "kernel", fast_kernel_name(),
-                                "seconds", seconds, "checks", t->checks),
+        TRY(show_json(json_of("trusted=%c kernel=%s seconds=%g checks=%p", t->n_wrong == 0, fast_kernel_name(), seconds,
+                              json_incref(t->checks)),
                       err));
     if (t->n_wrong > 0)
         return fail(err, STATUS_INTERNAL, "this build cannot be trusted: %d of %d answers differ (kernel %s)",

@@ -215,7 +215,7 @@ Status figures_csv(json_t *table, const char *path, Err *err)
 
 Status show_json(json_t *all, Err *err)
 {
-    const int failed = !all || json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
+    const int failed = json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
     json_decref(all);
     putchar('\n');
     return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
@@ -308,7 +308,7 @@ static json_t *json_counts(size_t n, const long counts[])
 {
     json_t *list = json_array();
     for (size_t i = 0; i < n; i++)
-        list = json_append(list, json_real((double)counts[i]));
+        json_array_append_new(list, json_real((double)counts[i]));
     return list;
 }
 
@@ -334,7 +334,7 @@ static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
     case OF_MODES:
         return json_numbers((size_t)r->n_modes, of);
     case OF_SIDES: /* [u > v, u < v][floor] */
-        return json_pack("[o, o]", json_numbers(n, of), json_numbers(n, of + FLOORS_MAX));
+        return json_pair(n, of, of + FLOORS_MAX);
     case OF_COUNTS:
         return json_pack("[o, o]", json_counts(n, counts), json_counts(n, counts + FLOORS_MAX));
     }
@@ -354,13 +354,12 @@ json_t *json_result(SceneKind kind, const SimResult *r)
                          (kind == SCENE_IMPACT ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
                          (r->forces.buckling_known ? IF_BUCKLING : 0u) | (has_device ? IF_DEVICE : 0u) |
                          (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
-    json_t *o = json_pack("{s:s, s:s, s:s}", "scene", SCENES[kind], "outcome",
-                          outcome_word(measure_outcome(r->outcome)), "reason", r->reason);
+    json_t *o =
+        json_of("scene=%s outcome=%s reason=%s", SCENES[kind], outcome_word(measure_outcome(r->outcome)), r->reason);
     for (int k = 0; k < N_MEASURES; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
-    json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
-    json_object_set_new(o, "peak_filtered_g",
-                        r->filtered_known ? json_numbers((size_t)r->n_floors, r->peak_filtered_g) : json_null());
+    json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
+             r->filtered_known ? json_numbers((size_t)r->n_floors, r->peak_filtered_g) : json_null());
     for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++)
         if (!(FIELDS[i].needs & ~has))
             json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
@@ -393,9 +392,8 @@ void put_errors(json_t *o, const double likely[], const double sd[])
 {
     json_t *bound = json_known(likely, ESTIMATE_FACTOR);
     json_object_set(o, "estimated_error", bound);
-    json_object_set_new(o, "error",
-                        json_pack("{s:o, s:o, s:o}", "likely", json_known(likely, 1), "bound", bound, "sd_gaps_1_um",
-                                  json_known(sd, 1)));
+    json_put(o, "error=%p",
+             json_of("likely=%p bound=%p sd_gaps_1_um=%p", json_known(likely, 1), bound, json_known(sd, 1)));
 }
 
 json_t *json_replicates(const ReplicateSummary *r)
@@ -403,18 +401,17 @@ json_t *json_replicates(const ReplicateSummary *r)
     json_t *mean = json_object(), *sd = json_object();
     put_measures(mean, "", r->n_failed ? NULL : r->mean, NULL, NULL);
     put_measures(sd, "", r->n_failed ? NULL : r->sd, NULL, NULL);
-    return json_pack("{s:I, s:I, s:I, s:s, s:s, s:o, s:o}", "n", (json_int_t)r->n_replicates, "records",
-                     (json_int_t)r->n_records, "failed", (json_int_t)r->n_failed, "spread", r->spread, "rule", r->rule,
-                     "mean", mean, "sd", sd);
+    return json_of("n=%ld records=%ld failed=%ld spread=%s rule=%s mean=%p sd=%p", r->n_replicates, r->n_records,
+                   r->n_failed, r->spread, r->rule, mean, sd);
 }
 
 void put_replicates(json_t *row, const ReplicateSummary *r)
 {
     const int known = r && !r->n_failed;
-    json_object_set_new(row, "records", r ? json_integer((json_int_t)r->n_records) : json_null());
-    json_object_set_new(row, "replicates", r ? json_integer((json_int_t)r->n_replicates) : json_null());
-    json_object_set_new(row, "rule", r ? json_string(r->rule) : json_null());
-    json_object_set_new(row, "spread", r ? json_string(r->spread) : json_null());
+    json_put(row, "records=%p replicates=%p rule=%p spread=%p",
+             r ? json_integer((json_int_t)r->n_records) : json_null(),
+             r ? json_integer((json_int_t)r->n_replicates) : json_null(), r ? json_string(r->rule) : json_null(),
+             r ? json_string(r->spread) : json_null());
     put_measures(row, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
@@ -438,11 +435,11 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 {
     char note[200] = "";
     json_t *row = figures_row(table);
-    json_object_set_new(row, "", json_words(label));
+    json_put(row, "=%s", label);
     for (int i = 0; i < order->n_obj; i++)
         figures_put(row, measure(order->of[i])->name, measure_value(r, order->of[i]), error ? error[order->of[i]] : NAN,
                     sd ? sd[order->of[i]] : NAN);
-    json_object_set_new(row, "impacts", json_integer(r->impacts));
+    json_put(row, "impacts=%ld", r->impacts);
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
         snprintf(note, sizeof note, "%s", outcome_word(measure_outcome(r->outcome)));
@@ -455,7 +452,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     else if (r->filtered_known && r->j3_filtered_g > r->j3_g)
         snprintf(note, sizeof note, "j3_filtered_g above j3_g: the filter overshoots (docs/theory.md)");
     if (note[0])
-        json_object_set_new(row, " ", json_string(note));
+        json_put(row, " =%s", note);
     return row;
 }
 
@@ -472,7 +469,7 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
         snprintf(label, sizeof label, "  %s of %zu", r->rule, r->n_replicates);
     if (has_sd && !r->n_failed)
         snprintf(label + strlen(label), sizeof label - strlen(label), ", sd %s", r->spread);
-    json_object_set_new(row, "", json_string(label));
+    json_put(row, "=%s", label);
     for (int i = 0; i < order->n_obj && !r->n_failed; i++)
         figures_put(row, measure(order->of[i])->name, r->mean[order->of[i]], error ? error[order->of[i]] : NAN,
                     has_sd ? r->sd[order->of[i]] : NAN);
@@ -484,8 +481,7 @@ void figures_design(json_t *table, const char *label, long id, const Schema *sch
                     const double error[], const double sd[], const double extra[])
 {
     json_t *row = figures_row(table);
-    json_object_set_new(row, "", json_words(label));
-    json_object_set_new(row, "design", id > 0 ? json_integer(id) : json_string("-"));
+    json_put(row, "=%s design=%p", label, id > 0 ? json_integer(id) : json_string("-"));
     for (size_t k = 0; k < schema->n_obj; k++)
         figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
     for (size_t k = 0; k < schema->n_limited; k++)
@@ -503,11 +499,10 @@ json_t *json_review(const FrontReview *r)
     for (size_t j = 0; j < r->n_floors; j++)
         if (r->closes[j] == 0)
             json_array_append_new(never, json_integer((json_int_t)j + 1));
-    json_t *o = json_pack("{s:I, s:o, s:o}", "beyond_contact_law", (json_int_t)r->n_beyond, "gaps_on_smallest",
-                          smallest, "gaps_on_largest", largest);
+    json_t *o =
+        json_of("beyond_contact_law=%ld gaps_on_smallest=%p gaps_on_largest=%p", r->n_beyond, smallest, largest);
     if (r->n_simulated > 0)
-        json_object_update_new(
-            o, json_pack("{s:I, s:O}", "designs_simulated", (json_int_t)r->n_simulated, "never_closing", never));
+        return json_put(o, "designs_simulated=%zu never_closing=%p", r->n_simulated, never);
     json_decref(never);
     return o;
 }

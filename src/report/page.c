@@ -66,19 +66,16 @@ extern const char _binary_build_web_live_html_start[], _binary_build_web_live_ht
 static const char MARK[] = "<!-- the run -->\n";
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
-static Status write_json(json_t *all, FILE *out, Err *err)
+static void write_json(json_t *all, FILE *out)
 {
-    char *text = all ? json_dumps(all, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(6)) : NULL;
+    char *text = json_dumps(all, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(6));
     json_decref(all);
-    if (!text)
-        return fail(err, STATUS_NO_MEMORY, "the report cannot be put together: no memory, or a name is not UTF-8");
     for (const char *p = text; *p; p++)
         if (*p == '<')
             fputs("\\u003c", out);
         else
             fputc(*p, out);
     free(text);
-    return STATUS_OK;
 }
 
 static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
@@ -88,7 +85,7 @@ static Status write_page(const Report *r, const char *start, const char *end, FI
         return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
     fwrite(start, 1, (size_t)(mark - start), out); /* a failed write is seen on closing */
     fputs("<script type=\"application/json\" id=\"run\">", out);
-    TRY(write_json(report_json(r), out, err));
+    write_json(report_json(r), out);
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
     TRY(export_designs(out, r->run, EXPORT_PAGE, r->n_shown, r->shown, err));
     fputs("</script>\n", out);

@@ -33,20 +33,19 @@ json_t *result_json(const SimResult *r, const MeasureOrder *order)
 {
     const size_t n = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     if (r->outcome != RUN_OK)
-        return json_pack("{s:s}", "reason", r->reason);
+        return json_of("reason=%s", r->reason);
     json_t *objectives = json_array();
     for (int k = 0; k < order->n_obj; k++)
-        objectives = json_append(objectives, json_number(measure_value(r, order->of[k])));
+        json_array_append_new(objectives, json_number(measure_value(r, order->of[k])));
     json_t *closings = json_array();
     for (size_t j = 0; j < n; j++)
-        closings = json_append(closings, json_integer(r->closings[j]));
-    return json_pack("{s:o, s:I, s:o, s:o, s:f, s:f, s:b, s:o, s:o, s:o, s:o}", "objectives", objectives, "impacts",
-                     (json_int_t)r->impacts, "closings", closings, "core_pct", json_number(r->edcs_pct), "input_j",
-                     r->input_energy_j, "contact_pct",
-                     r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, "beyond_law",
-                     beyond_contact_law(r), "displacement_m", json_numbers(n, r->peak_displacement_m), "drift_m",
-                     json_numbers(n, r->peak_drift_m), "acceleration_g", json_numbers(n, r->peak_acceleration_g),
-                     "modes", json_numbers(n_modes, r->mode_share_pct));
+        json_array_append_new(closings, json_integer(r->closings[j]));
+    return json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
+                   "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
+                   objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
+                   r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
+                   json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
+                   json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));
 }
 
 static json_t *json_of_energies(const History *h, size_t step)
@@ -64,10 +63,10 @@ static json_t *json_of_history(const History *h, const Spectrogram *s)
     const size_t step = h->n / HISTORY_POINTS + 1;
     if (h->n < 2)
         return json_null();
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "t", json_numbers_every(step, h->n, h->t), "u",
-                     json_numbers_every(step, h->n, h->u), "energies", json_of_energies(h, step), "spectrum_f",
-                     json_numbers(SPECTRUM_FREQUENCIES, s->f), "spectrum_t", json_numbers(SPECTRUM_TIMES, s->t),
-                     "spectrum", json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
+    return json_of(
+        "t=%p u=%p energies=%p spectrum_f=%p spectrum_t=%p spectrum=%p", json_numbers_every(step, h->n, h->t),
+        json_numbers_every(step, h->n, h->u), json_of_energies(h, step), json_numbers(SPECTRUM_FREQUENCIES, s->f),
+        json_numbers(SPECTRUM_TIMES, s->t), json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
 }
 
 /* Values of all records by the rule of the run. */
@@ -81,9 +80,9 @@ static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const Mea
         char device[DEVICE_TEXT_MAX];
         baseline_device_text((BaselineKind)k, &baseline[k].device, device);
         const int ok = baseline[k].outcome == OUTCOME_OK;
-        list = json_append(list, json_pack("{s:s, s:s, s:s, s:o}", "key", baseline_key((BaselineKind)k), "words",
-                                           baseline_words((BaselineKind)k), "device", device, "objectives",
-                                           ok ? json_numbers((size_t)order->n_obj, values) : json_null()));
+        json_array_append_new(list, json_of("key=%s words=%s device=%s objectives=%p", baseline_key((BaselineKind)k),
+                                            baseline_words((BaselineKind)k), device,
+                                            ok ? json_numbers((size_t)order->n_obj, values) : json_null()));
     }
     return list;
 }
@@ -100,17 +99,16 @@ static json_t *json_of_loads(const Detail *d)
     json_t *columns = json_array(), *rows = json_array();
     for (int k = 0; k < N_LOADS; k++) {
         const Words w = words_of_measure(LOADS[k]);
-        columns = json_append(columns, json_pack("{s:s, s:s}", "title", w.title, "unit", w.unit));
+        json_array_append_new(columns, json_of("title=%s unit=%s", w.title, w.unit));
     }
     for (int scene = 0; scene < N_SCENES; scene++) {
         double values[N_LOADS];
         for (int k = 0; k < N_LOADS; k++)
             values[k] = words_of_measure(LOADS[k]).factor * measure_value(&d->result[scene], LOADS[k]);
         if (d->result[scene].outcome == RUN_OK)
-            rows =
-                json_append(rows, json_pack("{s:s, s:o}", "key", KEYS[scene], "values", json_numbers(N_LOADS, values)));
+            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers(N_LOADS, values)));
     }
-    return json_pack("{s:o, s:o}", "columns", columns, "rows", rows);
+    return json_of("columns=%p rows=%p", columns, rows);
 }
 
 /* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey;
@@ -121,10 +119,10 @@ static json_t *json_of_forces(const SimResult *r)
     const size_t n = (size_t)r->n_floors;
     if (r->outcome != RUN_OK || !r->forces_known)
         return json_null();
-    return json_pack("{s:[o,o], s:o, s:o}", "contact_n", json_numbers(n, f->contact_force_n[0]),
-                     json_numbers(n, f->contact_force_n[1]), "stress_pa",
-                     f->stress_known ? json_numbers(n, f->core_storey_stress_pa) : json_null(), "buckling_pa",
-                     f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
+    return json_of("contact_n=%p stress_pa=%p buckling_pa=%p",
+                   json_pair(n, f->contact_force_n[0], f->contact_force_n[1]),
+                   f->stress_known ? json_numbers(n, f->core_storey_stress_pa) : json_null(),
+                   f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
 }
 
 /* What every floor reaches at least and at most under the records of the run; empty: there is one. A record under which
@@ -146,7 +144,7 @@ static json_t *json_of_band(const Detail *d)
             }
         }
         const size_t n = (size_t)d->n_floors;
-        json_object_set_new(band, KEYS[k], json_pack("[o, o]", json_numbers(n, low), json_numbers(n, high)));
+        json_object_set_new(band, KEYS[k], json_pair(n, low, high));
     }
     return band;
 }
@@ -158,30 +156,25 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        others =
-            json_append(others, json_pack("{s:o, s:f, s:f, s:f, s:o, s:o}", "record", json_words(e->record), "pga_g",
-                                          e->pga_g, "scale", e->scale, "stretch", e->stretch, KEYS[0],
-                                          result_json(&e->with_core, order), KEYS[1], result_json(&e->no_core, order)));
+        json_array_append_new(others, json_of("record=%s pga_g=%g scale=%g stretch=%g with_core=%p no_core=%p",
+                                              e->record, e->pga_g, e->scale, e->stretch,
+                                              result_json(&e->with_core, order), result_json(&e->no_core, order)));
     }
     json_t *o =
-        json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
-                  d->floor + 1, "storey_m", json_numbers(n, d->storey_m), "gap_m", json_numbers(n, d->gap_m),
-                  "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m", json_numbers(n, d->bumper_n_m),
-                  "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
-                  json_words(d->record), "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s",
-                  d->duration_s, "loads", json_of_loads(d), "baselines", json_of_baselines(d->baseline, order),
-                  "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
-                  json_of_history(&d->history[1], &d->spectrum[1]), "forces", json_of_forces(&d->result[SCENE_IMPACT]),
-                  "elsewhere", others);
+        json_of("floor=%d storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
+                "pga_g=%g scale=%g stretch=%g duration_s=%g loads=%p baselines=%p history_with_core=%p "
+                "history_no_core=%p forces=%p elsewhere=%p",
+                d->floor + 1, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m), json_numbers(n, d->thickness_m),
+                json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz), json_numbers(n, d->core_hz), d->record,
+                d->pga_g, d->scale, d->stretch, d->duration_s, json_of_loads(d), json_of_baselines(d->baseline, order),
+                json_of_history(&d->history[0], &d->spectrum[0]), json_of_history(&d->history[1], &d->spectrum[1]),
+                json_of_forces(&d->result[SCENE_IMPACT]), others);
     json_t *error = json_array();
     for (int k = 0; k < order->n_obj; k++)
         json_array_append_new(error, json_number(d->error[order->of[k]]));
-    json_object_set_new(o, "error", error);
-    json_object_set_new(o, "band", json_of_band(d));
-    json_object_set_new(o, "records", json_integer((json_int_t)d->n_records));
+    json_put(o, "error=%p band=%p records=%ld", error, json_of_band(d), d->n_records);
     if (d->gap_sides != GAPS_BOTH)
-        json_object_set_new(o, "gap_side_m",
-                            json_pack("[o,o]", json_numbers(n, d->gap_side_m[0]), json_numbers(n, d->gap_side_m[1])));
+        json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)
         json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
     return o;
@@ -197,8 +190,7 @@ static json_t *json_of_bounds(const Report *r)
     if (!r->has_detail)
         return json_null();
     design_bounds(&schema->design, &r->run->settings->design, lower, upper);
-    return json_pack("{s:o, s:o}", "lower", json_numbers(schema->n_var, lower), "upper",
-                     json_numbers(schema->n_var, upper));
+    return json_of("lower=%p upper=%p", json_numbers(schema->n_var, lower), json_numbers(schema->n_var, upper));
 }
 
 /* Of objective k, or of measure k - n_obj. */
@@ -206,9 +198,8 @@ static json_t *json_of_result_column(const Schema *schema, size_t k)
 {
     const Column *c = schema_objective(schema, k);
     const Words w = words_of_objective(schema, k);
-    return json_pack("{s:o, s:o, s:s, s:f, s:f, s:o}", "name", json_words(c->name), "title", json_words(w.title),
-                     "unit", w.unit, "factor", w.factor, "sense", c->sense, "what",
-                     json_words(schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title));
+    return json_of("name=%s title=%s unit=%s factor=%g sense=%g what=%s", c->name, w.title, w.unit, w.factor, c->sense,
+                   schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title);
 }
 
 static json_t *json_of_names(const Report *r)
@@ -216,13 +207,13 @@ static json_t *json_of_names(const Report *r)
     const Schema *schema = &r->run->schema;
     json_t *variables = json_array(), *objectives = json_array(), *limited = json_array();
     for (size_t j = 0; j < schema->n_var; j++)
-        variables = json_append(variables, json_words(schema_variable(schema, j)->name));
+        json_array_append_new(variables, json_words(schema_variable(schema, j)->name));
     for (size_t k = 0; k < schema->n_obj; k++)
-        objectives = json_append(objectives, json_of_result_column(schema, k));
+        json_array_append_new(objectives, json_of_result_column(schema, k));
     for (size_t k = 0; k < schema->n_limited; k++)
-        limited = json_append(limited, json_of_result_column(schema, schema->n_obj + schema->limited[k]));
-    return json_pack("{s:o, s:o, s:o, s:o}", "variables", variables, "objectives", objectives, "limited", limited,
-                     "bounds", json_of_bounds(r));
+        json_array_append_new(limited, json_of_result_column(schema, schema->n_obj + schema->limited[k]));
+    return json_of("variables=%p objectives=%p limited=%p bounds=%p", variables, objectives, limited,
+                   json_of_bounds(r));
 }
 
 /* Ids of the designs shown that are beyond the contact law. */
@@ -234,7 +225,7 @@ static json_t *json_of_beyond_law(const Report *r)
         for (size_t i = 0; i < r->n_shown; i++) {
             const Evaluation *row = &run->table.row[r->shown[i]];
             if (run->schema.order.of[run->schema.n_obj + e] == MEASURE_BEYOND_LAW && row->extra[e] > 0)
-                ids = json_append(ids, json_integer(row->id));
+                json_array_append_new(ids, json_integer(row->id));
         }
     return ids;
 }
@@ -247,9 +238,8 @@ static json_t *json_of_importance(const Importance *m, const Schema *schema)
         return json_null();
     }
     for (size_t k = 0; k < schema->n_obj; k++)
-        total = json_append(total, json_numbers(schema->n_var, m->total + k * schema->n_var));
-    return json_pack("{s:I, s:o, s:o}", "centres", (json_int_t)m->n_centres, "explained",
-                     json_numbers(schema->n_obj, m->explained), "total", total);
+        json_array_append_new(total, json_numbers(schema->n_var, m->total + k * schema->n_var));
+    return json_of("centres=%ld explained=%p total=%p", m->n_centres, json_numbers(schema->n_obj, m->explained), total);
 }
 
 json_t *growth_json(const Run *run)
@@ -259,11 +249,11 @@ json_t *growth_json(const Run *run)
         const double v = run->generation[i].hypervolume;
         if (!isfinite(v))
             continue;
-        simulated = json_append(simulated, json_number((double)run->generation[i].simulated));
-        volume = json_append(volume, json_number(v));
-        error = json_append(error, json_number(hypervolume_error(v)));
+        json_array_append_new(simulated, json_number((double)run->generation[i].simulated));
+        json_array_append_new(volume, json_number(v));
+        json_array_append_new(error, json_number(hypervolume_error(v)));
     }
-    return json_pack("{s:o, s:o, s:o}", "simulated", simulated, "volume", volume, "error", error);
+    return json_of("simulated=%p volume=%p error=%p", simulated, volume, error);
 }
 
 static size_t n_evaluated(const Run *run)
@@ -286,18 +276,16 @@ json_t *report_json(const Report *r)
     char rule[RULE_WORDS_MAX];
     const int has_errors = run_likely(run, r->chosen, likely);
     words_of_rule(run->settings, rule);
-    return json_pack(
-        "{s:s, s:o, s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, "
-        "s:o, s:o, s:s}",
-        "rule", rule, "chosen_error", has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), "version",
-        program_version(), "revision", program_revision(), "name", json_words(slash && slash[1] ? slash + 1 : name),
-        "folder", json_words(name), "tower", r->has_detail, "robust", r->is_robust, "building",
-        json_words(run->settings->building.model), "spread",
-        spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), "knee",
-        (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id, "chosen_f",
-        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
-        (json_int_t)run->n_failed, "front", (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law",
-        json_of_beyond_law(r), "importance", json_of_importance(&r->importance, &run->schema), "convergence",
-        growth_json(run), "detail", r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        "settings", json_of_settings(run->settings), "provenance", run->provenance);
+    return json_of(
+        "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s tower=%c robust=%c building=%s spread=%s "
+        "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
+        "convergence=%p detail=%p settings=%p provenance=%s",
+        rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
+        slash && slash[1] ? slash + 1 : name, name, r->has_detail, r->is_robust, run->settings->building.model,
+        spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), run->table.row[r->knee].id,
+        run->table.row[r->chosen].id, json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run),
+        run->n_failed, run->n_front, json_of_names(r), json_of_beyond_law(r),
+        json_of_importance(&r->importance, &run->schema), growth_json(run),
+        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
+        json_of_settings(run->settings), run->provenance);
 }

@@ -14,20 +14,18 @@ static json_t *json_of_numbers(const Look *look, const char *name)
     const Run *run = &look->run;
     const Standing *s = &look->standing;
     const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
-    return json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:o, s:o, s:o}", "name", json_words(name), "state",
-                     state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals",
-                     (json_int_t)s->max_evals, "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front,
-                     "generation", (json_int_t)(last ? last->number : -1), "finished", last ? last->finished : "",
-                     "hypervolume", json_number(s->hypervolume), "per_second", json_number(progress_rate(&s->progress)),
-                     "seconds", json_number(s->seconds), "left_s", json_number(s->left_s));
+    return json_of("name=%s state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld generation=%ld finished=%s "
+                   "hypervolume=%g per_second=%g seconds=%g left_s=%g",
+                   name, state_words(s->state), s->progress.simulated, s->max_evals, s->n_failed, run->n_front,
+                   last ? last->number : -1, last ? last->finished : "", s->hypervolume, progress_rate(&s->progress),
+                   s->seconds, s->left_s);
 }
 
 json_t *answer_status(const View *view, const char *name)
 {
-    json_t *o = view->look ? json_of_numbers(view->look, name) : json_pack("{s:o}", "name", json_words(name));
+    json_t *o = view->look ? json_of_numbers(view->look, name) : json_of("name=%s", name);
     if (view->why.code != STATUS_OK) {
-        json_object_set_new(o, "state", json_string("unreadable"));
-        json_object_set_new(o, "reason", json_words(view->why.text));
+        json_put(o, "state=%s reason=%s", "unreadable", view->why.text);
     }
     return o;
 }
@@ -36,7 +34,7 @@ static json_t *json_of_front(const Run *run)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < run->n_front; i++)
-        list = json_append(list, json_numbers(run->schema.n_obj, run_f(run, run->front[i])));
+        json_array_append_new(list, json_numbers(run->schema.n_obj, run_f(run, run->front[i])));
     return list;
 }
 
@@ -45,13 +43,10 @@ json_t *answer_front(const Look *look)
     const Run *run = &look->run;
     json_t *ids = json_array(), *answer = growth_json(run);
     for (size_t i = 0; i < run->n_front; i++)
-        ids = json_append(ids, json_integer(run->table.row[run->front[i]].id));
+        json_array_append_new(ids, json_integer(run->table.row[run->front[i]].id));
     const long generation = run->n_generations > 0 ? run->generation[run->n_generations - 1].number : -1;
-    json_object_set_new(answer, "generation", json_integer(generation));
-    json_object_set_new(answer, "knee",
-                        run->n_front > 0 ? json_integer(run->table.row[run_knee(run)].id) : json_null());
-    json_object_set_new(answer, "ids", ids);
-    json_object_set_new(answer, "f", json_of_front(run));
+    json_put(answer, "generation=%ld knee=%p ids=%p f=%p", generation,
+             run->n_front > 0 ? json_integer(run->table.row[run_knee(run)].id) : json_null(), ids, json_of_front(run));
     return answer;
 }
 
@@ -109,12 +104,11 @@ static Status growth_in(const Run *run, const double lower[], const double refer
             run_minimise(run, i, f);
             hypervolume_add(h, f);
         }
-        simulated = json_append(simulated, json_integer(run->generation[g].simulated));
-        volume = json_append(volume, json_number(hypervolume_share(h)));
+        json_array_append_new(simulated, json_integer(run->generation[g].simulated));
+        json_array_append_new(volume, json_number(hypervolume_share(h)));
     }
     hypervolume_free(h);
-    json_object_set_new(out, "simulated", simulated);
-    json_object_set_new(out, "volume", volume);
+    json_put(out, "simulated=%p volume=%p", simulated, volume);
     if (!first)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", n);
     free(first);
@@ -148,19 +142,16 @@ Status answer_against(const Look *const look[2], const char *const name[2], json
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
     TRY(check_pair(look, err));
     box_of(look, lower, reference);
-    json_t *runs = json_array();
+    json_t *runs = json_array(), *differences = json_array();
     Status status = STATUS_OK;
     for (int r = 0; r < 2 && status == STATUS_OK; r++) {
-        json_t *one = json_pack("{s:o, s:o}", "name", json_words(name[r]), "f", json_of_front(&look[r]->run));
-        status = one ? growth_in(&look[r]->run, lower, reference, one, err)
-                     : fail(err, STATUS_NO_MEMORY, "no memory for a front");
-        runs = json_append(runs, one);
+        json_t *one = json_of("name=%s f=%p", name[r], json_of_front(&look[r]->run));
+        status = growth_in(&look[r]->run, lower, reference, one, err);
+        json_array_append_new(runs, one);
     }
-    json_t *differences = json_array();
     settings_compare(look[0]->run.settings, look[1]->run.settings, name_difference, differences);
-    *out = status == STATUS_OK ? json_pack("{s:o, s:O}", "runs", runs, "differences", differences) : NULL;
-    json_decref(differences);
+    *out = json_of("runs=%p differences=%p", runs, differences);
     if (status != STATUS_OK)
-        json_decref(runs);
-    return status == STATUS_OK && !*out ? fail(err, STATUS_NO_MEMORY, "no memory for two fronts") : status;
+        json_decref(*out);
+    return status;
 }

@@ -109,14 +109,13 @@ int on_demand_is_of(const OnDemand *o, const Run *run)
 
 /* -- a design of the run ------------------------------------------------------------------------------------------- */
 
-static Status text_of(const Run *run, size_t row, const Detail *d, char **text, Err *err)
+static char *text_of(const Run *run, size_t row, const Detail *d)
 {
-    json_t *all =
-        json_pack("{s:I, s:o, s:o}", "id", (json_int_t)run->table.row[row].id, "objectives",
-                  json_numbers(run->schema.n_obj, run_f(run, row)), "detail", detail_json(d, &run->schema.order));
-    *text = all ? json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    json_t *all = json_of("id=%ld objectives=%p detail=%p", run->table.row[row].id,
+                          json_numbers(run->schema.n_obj, run_f(run, row)), detail_json(d, &run->schema.order));
+    char *text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6));
     json_decref(all);
-    return *text ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    return text;
 }
 
 static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_devices, char **text, Err *err)
@@ -128,9 +127,9 @@ static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_d
     run_steps(run, row, &s.sim);
     const DetailOptions options = {.floor = -1, .moved = *o->moved, .without_devices = !with_devices};
     TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
-    const Status status = text_of(run, row, &d, text, err);
+    *text = text_of(run, row, &d);
     detail_free(&d);
-    return status;
+    return STATUS_OK;
 }
 
 /* The mutex is held. */
@@ -234,15 +233,17 @@ static const char SCALED_OTHERWISE[] = " --set motion.factor=1 --set motion.sa_g
 Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err)
 {
     const Ground *g = &o->own;
-    char scalings[SCALINGS_TEXT_MAX];
+    char scalings[SCALINGS_TEXT_MAX], options[sizeof ONCE + sizeof CERTAIN];
     TRY(prepare(o, run, err));
     const int scales_otherwise = o->used.motion.pga_g == 0 && motion_scalings(&o->used.motion, scalings) > 0;
-    *bounds = json_pack(
-        "{s:o, s:o, s:[f,f,f], s:[f,f,f], s:[f,f,f], s:b, s:s+, s:s}", "lower", json_numbers(o->n_var, o->lower),
-        "upper", json_numbers(o->n_var, o->upper), "pga_g", g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE,
-        "stretch", g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE, "restitution", RESTITUTION[0],
-        g->restitution, RESTITUTION[1], "is_comparable", o->is_single, "options", o->is_single ? "" : ONCE,
-        is_uncertain(&o->used.sim.uncertain) ? CERTAIN : "", "pga_options", scales_otherwise ? SCALED_OTHERWISE : "");
+    snprintf(options, sizeof options, "%s%s", o->is_single ? "" : ONCE,
+             is_uncertain(&o->used.sim.uncertain) ? CERTAIN : "");
+    *bounds = json_of("lower=%p upper=%p pga_g=%p stretch=%p restitution=%p is_comparable=%c options=%s pga_options=%s",
+                      json_numbers(o->n_var, o->lower), json_numbers(o->n_var, o->upper),
+                      json_numbers(3, (double[]){g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE}),
+                      json_numbers(3, (double[]){g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE}),
+                      json_numbers(3, (double[]){RESTITUTION[0], g->restitution, RESTITUTION[1]}), o->is_single,
+                      options, scales_otherwise ? SCALED_OTHERWISE : "");
     return STATUS_OK;
 }
 
@@ -306,7 +307,7 @@ static void set_place(const Run *run, const double natural[], json_t *answer)
 {
     const size_t m = run->schema.n_obj;
     double f[OBJECTIVES_MAX], other[OBJECTIVES_MAX];
-    json_int_t by = 0, of = 0;
+    long by = 0, of = 0;
     for (size_t k = 0; k < m; k++)
         f[k] = schema_objective(&run->schema, k)->sense * natural[k];
     for (size_t i = 0; i < run->n_front; i++) {
@@ -314,8 +315,7 @@ static void set_place(const Run *run, const double natural[], json_t *answer)
         by += dominates(m, other, f) != 0;
         of += dominates(m, f, other) != 0;
     }
-    json_object_set_new(answer, "dominated_by", json_integer(by));
-    json_object_set_new(answer, "dominates", json_integer(of));
+    json_put(answer, "dominated_by=%ld dominates=%ld", by, of);
 }
 
 static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question *q)
@@ -333,12 +333,12 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
         natural[k] = measure_value(r, order->of[k]);
     const int ok = r->outcome == RUN_OK;
     json_t *answer =
-        json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:b, s:f}", "turn", (json_int_t)q->turn, "outcome",
-                  outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
-                  ok ? json_numbers((size_t)order->n_obj, natural) : json_null(), "gap_m",
-                  json_numbers((size_t)tower_n_floors(tower), gap_m), "peaks", ok ? result_json(r, order) : json_null(),
-                  "no_core", o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), "beyond_law",
-                  beyond_contact_law(r), "seconds", r->seconds);
+        json_of("turn=%ld outcome=%s reason=%s objectives=%p gap_m=%p peaks=%p no_core=%p beyond_law=%c seconds=%g",
+                q->turn, outcome_word(measure_outcome(r->outcome)), r->reason,
+                ok ? json_numbers((size_t)order->n_obj, natural) : json_null(),
+                json_numbers((size_t)tower_n_floors(tower), gap_m), ok ? result_json(r, order) : json_null(),
+                o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), beyond_contact_law(r),
+                r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
     if (ok && o->is_single && same_ground)

@@ -160,11 +160,21 @@ static enum MHD_Result send_answer(struct MHD_Connection *c, const Answer *a)
     return sent;
 }
 
+/* Takes the reference. */
+static Status answer_json(json_t *all, int precision, Answer *a)
+{
+    *a = (Answer){.code = MHD_HTTP_OK,
+                  .type = "application/json",
+                  .text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(precision))};
+    json_decref(all);
+    return STATUS_OK;
+}
+
 static Answer refusal(unsigned code, const char *words)
 {
-    json_t *o = json_pack("{s:s}", "error", words);
-    const Answer a = {.code = code, .type = "application/json", .text = json_dumps(o, JSON_COMPACT)};
-    json_decref(o);
+    Answer a;
+    answer_json(json_of("error=%s", words), 6, &a);
+    a.code = code;
     return a;
 }
 
@@ -173,16 +183,6 @@ static Answer redirection(const char *place)
     Answer a = {.code = MHD_HTTP_FOUND, .type = "text/plain"};
     snprintf(a.place, sizeof a.place, "%s/", place);
     return a;
-}
-
-/* Takes the reference. */
-static Status answer_json(json_t *all, int precision, Answer *a, Err *err)
-{
-    *a = (Answer){.code = MHD_HTTP_OK,
-                  .type = "application/json",
-                  .text = all ? json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(precision)) : NULL};
-    json_decref(all);
-    return a->text ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for an answer, or a name is not UTF-8");
 }
 
 /* -- what is shown ------------------------------------------------------------------------------------------------- */
@@ -208,7 +208,8 @@ static Status show_page(Visit *v, Answer *a, Err *err)
 
 static Status show_front(Visit *v, Answer *a, Err *err)
 {
-    return answer_json(answer_front(v->view.look), 6, a, err);
+    (void)err;
+    return answer_json(answer_front(v->view.look), 6, a);
 }
 
 static Status show_design(Visit *v, Answer *a, Err *err)
@@ -221,7 +222,7 @@ static Status show_bounds(Visit *v, Answer *a, Err *err)
 {
     json_t *bounds;
     TRY(on_demand_bounds(v->view.look->on_demand, &v->view.look->run, &bounds, err));
-    return answer_json(bounds, 17, a, err);
+    return answer_json(bounds, 17, a);
 }
 
 static Status show_what_if(Visit *v, Answer *a, Err *err)
@@ -229,7 +230,7 @@ static Status show_what_if(Visit *v, Answer *a, Err *err)
     const Look *look = v->view.look;
     json_t *answer;
     TRY(on_demand_what_if(look->on_demand, &look->run, v->request->body, v->request->n, &answer, err));
-    return answer_json(answer, 17, a, err);
+    return answer_json(answer, 17, a);
 }
 
 static Status show_against(Visit *v, Answer *a, Err *err)
@@ -237,7 +238,7 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     Watch *w = v->server->watch;
     const long number = v->request->path.number;
     View other;
-    json_t *both = NULL;
+    json_t *both;
     if (number >= (long)watch_n(w))
         return fail(err, STATUS_MISSING, "there is no run %ld", number);
     TRY(watch_take(w, (size_t)number, PAGE_S, &other, err));
@@ -245,7 +246,8 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
     const Status status = answer_against(look, name, &both, err);
     watch_give(&other);
-    return status == STATUS_OK ? answer_json(both, 6, a, err) : status;
+    TRY(status);
+    return answer_json(both, 6, a);
 }
 
 /* -- all runs ------------------------------------------------------------------------------------------------------ */
@@ -253,6 +255,7 @@ static Status show_against(Visit *v, Answer *a, Err *err)
 /* Every run, unreadable ones with the reason. */
 static Status show_runs(Visit *v, Answer *a, Err *err)
 {
+    (void)err;
     Watch *w = v->server->watch;
     json_t *list = json_array();
     watch_find(w);
@@ -263,10 +266,10 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
             view.why = why;
         json_t *one = answer_status(&view, watch_name(w, i));
         watch_give(&view);
-        json_object_set_new(one, "at", json_integer((json_int_t)i));
-        list = json_append(list, one);
+        json_put(one, "at=%ld", i);
+        json_array_append_new(list, one);
     }
-    return answer_json(list, 6, a, err);
+    return answer_json(list, 6, a);
 }
 
 /* That whose last session began last. */

@@ -111,21 +111,20 @@ static void put_list(FILE *f, const char *key, size_t n, const double values[])
 }
 
 /* One value behind its separator. */
-static int put_value(FILE *f, const char *before, json_t *value)
+static void put_value(FILE *f, const char *before, json_t *value)
 {
     fputs(before, f);
-    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+    json_dumpf(value, f, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
     json_decref(value);
-    return failed;
 }
 
-static int put_object(FILE *f, const Run *run, size_t i)
+static void put_object(FILE *f, const Run *run, size_t i)
 {
     const Evaluation *e = &run->table.row[i];
     const Schema *s = &run->schema;
     fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\"", i == 0 ? "\n" : ",\n", e->id,
             e->generation, kind_word(e->kind), outcome_word(e->outcome));
-    const int failed = put_value(f, ",\"reason\":", json_words(e->reason));
+    put_value(f, ",\"reason\":", json_words(e->reason));
     fputs(",\"x\":", f);
     print_list(f, s->n_var, e->x);
     put_list(f, ",\"f\":", s->n_obj, e->f);
@@ -142,7 +141,6 @@ static int put_object(FILE *f, const Run *run, size_t i)
         print_list(f, s->n_extra, e->extra);
     }
     fputc('}', f);
-    return failed;
 }
 
 /* -- many ---------------------------------------------------------------------------------------------------------- */
@@ -153,38 +151,36 @@ typedef struct {
     const size_t *rows;
 } Many;
 
-static int put_some(FILE *f, const Many *m, size_t first, size_t end)
+static void put_some(FILE *f, const Many *m, size_t first, size_t end)
 {
-    int failed = 0;
     for (size_t i = first; i < end; i++) {
         const size_t row = m->rows ? m->rows[i] : i;
         if (!m->parts)
-            failed |= put_object(f, m->run, row);
+            put_object(f, m->run, row);
         for (const Part *p = m->parts; p && *p; p++)
             put_cells(f, m->run, row, *p);
         if (m->parts)
             fputc('\n', f);
     }
-    return failed;
-}
-
-static int put_block(char **text, size_t *length, const Many *m, size_t first, size_t end)
-{
-    FILE *f = text_open(text, length);
-    const int failed = !f || put_some(f, m, first, end);
-    return (f && text_close(f)) || failed;
 }
 
 /* Numbers become text in blocks, by all threads. */
 static Status put_all(FILE *f, const Many *m, size_t n, Err *err)
 {
     enum { BLOCK = 2048 };
-    int failed = n <= BLOCK && put_some(f, m, 0, n);
-#pragma omp parallel for ordered schedule(static, 1) if (n > BLOCK)
-    for (size_t first = 0; first < (n > BLOCK ? n : 0); first += BLOCK) {
-        char *text = NULL;
-        size_t length = 0;
-        const int fault = put_block(&text, &length, m, first, first + BLOCK < n ? first + BLOCK : n);
+    int failed = 0;
+    if (n <= BLOCK) {
+        put_some(f, m, 0, n);
+        return STATUS_OK;
+    }
+#pragma omp parallel for ordered schedule(static, 1)
+    for (size_t first = 0; first < n; first += BLOCK) {
+        char *text;
+        size_t length;
+        FILE *block = text_open(&text, &length);
+        if (block)
+            put_some(block, m, first, first + BLOCK < n ? first + BLOCK : n);
+        const int fault = !block || text_close(block);
 #pragma omp ordered
         {
             failed |= fault;
@@ -252,36 +248,32 @@ static json_t *json_columns(const Schema *schema)
     json_t *list = json_array();
     for (size_t c = 0; c < schema->n_var + schema->n_obj + schema->n_extra; c++) {
         const int is_objective = c >= schema->n_var && c < schema->n_var + schema->n_obj;
-        json_array_append_new(list, json_pack("{s:o, s:s, s:s*}", "name", json_words(schema->column[c].name), "role",
-                                              c < schema->n_var ? "variable"
-                                              : is_objective    ? "objective"
-                                                                : "measure",
-                                              "sense",
-                                              !is_objective                   ? NULL
-                                              : schema->column[c].sense > 0.0 ? "min"
-                                                                              : "max"));
+        json_array_append_new(list, json_of("name=%s role=%s sense=%s", schema->column[c].name,
+                                            c < schema->n_var ? "variable"
+                                            : is_objective    ? "objective"
+                                                              : "measure",
+                                            !is_objective                   ? NULL
+                                            : schema->column[c].sense > 0.0 ? "min"
+                                                                            : "max"));
     }
     return list;
 }
 
 static json_t *json_generation(const RunGeneration *g)
 {
-    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
-                     (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front", (json_int_t)g->front,
-                     "surrogate_error", json_number(g->surrogate_error), "hypervolume", json_number(g->hypervolume));
+    return json_of("number=%ld simulated=%ld failed=%ld front=%ld surrogate_error=%g hypervolume=%g", g->number,
+                   g->simulated, g->failed, g->front, g->surrogate_error, g->hypervolume);
 }
 
 Status export_json(FILE *f, const Run *run, Err *err)
 {
-    int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
-    failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
+    put_value(f, "{\"settings\":", json_settings(run->settings));
+    put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
-    failed |= put_all(f, &(Many){run, NULL, NULL}, run->table.n, err) != STATUS_OK;
+    TRY(put_all(f, &(Many){run, NULL, NULL}, run->table.n, err));
     fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
-        failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
+        put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
     fputs("]}\n", f);
-    if (ferror(f))
-        return fail(err, STATUS_IO, "standard output: cannot be written");
-    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+    return ferror(f) ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
 }

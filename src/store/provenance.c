@@ -10,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sundials/sundials_version.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/hash.h"
@@ -18,6 +17,7 @@
 #include "scene/building.h"
 #include "sim/fast/fast.h"
 #include "settings/options.h"
+#include "store/folder.h"
 
 #ifndef IMTET_VERSION
 #define IMTET_VERSION "unknown"
@@ -53,22 +53,21 @@ static json_t *libraries(void)
     SUNDIALSGetVersion(sundials, (int)sizeof sundials);
     nlopt_version(&major, &minor, &fix);
     snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s}", "sqlite", sqlite3_libversion(), "sundials", sundials, "nlopt",
-                     nlopt, "openblas", openblas_get_config(), "jansson", jansson_version_str(), "random123",
-                     "as packaged by the system");
+    return json_of("sqlite=%s sundials=%s nlopt=%s openblas=%s jansson=%s random123=%s", sqlite3_libversion(), sundials,
+                   nlopt, openblas_get_config(), jansson_version_str(), "as packaged by the system");
 }
 
 json_t *program_description(void)
 {
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o*}", "program", "imtet", "version", IMTET_VERSION, "revision",
-                     IMTET_REVISION, "compiler", COMPILER, "flags", IMTET_CFLAGS, "libraries", libraries());
+    return json_of("program=%s version=%s revision=%s compiler=%s flags=%s libraries=%p", "imtet", IMTET_VERSION,
+                   IMTET_REVISION, COMPILER, IMTET_CFLAGS, libraries());
 }
 
 void program_identity(size_t n, char text[])
 {
     json_t *all = program_description();
     char *words = json_dumps(all, JSON_COMPACT);
-    const uint64_t hash = words ? hash_fnv1a(words, strlen(words), HASH_SEED) : 0;
+    const uint64_t hash = hash_fnv1a(words, strlen(words), HASH_SEED);
     const char *bytes_of = strcmp(fast_kernel_name(), "base") == 0 ? "base" : "avx2"; /* with AVX-512 the same bytes */
     snprintf(text, n, "%s (%s, %s, build %016" PRIx64 ")", IMTET_VERSION, IMTET_REVISION, bytes_of, hash);
     free(words);
@@ -89,15 +88,12 @@ static void system_name(char name[128])
 
 static json_t *machine(int threads)
 {
-    char host[256] = "unknown", system[128], started[32];
-    struct tm parts;
-    const time_t now = time(NULL);
+    char host[256] = "unknown", system[128], started[24];
     gethostname(host, sizeof host - 1);
     system_name(system);
-    gmtime_r(&now, &parts);
-    strftime(started, sizeof started, "%FT%TZ", &parts);
-    return json_pack("{s:s, s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(),
-                     "blas", linalg_kernel_name(), "threads", threads, "started", started);
+    utc_now(started);
+    return json_of("host=%s system=%s kernel=%s blas=%s threads=%d started=%s", host, system, fast_kernel_name(),
+                   linalg_kernel_name(), threads, started);
 }
 
 uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash)
@@ -150,20 +146,18 @@ static char *hex(uint64_t hash, char text[24])
 static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
 {
     char record[24], records[24], matrices[24];
-    return json_pack("{s:o, s:s, s:o, s:o, s:s, s:o, s:s, s:I, s:f, s:o, s:i, s:s}", "record",
-                     json_words(w->record.record), "record_format", w->motion.format, "record_channel",
-                     json_words(w->motion.channel), "record_processed", json_words(w->motion.processed), "record_fnv1a",
-                     hex(hashes->record, record), "records", json_words(w->record.records), "records_fnv1a",
-                     hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
-                     "building", json_words(w->options.building.model), "floors", scene_n_floors(w->scene),
-                     "matrices_fnv1a", hex(hashes->matrices, matrices));
+    return json_of("record=%s record_format=%s record_channel=%s record_processed=%s record_fnv1a=%s records=%s "
+                   "records_fnv1a=%s samples=%ld step_s=%g building=%s floors=%d matrices_fnv1a=%s",
+                   w->record.record, w->motion.format, w->motion.channel, w->motion.processed,
+                   hex(hashes->record, record), w->record.records, hex(hashes->records, records), w->motion.n,
+                   w->motion.dt_s, w->options.building.model, scene_n_floors(w->scene),
+                   hex(hashes->matrices, matrices));
 }
 
 static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
 {
     return t ? inputs_of_tower(tower_record(t, 0), hashes)
-             : json_pack("{s:o}", "command",
-                         json_words(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in"));
+             : json_of("command=%s", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
 }
 
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)
@@ -171,11 +165,9 @@ Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Er
     Inputs hashes;
     *out = NULL;
     TRY(provenance_inputs(&hashes, adapter, err));
-    json_t *all = program_description();
-    if (json_object_set_new(all, "seed", json_integer(s->search.seed)) == 0 &&
-        json_object_set_new(all, "machine", machine(adapter_threads(adapter))) == 0 &&
-        json_object_set_new(all, "inputs", inputs(s, adapter_tower(adapter), &hashes)) == 0)
-        *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    json_t *all = json_put(program_description(), "seed=%ld machine=%p inputs=%p", s->search.seed,
+                           machine(adapter_threads(adapter)), inputs(s, adapter_tower(adapter), &hashes));
+    *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(all);
-    return *out ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the provenance");
+    return STATUS_OK;
 }

@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/hypervolume.h"
+#include "base/json.h"
 #include "settings/settings.h"
 #include "store/export.h"
 #include "store/folder.h"
@@ -539,17 +540,15 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
 
 Status store_event(RunStore *store, json_t *event, Err *err)
 {
-    char time[24], *line = NULL;
+    char time[24], *line;
     utc_now(time);
-    json_object_set_new(event, "time", json_string(time));
-    char *words = json_dumps(event, JSON_SORT_KEYS);
-    if (!words || asprintf(&line, "%s\n", words) < 0)
-        line = NULL;
-    free(words);
+    char *words = json_dumps(json_put(event, "time=%s", time), JSON_SORT_KEYS);
     json_decref(event);
-    const Status status = !store->is_ready ? STATUS_OK
-                          : line           ? folder_append(&store->folder, "log.jsonl", line, err)
-                                           : fail(err, STATUS_NO_MEMORY, "log.jsonl: no memory for a line");
+    const int n = asprintf(&line, "%s\n", words);
+    free(words);
+    if (n < 0)
+        return fail(err, STATUS_NO_MEMORY, "log.jsonl: no memory for a line");
+    const Status status = store->is_ready ? folder_append(&store->folder, "log.jsonl", line, err) : STATUS_OK;
     free(line);
     return status;
 }

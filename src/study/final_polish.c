@@ -50,10 +50,7 @@ static Status store_refined(RunStore *store, const FinalPolish *p, const Refined
 /* A design that cannot be polished, one that fails with more replicates say, is logged and left out. */
 static Status leave_out(RunStore *store, const FinalPolish *p, size_t row, size_t n_tried, const Err *why, Err *err)
 {
-    TRY(store_event(
-        store,
-        json_pack("{s:s, s:I, s:o}", "event", "not polished", "row", (json_int_t)row + 1, "why", json_words(why->text)),
-        err));
+    TRY(store_event(store, json_of("event=%s row=%ld why=%s", "not polished", row + 1, why->text), err));
     return store_polished(store, NULL, n_tried, p->n_simulated, NULL, err);
 }
 

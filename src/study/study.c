@@ -529,7 +529,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what is returned */
         store_flush(study.store, &ignored);
-        store_event(study.store, json_pack("{s:s, s:o}", "event", "fails", "why", json_words(err->text)), &ignored);
+        store_event(study.store, json_of("event=%s why=%s", "fails", err->text), &ignored);
     }
     store_free(study.store);
     adapter_close(study.adapter);

@@ -12,33 +12,30 @@ Status study_log_start(RunStore *store, int threads, const SearchOptions *used, 
     snprintf(program, sizeof program, "imtet %s (%s)", program_version(), program_revision());
     TRY(store_session(store, program, threads, n, err));
     return store_event(store,
-                       json_pack("{s:s, s:s, s:i, s:I, s:I}", "event", n ? "resumes" : "starts", "program", program,
-                                 "threads", threads, "simulated", (json_int_t)n, "max_evals",
-                                 (json_int_t)used->max_evals),
+                       json_of("event=%s program=%s threads=%d simulated=%ld max_evals=%ld", n ? "resumes" : "starts",
+                               program, threads, n, used->max_evals),
                        err);
 }
 
 Status study_log_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
     const double hypervolume = store_hypervolume(store);
-    return store_event(store,
-                       json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event",
-                                 "generation", "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n,
-                                 "repeats", (json_int_t)v->n_replicates, "failed", (json_int_t)v->n_failed, "front",
-                                 (json_int_t)v->n_front, "outputs_left_out", (json_int_t)v->n_left_out,
-                                 "surrogate_error", json_number(v->surrogate_error), "hypervolume",
-                                 json_number(hypervolume), "hypervolume_error",
-                                 json_number(hypervolume_error(hypervolume)), "seconds", seconds, "search_s",
-                                 v->seconds, "waited_s", v->waited_s, "surrogate_s", v->surrogate_s),
-                       err);
+    return store_event(
+        store,
+        json_of(
+            "event=%s number=%ld simulated=%ld repeats=%ld failed=%ld front=%ld outputs_left_out=%ld "
+            "surrogate_error=%g hypervolume=%g hypervolume_error=%g seconds=%g search_s=%g waited_s=%g surrogate_s=%g",
+            "generation", v->generation_now, v->n, v->n_replicates, v->n_failed, v->n_front, v->n_left_out,
+            v->surrogate_error, hypervolume, hypervolume_error(hypervolume), seconds, v->seconds, v->waited_s,
+            v->surrogate_s),
+        err);
 }
 
 Status study_log_end(RunStore *store, const StudySummary *sum, int is_final, Err *err)
 {
     return store_event(store,
-                       json_pack("{s:s, s:s, s:b, s:I, s:I, s:f}", "event", "stops", "why",
-                                 stop_reason_words(sum->stopped), "final", is_final, "simulated",
-                                 (json_int_t)sum->n_simulated, "failed", (json_int_t)sum->n_failed, "seconds",
-                                 sum->seconds),
+                       json_of("event=%s why=%s final=%c simulated=%ld failed=%ld seconds=%g", "stops",
+                               stop_reason_words(sum->stopped), is_final, sum->n_simulated, sum->n_failed,
+                               sum->seconds),
                        err);
 }
