@@ -47,6 +47,12 @@ Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...)
     return code;
 }
 
+Status fail_memory(Err *err, size_t n, const char *what)
+{
+    return n == 1 ? fail(err, STATUS_NO_MEMORY, "no memory for %s", what)
+                  : fail(err, STATUS_NO_MEMORY, "no memory for %zu %s", n, what);
+}
+
 Status status_of_errno(int why, Status otherwise)
 {
     return why == ENOMEM ? STATUS_NO_MEMORY : otherwise;

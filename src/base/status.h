@@ -7,6 +7,8 @@
 #ifndef IMTET_BASE_STATUS_H
 #define IMTET_BASE_STATUS_H
 
+#include <stddef.h>
+
 /*    name           exit  words                                                  (exit codes as in sysexits.h) */
 #define STATUS_LIST(X)                                                                                                 \
     X(OK, 0, "ok")                                                                                                     \
@@ -50,6 +52,9 @@ __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const c
 /* The same with a sub-code. */
 __attribute__((format(printf, 4, 5))) Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...);
 
+/* "no memory for N WHAT", or of one "no memory for WHAT". */
+Status fail_memory(Err *err, size_t n, const char *what);
+
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */
 Status status_of_errno(int why, Status otherwise);
 
@@ -68,6 +73,17 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
         Status try_status_ = (expr);                                                                                   \
         if (try_status_ != STATUS_OK)                                                                                  \
             return try_status_;                                                                                        \
+    } while (0)
+
+#define N_OF(array) (sizeof(array) / sizeof *(array)) /* elements */
+
+/* Zeroed memory for n of what the pointer points to; where it is refused the function returns, as by TRY. what: of the
+ * many, "designs", or with n = 1 of one, "a run". For users of stdlib.h. */
+#define TRY_ROOM(pointer, n, what, err)                                                                                \
+    do {                                                                                                               \
+        (pointer) = calloc((size_t)(n), sizeof *(pointer));                                                            \
+        if (!(pointer))                                                                                                \
+            return fail_memory(err, (size_t)(n), what);                                                                \
     } while (0)
 
 #endif

@@ -3,8 +3,6 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/linalg.h"
 #include "cmd/designs.h"
@@ -140,10 +138,8 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         args->help = args->help || asks_for_help(argv[i]);
     if (args->help)
         return STATUS_OK;
-    args->given = calloc((size_t)argc + 1, sizeof *args->given);
-    args->operands = calloc((size_t)argc + 1, sizeof *args->operands);
-    if (!args->given || !args->operands)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %d options", argc);
+    TRY_ROOM(args->given, argc + 1, "options", err);
+    TRY_ROOM(args->operands, argc + 1, "options", err);
     for (int i = 0; i < argc; i++)
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));

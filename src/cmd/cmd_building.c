@@ -236,9 +236,8 @@ static Status show(const Args *args, const Model *m, Err *err)
 
 static Status run(const Args *args, Err *err)
 {
-    Model *m = calloc(1, sizeof *m);
-    if (!m)
-        return fail(err, STATUS_NO_MEMORY, "building: out of memory");
+    Model *m;
+    TRY_ROOM(m, 1, "a building", err);
     Status status = open_model(args, m, err);
     if (status == STATUS_OK)
         status = show(args, m, err);

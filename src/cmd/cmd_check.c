@@ -384,10 +384,10 @@ static void list_ladder(json_t *ladder)
 static void climb(Check *c, const CheckedScene *p)
 {
     Err e = {0};
-    Ladder *ladder = malloc(sizeof *ladder);
+    Ladder *ladder = calloc(1, sizeof *ladder);
     const double period = 2 * M_PI / p->building.omega[0];
     const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), ladder, &e)
-                                 : fail(&e, STATUS_NO_MEMORY, "no memory for a ladder");
+                                 : fail_memory(&e, 1, "a ladder");
     if (note(c, status, "--ladder", &e))
         json_put(c->out, "ladder=%p", ladder_json(ladder));
     free(ladder);

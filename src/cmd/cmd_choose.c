@@ -259,8 +259,9 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
 {
     if (run->n_front == 0)
         return run_why_empty(run, err);
-    Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->table.n, 1)};
-    const Status status = c.allowed ? choose(args, &c, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
+    Choice c = {.run = run, .box = run_box(run)};
+    TRY_ROOM(c.allowed, run->table.n, "designs", err);
+    const Status status = choose(args, &c, err);
     free(c.allowed);
     return status;
 }

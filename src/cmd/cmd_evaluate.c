@@ -1,4 +1,3 @@
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -365,7 +364,7 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     if (!pga)
         return STATUS_OK;
     if (strchr(pga, ':')) {
-        for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
+        for (size_t i = 0; i < N_OF(OTHERS); i++)
             if (args_gives(args, OTHERS[i]))
                 return fail(err, STATUS_USAGE, "--pga %.60s scales every record; %s does not go with it", pga,
                             OTHERS[i]);

@@ -109,7 +109,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     for (size_t j = 0; j < schema->n_var; j++)
         json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
     put_objectives(row, schema, "", end->f);
-    for (size_t i = 0; i < sizeof more / sizeof more[0]; i++)
+    for (size_t i = 0; i < N_OF(more); i++)
         if (isfinite(more[i].values[0]))
             put_objectives(row, schema, more[i].end, more[i].values);
     return figures_csv(table, path, err);

@@ -36,7 +36,7 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
         r->path[r->n] = r->own[r->n];
         r->n++;
     }
-    for (size_t i = 0; !is_given && n == 1 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
+    for (size_t i = 0; !is_given && n == 1 && i < N_OF(BUILT_IN); i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
             r->path[r->n++] = BUILT_IN[i];
     return STATUS_OK;

@@ -14,7 +14,6 @@
 #include "analysis/horizon.h"
 #include "analysis/sensitivity.h"
 #include "evaluate/tower.h"
-#include "store/output.h"
 #include "motion/motion_scale.h"
 #include "settings/options.h"
 
@@ -61,11 +60,9 @@ static Status lay_out_job(const Args *args, Job *job, const DesignSpace *space, 
         warn_of_designs(&job->designs, path, warn_on_stderr, NULL);
         job->n = job->designs.n;
     }
-    job->tasks = calloc(job->n, sizeof *job->tasks);
-    job->results = calloc(job->n, sizeof *job->results);
-    job->summary = calloc(job->n, sizeof *job->summary);
-    if (!job->tasks || !job->results || !job->summary)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
+    TRY_ROOM(job->tasks, job->n, "simulations", err);
+    TRY_ROOM(job->results, job->n, "simulations", err);
+    TRY_ROOM(job->summary, job->n, "simulations", err);
     for (size_t i = 0; i < job->n; i++)
         job->tasks[i] =
             (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * (size_t)space->n_var] : NULL};
@@ -93,9 +90,7 @@ static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
     if (s->sim.engine != ENGINE_FAST || job->kind == SCENE_RIGID)
         return STATUS_OK;
     const size_t n = job->n * N_MEASURES;
-    job->error = calloc(2 * n, sizeof *job->error);
-    if (!job->error)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
+    TRY_ROOM(job->error, 2 * n, "estimated errors", err);
     job->sd = job->error + n;
     TRY(estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err));
     known_raise(job->known, job->results, job->sd);
@@ -314,7 +309,7 @@ static void print_slopes(size_t n, const Sensitivity list[])
         const Sensitivity *s = &list[i];
         json_t *row = figures_row(table);
         json_put(row, "parameter=%s value=%g step=%g", s->name, s->value, s->step);
-        for (size_t k = 0; k < sizeof SHOWN / sizeof SHOWN[0]; k++)
+        for (size_t k = 0; k < N_OF(SHOWN); k++)
             figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step, NAN);
     }
     puts("change for one step, with the error of the replicates and of halving the step");

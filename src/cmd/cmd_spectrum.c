@@ -68,9 +68,7 @@ static Status compute(Spectrum *s, Err *err)
     s->is_processed = motion_is_corrected(&s->options) || s->options.lowpass_hz > 0;
     if (s->is_processed) /* before there are histories: a record being read takes as much memory again */
         TRY(compare_recorded(s, err));
-    s->velocity = malloc(3 * m->n * sizeof *s->velocity);
-    if (!s->velocity)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the histories of %zu samples", m->n);
+    TRY_ROOM(s->velocity, 3 * m->n, "samples", err);
     s->displacement = s->velocity + m->n;
     s->husid = s->displacement + m->n;
     motion_histories(m, s->velocity, s->displacement, s->husid);

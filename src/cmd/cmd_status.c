@@ -43,7 +43,7 @@ static void print_generations(const Run *run, double expected)
         const double hypervolume = run->generation[g].hypervolume;
         json_t *row = json_array_get(all, g);
         figures_put(row, "hypervolume", hypervolume, hypervolume_error(hypervolume), NAN);
-        for (size_t i = 0; i < sizeof UNSHOWN / sizeof UNSHOWN[0]; i++)
+        for (size_t i = 0; i < N_OF(UNSHOWN); i++)
             json_object_del(row, UNSHOWN[i]);
         json_array_append(table, row);
     }

@@ -68,9 +68,7 @@ static Status take_ids(const Table *t, long **ids, Err *err)
     *ids = NULL;
     if (column < 0)
         return STATUS_OK;
-    *ids = calloc(t->n_rows + 1, sizeof **ids);
-    if (!*ids)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", t->n_rows);
+    TRY_ROOM(*ids, t->n_rows + 1, "designs", err);
     for (size_t i = 0; i < t->n_rows; i++)
         (*ids)[i] = (long)t->values[i * t->n_cols + (size_t)column];
     return STATUS_OK;
@@ -103,13 +101,10 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
 static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
 {
     const size_t n_var = run->schema.n_var;
-    *d = (Designs){.n = 1,
-                   .space = run->schema.design,
-                   .x = malloc(n_var * sizeof *d->x),
-                   .line = malloc(sizeof *d->line),
-                   .id = malloc(sizeof *d->id)};
-    if (!d->x || !d->line || !d->id)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    *d = (Designs){.n = 1, .space = run->schema.design};
+    TRY_ROOM(d->x, n_var, "variables", err);
+    TRY_ROOM(d->line, 1, "a design", err);
+    TRY_ROOM(d->id, 1, "a design", err);
     memcpy(d->x, run_x(run, row), n_var * sizeof *d->x);
     d->id[0] = run->table.row[row].id;
     d->line[0] = (int)d->id[0];

@@ -1,7 +1,6 @@
 #include "cmd/full_model.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,7 +11,6 @@
 #include "cmd/show.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
-#include "store/run_read.h"
 
 static const char *const WORDS[MODELS] = {"reduced", "full"};
 

@@ -12,7 +12,7 @@ static const Command *const COMMANDS[] = {COMMAND_LIST(X)};
 #undef X
 static const char *const GROUPS[N_GROUPS] = {
     [GROUP_PREPARE] = "prepare", [GROUP_STUDY] = "study", [GROUP_DECIDE] = "decide"};
-enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0], FIRST_EXAMPLES = 4 };
+enum { N_COMMANDS = N_OF(COMMANDS), FIRST_EXAMPLES = 4 };
 
 const Command *command_at(int i)
 {
@@ -48,7 +48,7 @@ Status command_find(const char *word, const Command **found, const char **option
     *option = NULL;
     if ((*found = command_of(word)))
         return STATUS_OK;
-    for (size_t i = 0; i < sizeof OLD_NAMES / sizeof OLD_NAMES[0]; i++)
+    for (size_t i = 0; i < N_OF(OLD_NAMES); i++)
         if (strcmp(word, OLD_NAMES[i].old) == 0) {
             *option = OLD_NAMES[i].option;
             fprintf(stderr, "note: imtet %s is now: imtet %s%s%s\n", word, OLD_NAMES[i].now, *option ? " " : "",

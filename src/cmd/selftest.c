@@ -106,7 +106,7 @@ static const TowerCase TOWER[] = {
      1e-5,
      {0.8246970473, 0.08326183464, 13.83492727, 26.62471704, 7.281239473, 32.61952035, 572175.9245}},
 };
-enum { N_TOWER = sizeof TOWER / sizeof TOWER[0] };
+enum { N_TOWER = N_OF(TOWER) };
 
 static Status set_all(Settings *s, const char *const assignments[], size_t n_max, Err *err)
 {
@@ -122,8 +122,8 @@ static Status answer_of(const TowerCase *c, double answer[PAPER_OBJECTIVES], Err
     SimResult r;
     double x[FLOORS_MAX + 2];
     settings_defaults(&s);
-    TRY(set_all(&s, COMMON, sizeof COMMON / sizeof COMMON[0], err));
-    TRY(set_all(&s, c->settings, sizeof c->settings / sizeof c->settings[0], err));
+    TRY(set_all(&s, COMMON, N_OF(COMMON), err));
+    TRY(set_all(&s, c->settings, N_OF(c->settings), err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
     const int n = tower_n_floors(tower_of(&p));
     for (int j = 0; j < n + 2; j++)
@@ -200,7 +200,7 @@ static Status check_search(Selftest *t, Err *err)
     Settings s;
     double igd = NAN;
     settings_defaults(&s);
-    TRY(set_all(&s, SETTINGS, sizeof SETTINGS / sizeof SETTINGS[0], err));
+    TRY(set_all(&s, SETTINGS, N_OF(SETTINGS), err));
     TRY(search(&s, &igd, err));
     compare(t, "search", "igd_plus", igd, 0.0315, 0.3);
     return STATUS_OK;

@@ -8,7 +8,6 @@
 #include "analysis/estimate.h"
 #include "base/visible.h"
 #include "base/figure.h"
-#include "base/units.h"
 #include "base/hypervolume.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
@@ -360,7 +359,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers((size_t)r->n_floors, r->peak_filtered_g) : json_null());
-    for (size_t i = 0; i < sizeof FIELDS / sizeof FIELDS[0]; i++)
+    for (size_t i = 0; i < N_OF(FIELDS); i++)
         if (!(FIELDS[i].needs & ~has))
             json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
     return o;

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/units.h"
 #include "report/history.h"
@@ -95,7 +94,7 @@ static void write_history_header(FILE *out, int n_floors)
     static const char *const OF_FLOOR[] = {"floor_%02d_m", "floor_%02d_m_s", "drift_%02d_m",  "accel_%02d_g",
                                            "core_%02d_m",  "core_%02d_m_s",  "contact_%02d_n"};
     fputs("design,t_s,ground_g", out);
-    for (size_t k = 0; k < sizeof OF_FLOOR / sizeof OF_FLOOR[0]; k++)
+    for (size_t k = 0; k < N_OF(OF_FLOOR); k++)
         for (int j = 1; j <= n_floors; j++) {
             char name[32];
             snprintf(name, sizeof name, OF_FLOOR[k], j);
@@ -123,7 +122,7 @@ static void write_history_row(const SimSample *s, void *user)
     fprintf(rows->out, "%ld", rows->design);
     print_cells(rows->out, 2, (const double[]){s->t, s->ground / GRAVITY});
     const double *const parts[] = {f.u, f.u_dot, drift, f.u_ddot, f.core, f.core_dot, s->force ? s->force : unknown};
-    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++)
+    for (size_t k = 0; k < N_OF(parts); k++)
         print_cells(rows->out, n, parts[k]);
     print_cells(rows->out, N_ENERGIES, energy);
     fputc('\n', rows->out);

@@ -40,9 +40,7 @@ static Status simulate_records(const Problem *p, const double x[], Detail *d, Er
         return STATUS_OK;
     for (size_t i = 0; i < d->n_records; i++)
         tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = x, .scene = i};
-    d->by_record = calloc(d->n_records, sizeof *d->by_record);
-    if (!d->by_record)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu results", d->n_records);
+    TRY_ROOM(d->by_record, d->n_records, "results", err);
     return tower_simulate(p, d->n_records, tasks, d->by_record, err);
 }
 
@@ -133,9 +131,7 @@ static void cut_quiet_end(Detail *d)
 static Status take_histories(const Scenario *w, const double x[], Detail *d, Err *err)
 {
     static const SceneKind SCENES[2] = {SCENE_IMPACT, SCENE_NO_CORE};
-    d->spectrum = calloc(2, sizeof *d->spectrum);
-    if (!d->spectrum)
-        return fail(err, STATUS_NO_MEMORY, "no memory for two spectra");
+    TRY_ROOM(d->spectrum, 2, "spectra", err);
     for (int i = 0; i < 2; i++)
         TRY(history_run(w, SCENES[i], x, d->floor, &d->history[i], err));
     cut_quiet_end(d);

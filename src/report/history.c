@@ -13,9 +13,8 @@ typedef struct {
 
 static Status make_room(History *h, size_t room, Err *err)
 {
-    double *store = calloc(room * (2 + N_ENERGIES), sizeof *store);
-    if (!store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a history of %zu samples", room);
+    double *store;
+    TRY_ROOM(store, room * (2 + N_ENERGIES), "samples", err);
     h->t = store;
     h->u = store + room;
     for (size_t k = 0; k < N_ENERGIES; k++)

@@ -106,9 +106,7 @@ static Status write_whole(const Report *r, const char *path, Err *err)
 Status report_page(const Report *r, const char *path, Err *err)
 {
     Report whole = *r;
-    whole.shown = calloc(r->run->n_front, sizeof *whole.shown);
-    if (!whole.shown)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", r->run->n_front);
+    TRY_ROOM(whole.shown, r->run->n_front, "designs", err);
     whole.n_shown = thin_front(r->run, REPORT_DESIGNS_MAX, 2, (size_t[]){r->knee, r->chosen}, whole.shown);
     Status status = importance_of(r->run, &whole.importance, err);
     if (status == STATUS_OK)

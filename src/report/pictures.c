@@ -268,7 +268,7 @@ static void write_history(FILE *out, int block, const History *h)
     for (size_t i = 0; i < h->n; i += h->n / HISTORY_POINTS + 1) {
         double sum = 0;
         fprintf(out, "%.6g %.5g %.5g", h->t[i], h->u[i], h->energy[ENERGY_INPUT][i] / 1e6);
-        for (size_t k = 0; k < sizeof ORDER / sizeof ORDER[0]; k++)
+        for (size_t k = 0; k < N_OF(ORDER); k++)
             fprintf(out, " %.5g", sum += h->energy[ORDER[k]][i] / 1e6);
         fputc('\n', out);
     }
@@ -446,7 +446,7 @@ Status report_pictures(const Report *r, const char *folder, Err *err)
 {
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: cannot be made a folder: %s", folder, strerror(errno));
-    for (size_t i = 0; i < sizeof PICTURES / sizeof PICTURES[0]; i++)
+    for (size_t i = 0; i < N_OF(PICTURES); i++)
         for (int is_png = 0; is_png < 2 && is_there(r, PICTURES[i].wants); is_png++) {
             const Drawing drawing = {r, &PICTURES[i], is_png};
             char path[PATH_MAX];

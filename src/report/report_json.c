@@ -90,7 +90,7 @@ static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const Mea
 /* What a building and a core have to bear. */
 static const MeasureId LOADS[] = {MEASURE_DRIFT_RATIO, MEASURE_J3_FILTERED,   MEASURE_CONTACT_FORCE,
                                   MEASURE_CORE_STRESS, MEASURE_CORE_BUCKLING, MEASURE_BASE_SHEAR};
-enum { N_LOADS = sizeof LOADS / sizeof LOADS[0] };
+enum { N_LOADS = N_OF(LOADS) };
 
 /* Under the first record, for the chosen design and its baselines. */
 static json_t *json_of_loads(const Detail *d)

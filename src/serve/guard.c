@@ -19,7 +19,7 @@ Status guard_token(char token[TOKEN_TEXT], Err *err)
 int guard_host(const char *host)
 {
     static const char *const NAMES[] = {"127.0.0.1", "localhost"};
-    for (size_t i = 0; host && i < sizeof NAMES / sizeof NAMES[0]; i++) {
+    for (size_t i = 0; host && i < N_OF(NAMES); i++) {
         const size_t n = strlen(NAMES[i]);
         const char *port = host + n + 1;
         if (strncmp(host, NAMES[i], n) == 0 &&

@@ -54,20 +54,19 @@ typedef struct {
 
 Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, Err *err)
 {
-    OnDemand *o = *out = calloc(1, sizeof *o);
-    char *provenance = strdup(run->provenance);
-    if (!o || !provenance) {
+    OnDemand *o = *out = NULL;
+    TRY_ROOM(o, 1, "a run", err);
+    o->provenance = strdup(run->provenance);
+    if (!o->provenance) {
         free(o);
-        free(provenance);
-        *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+        return fail_memory(err, 1, "a run");
     }
     pthread_mutex_init(&o->designs, NULL);
     pthread_mutex_init(&o->scene, NULL);
     o->n_users = 1;
     o->settings = *run->settings;
-    o->provenance = provenance;
     o->moved = moved;
+    *out = o;
     return STATUS_OK;
 }
 
@@ -293,7 +292,7 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
     *q = (Question){.turn = (long)json_integer_value(json_object_get(given, "turn"))};
     Status status = json_is_object(given) ? take_design(o, given, q->x, err)
                                           : fail(err, STATUS_BAD_DATA, "the question is no JSON object");
-    for (size_t i = 0; status == STATUS_OK && i < sizeof numbers / sizeof numbers[0]; i++)
+    for (size_t i = 0; status == STATUS_OK && i < N_OF(numbers); i++)
         status = take_number(given, numbers[i].key, numbers[i].least, numbers[i].most, numbers[i].otherwise,
                              numbers[i].value, err);
     json_decref(given);

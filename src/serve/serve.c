@@ -152,7 +152,7 @@ static enum MHD_Result send_answer(struct MHD_Connection *c, const Answer *a)
     struct MHD_Response *r = response_of(a);
     if (!r)
         return MHD_NO;
-    for (size_t i = 0; i < sizeof HEADERS / sizeof HEADERS[0]; i++)
+    for (size_t i = 0; i < N_OF(HEADERS); i++)
         if (HEADERS[i][1])
             MHD_add_response_header(r, HEADERS[i][0], HEADERS[i][1]);
     const enum MHD_Result sent = MHD_queue_response(c, a->code, r);
@@ -332,9 +332,8 @@ static ssize_t read_events(void *user, uint64_t position, char *out, size_t room
 
 static Status show_events(Visit *v, Answer *a, Err *err)
 {
-    Stream *e = calloc(1, sizeof *e);
-    if (!e)
-        return fail(err, STATUS_NO_MEMORY, "no memory for events");
+    Stream *e;
+    TRY_ROOM(e, 1, "events", err);
     *e = (Stream){.server = v->server, .run = v->run};
     *a = (Answer){.code = MHD_HTTP_OK, .type = "text/event-stream", .stream = e};
     return STATUS_OK;
@@ -361,7 +360,7 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
 
 static const Route *route_of(const ServePath *path)
 {
-    for (const Route *r = ROUTES; r < ROUTES + sizeof ROUTES / sizeof ROUTES[0]; r++)
+    for (const Route *r = ROUTES; r < ROUTES + N_OF(ROUTES); r++)
         if (strcmp(path->word, r->word) == 0 && r->has_run == (path->run >= 0) && r->has_number == (path->number >= 0))
             return r;
     return NULL;
@@ -492,10 +491,9 @@ static Status listen_on(Server *s, int port, Err *err)
 
 Status serve_open(Server **out, const ServeOptions *o, Err *err)
 {
-    Server *s = calloc(1, sizeof *s);
+    Server *s;
     *out = NULL;
-    if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a server");
+    TRY_ROOM(s, 1, "a server", err);
     s->moved = o->moved;
     memset(s->waiting, -1, sizeof s->waiting);
     pthread_mutex_init(&s->mutex, NULL);

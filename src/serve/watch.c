@@ -83,9 +83,8 @@ static double worked_s(void)
 /* before: the look before, NULL: none. What was simulated stays while no other run is made in the place of this one. */
 static Status look_at(const Watch *w, const char *folder, const Look *before, Look **out, Err *err)
 {
-    Look *look = *out = calloc(1, sizeof *look);
-    if (!look)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    Look *look = *out = NULL;
+    TRY_ROOM(look, 1, "a run", err);
     Status status = run_read(&look->run, folder, err);
     if (status == STATUS_OK) {
         look->n_users = 1;
@@ -98,7 +97,8 @@ static Status look_at(const Watch *w, const char *folder, const Look *before, Lo
     if (status != STATUS_OK) {
         run_free(&look->run);
         free(look);
-        *out = NULL;
+    } else {
+        *out = look;
     }
     return status;
 }
@@ -200,15 +200,14 @@ static Status start(Watch *w, const char *folder, Err *err)
 
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)
 {
-    Watch *w = *out = calloc(1, sizeof *w);
-    if (!w)
-        return fail(err, STATUS_NO_MEMORY, "no memory to watch a run");
+    Watch *w = *out = NULL;
+    TRY_ROOM(w, 1, "runs that are watched", err);
     w->moved = moved;
     const Status status = start(w, folder, err);
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK)
+        *out = w;
+    else
         watch_close(w);
-        *out = NULL;
-    }
     return status;
 }
 

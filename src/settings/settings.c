@@ -2,7 +2,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -294,7 +293,7 @@ static const Option OPTIONS[] = {
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),
 };
 
-enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
+enum { N_OPTIONS = N_OF(OPTIONS) };
 
 _Static_assert(sizeof(UncertainOptions) == 6 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");

@@ -234,9 +234,9 @@ static int is_shared(const char *path)
     if (statfs(path, &about) != 0)
         return 0;
     size_t i = 0;
-    while (i < sizeof KINDS / sizeof KINDS[0] && (unsigned)about.f_type != KINDS[i])
+    while (i < N_OF(KINDS) && (unsigned)about.f_type != KINDS[i])
         i++;
-    return i < sizeof KINDS / sizeof KINDS[0];
+    return i < N_OF(KINDS);
 }
 
 /* SQLite does not follow a path that goes up beyond the root: it gets the folder's real one. Where there is none, path
@@ -413,7 +413,7 @@ void database_remove_journal(const char *path)
 {
     static const char *const ENDS[] = {"-wal", "-shm", "-journal"};
     char journal[PATH_MAX + 8];
-    for (size_t i = 0; i < sizeof ENDS / sizeof ENDS[0]; i++) {
+    for (size_t i = 0; i < N_OF(ENDS); i++) {
         snprintf(journal, sizeof journal, "%s%s", path, ENDS[i]);
         unlink(journal);
     }

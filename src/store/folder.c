@@ -47,7 +47,7 @@ int folder_keeps(const char *path)
         snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);
     char *name = strrchr(real, '/');
     *name++ = 0;
-    for (size_t k = 0; k < sizeof NAMES / sizeof NAMES[0]; k++)
+    for (size_t k = 0; k < N_OF(NAMES); k++)
         if (strcmp(name, NAMES[k]) == 0 || strncmp(name, "run.sqlite-", 11) == 0)
             return folder_is_run(real[0] ? real : "/");
     return 0;

@@ -12,7 +12,7 @@
 #define IMTET_STORE_FOLDER_H
 
 #include <limits.h>
-#include <stdio.h>
+#include <stddef.h>
 
 #include "base/status.h"
 

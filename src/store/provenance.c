@@ -4,7 +4,6 @@
 #include <cblas.h>
 #include <inttypes.h>
 #include <jansson.h>
-#include <limits.h>
 #include <nlopt.h>
 #include <sqlite3.h>
 #include <stdlib.h>

@@ -139,9 +139,7 @@ static void list_front(Run *run)
 
 Status run_settle_front(Run *run, Err *err)
 {
-    run->front = calloc(run->table.n + 1, sizeof *run->front);
-    if (!run->front)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    TRY_ROOM(run->front, run->table.n + 1, "designs", err);
     if (run->finer.n > 0 || run_has_polished(run))
         TRY(form_again(run, err));
     list_front(run);

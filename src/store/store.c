@@ -144,9 +144,7 @@ static Status read_open_rows(RunStore *store, Err *err)
     store->n_known = store->n_stored = run->n_finished;
     TRY(rows_each(store->db, ROWS_EVALUATION, s, "kind IS NULL OR kind = 'polished'", take_open_row, store, err));
     free(store->was_on_front);
-    store->was_on_front = calloc(store->n_known + 1, 1);
-    if (!store->was_on_front)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", store->n_known);
+    TRY_ROOM(store->was_on_front, store->n_known + 1, "designs", err);
     store->front = 0;
     for (size_t i = 0; i < run->n_marks; i++) {
         const RunMark *m = &run->mark[i];
@@ -171,9 +169,8 @@ static Status load_run(RunStore *store, Err *err)
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
 {
     *out = NULL;
-    RunStore *store = calloc(1, sizeof *store);
-    if (!store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    RunStore *store;
+    TRY_ROOM(store, 1, "a run", err);
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(&store->folder, "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);

@@ -94,7 +94,7 @@ typedef struct {
 
 #define TABLE(name, has_digest, fields, record)                                                                        \
     {                                                                                                                  \
-        name, has_digest, fields, sizeof fields / sizeof *fields, sizeof(record)                                       \
+        name, has_digest, fields, N_OF(fields), sizeof(record)                                                         \
     }
 
 static const TableColumns ROWS[N_ROW_TABLES] = {

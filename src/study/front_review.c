@@ -1,6 +1,5 @@
 #include "study/front_review.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,9 +61,8 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
     SimTask tasks[SIMULATED_MAX];
     *out = front_review(run);
     const size_t n = run_spread_out(run, SIMULATED_MAX, 1, rows);
-    SimResult *results = calloc(SIMULATED_MAX, sizeof *results);
-    if (!results)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %d simulations", SIMULATED_MAX);
+    SimResult *results;
+    TRY_ROOM(results, SIMULATED_MAX, "simulations", err);
     for (size_t i = 0; i < n; i++)
         tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = run_x(run, rows[i])};
     const Status status = n > 0 ? tower_simulate(tower, n, tasks, results, err) : STATUS_OK;

@@ -39,9 +39,7 @@ static Status copy_front(const Run *run, const Schema *schema, double **X, size_
     if (n_var != schema->n_var)
         return fail(err, STATUS_BAD_DATA, "search.start: %s: its designs have %zu variables, this search has %zu",
                     run->folder, n_var, schema->n_var);
-    *X = calloc(run->n_front * n_var + 1, sizeof **X);
-    if (!*X)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->n_front);
+    TRY_ROOM(*X, run->n_front * n_var + 1, "designs", err);
     for (size_t i = 0; i < run->n_front; i++)
         memcpy(*X + i * n_var, run_x(run, run->front[i]), n_var * sizeof **X);
     *n = run->n_front;

@@ -263,9 +263,7 @@ static Status know(Work *w, Err *err)
 {
     const Schema *s = &w->run.schema;
     w->answers = evaluation_table(s->n_var, s->n_obj, s->n_extra);
-    w->X = calloc(COPIES * w->n * s->n_var, sizeof *w->X);
-    if (!w->X)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", COPIES * w->n);
+    TRY_ROOM(w->X, COPIES * w->n * s->n_var, "designs", err);
     for (size_t i = 0; i < w->n; i++) {
         const Evaluation *e = &w->run.table.row[w->named[i].row];
         w->named[i].violation = e->violation;
@@ -298,9 +296,8 @@ Status named_simulate(RunStore *store, const Settings *used, int (*go_on)(void *
 {
     if (!named_are_known(used))
         return STATUS_OK;
-    Work *w = calloc(1, sizeof *w);
-    if (!w)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the designs that the study names");
+    Work *w;
+    TRY_ROOM(w, 1, "the designs that the study names", err);
     *w = (Work){.store = store, .used = used, .go_on = go_on, .user = user, .is_first = 1, .n = 1};
     w->sim[0] = used->sim;
     for (size_t level = 0; level < LEVELS; level++)

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/estimate.h"
 #include "base/clock.h"
 #include "evaluate/adapter.h"
 #include "settings/options.h"
@@ -194,9 +193,7 @@ static Status compare(Refine *r, const double start[], Err *err)
 static Status refine(Refine *r, const double start[], Err *err)
 {
     double f[OBJECTIVES_MAX];
-    r->x = calloc(r->run->schema.n_var, sizeof *r->x);
-    if (!r->x)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    TRY_ROOM(r->x, r->run->schema.n_var, "variables", err);
     memcpy(r->x, start, r->run->schema.n_var * sizeof *r->x);
     TRY(begin(r, f, err));
     TRY(improve(r, f, err));

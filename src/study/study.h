@@ -23,8 +23,6 @@
 #ifndef IMTET_STUDY_STUDY_H
 #define IMTET_STUDY_STUDY_H
 
-#include <limits.h>
-
 #include "moga/search.h"
 #include "evaluate/scenario.h"
 #include "store/store.h"
