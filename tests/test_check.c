@@ -230,9 +230,60 @@ TEST(damping_peak_and_gaps_beyond_reason_are_noticed)
     expect_warnings("motion.pga_g", "--pga 3.1");
     expect_warnings("design.gap_m", "--set design.gap_m=0.001,9");
     expect_warnings("sim.duration_s", "--set sim.duration_s=1e5");
+    write_in_place("push.csv", "time_s,floor_03_n\n0,0\n0.5,1e6\n1,0\n");
+    expect_warnings("", "--set motion.record=none --pga 0 --set motion.forces=@/push.csv --set sim.duration_s=5");
     write_in_place("wide.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                                "0.1,0.1,20,0.1,0.1,0.1,0.012,0.01\n");
     expect_warnings("--design", "--design @/wide.csv");
+}
+
+#define LIFTS "--design @/lifts.csv --set sim.duration_s=8 --set "
+
+/* No weight holds a core on a disc of 1 m; springs of their own may be anchored. */
+TEST(a_foundation_that_would_lift_is_noticed)
+{
+    write_building(1, 1, 0);
+    write_in_place("lifts.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
+                                "0.001,0.001,0.001,0.001,0.001,0.001,0.012,0.01\n");
+    expect_warnings("core.foundation", LIFTS "'core.foundation=soil=C radius=1'");
+    expect_text("more than weight can hold", LIFTS "'core.foundation=soil=C radius=1'");
+    expect_warnings("", LIFTS "'core.foundation=soil=C radius=10 weight=1e9'");
+    expect_warnings("", LIFTS "core.foundation=rotation=1e11");
+    char *table = output_of("simulate @/six.ini --set sim.forces=yes " LIFTS "'core.foundation=soil=C radius=1'");
+    assert_non_null(strstr(table, "begins to lift"));
+    free(table);
+}
+
+TEST(an_objective_or_a_limit_that_no_run_can_have_is_a_fault)
+{
+    static const struct {
+        const char *name, *wanted, *setting;
+    } cases[] = {
+        {"core_stress_pa", "the core has no section", "core.section=effective"},
+        {"core_stress_pa", "the core has no section", "core.model=@/six"},
+        {"core_buckling_ratio", "the core has no walls", "core.section=plate"},
+        {"base_rotation_rad", "the core's base does not turn", "core.foundation=translation=1e9"},
+        {"uplift_ratio", "no radius is known", "core.foundation=rotation=1e11"},
+        {"ductility", "no storey yields", "building.yield_drift=0"},
+        {"ed_hysteresis_pct", "no storey yields", "building.yield_drift=0"},
+    };
+    write_building(1, 1, 0);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        for (int limit = 0; limit < 2; limit++) {
+            Said s;
+            char wanted[160];
+            const int is_more = strncmp(cases[i].name, "ed_", 3) == 0;
+            run(&s, "check @/six.ini --set 'search.%s=%s%s' --set '%s'", limit ? "limits" : "objectives", cases[i].name,
+                !limit    ? ",j1_m"
+                : is_more ? "<=50"
+                          : "<=1",
+                cases[i].setting);
+            snprintf(wanted, sizeof wanted, "search.objectives: %s (there or in search.limits): %s", cases[i].name,
+                     cases[i].wanted);
+            if (s.code != 65 || !strstr(s.err, wanted))
+                fail_msg("%d %s\nwanted: %s", s.code, s.err, wanted);
+            forget(&s);
+        }
 }
 
 TEST(a_core_beyond_the_motions_samples_is_noticed)

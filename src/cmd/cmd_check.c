@@ -216,10 +216,10 @@ static int summarise(Check *c, CheckedScene *p)
         return 0;
     if (p->motion.warning[0])
         warn("motion.record", p->motion.warning, c);
-    if (p->s->sim.duration_s > duration(&p->motion)) {
+    if (p->s->sim.duration_s > duration(&p->motion) && strcmp(p->s->motion.record, "none") != 0) {
         char text[100];
-        snprintf(text, sizeof text, "%g s is longer than the motion; the run ends with the motion",
-                 p->s->sim.duration_s);
+        snprintf(text, sizeof text, "%g s is longer than the motion of %.4g s; the ground is at rest then",
+                 p->s->sim.duration_s, duration(&p->motion));
         warn("sim.duration_s", text, c);
     }
     return 1;
@@ -289,16 +289,19 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
         json_put(c->out, "missing=%s", missing);
 }
 
-/* The design to try is simulated once. */
+/* The design to try is simulated once, with forces where the core stands on ground that it may lift from. */
 static void describe_study(Check *c, const CheckedScene *p, const Problem *problem)
 {
     Err e = {0};
     SimResult r;
+    char text[NOTE_MAX];
     double search_s, baselines_s, all_s;
     const Settings *s = p->s;
     const SimTask task = {.kind = SCENE_IMPACT, .x = p->x};
     if (!note(c, tower_simulate(problem, 1, &task, &r, &e), "simulation", &e))
         return;
+    if (foundation_lifts(&r))
+        warn("core.foundation", uplift_words(&r, text), c);
     const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
                                                                : here > 0            ? here
                                                                                      : 1;
@@ -318,7 +321,10 @@ static void open_study(Check *c, const Settings *s, const CheckedScene *p)
 {
     Err e = {0};
     Adapter *adapter;
-    if (!note(c, adapter_open(&adapter, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
+    Settings with = *s;
+    if (strcmp(s->core.foundation, "fixed") != 0)
+        with.sim.forces = FORCES_YES;
+    if (!note(c, adapter_open(&adapter, &with, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
         return;
     const Schema *schema = adapter_schema(adapter);
     note(c, tables_have_room(schema, &e), "store", &e);

@@ -429,10 +429,18 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
         fprintf(out, "  warning: %s\n", m->warning);
 }
 
+const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
+{
+    snprintf(text, NOTE_MAX,
+             "the core's moment is %.3g times that at which its foundation begins to lift%s: anchors must hold it",
+             r->forces.uplift_ratio, r->forces.uplift_ratio > LIFTED ? ", more than weight can hold" : "");
+    return text;
+}
+
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
                        const double error[], const double sd[])
 {
-    char note[200] = "";
+    char note[NOTE_MAX] = "";
     json_t *row = figures_row(table);
     json_put(row, "=%s", label);
     for (int i = 0; i < order->n_obj; i++)
@@ -448,6 +456,8 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     else if (r->bumper_bottoms_out)
         snprintf(note, sizeof note, "a bumper is compressed by %.3g of its thickness: it bottoms out",
                  r->bumper_strain);
+    else if (foundation_lifts(r))
+        uplift_words(r, note);
     else if (r->filtered_known && r->j3_filtered_g > r->j3_g)
         snprintf(note, sizeof note, "j3_filtered_g above j3_g: the filter overshoots (docs/theory.md)");
     if (note[0])

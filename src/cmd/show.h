@@ -58,6 +58,11 @@ void show_motion(FILE *out, const Motion *m, double duration_s);
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
                        const double error[], const double sd[]);
 
+enum { NOTE_MAX = 200 };
+
+/* Of a foundation that lifts (sim/result.h), in text; returns it. */
+const char *uplift_words(const SimResult *r, char text[NOTE_MAX]);
+
 /* A row of means and standard deviations of the objectives; without them where a replicate failed. error: likely ones
  * of the integration (N_MEASURES), which every replicate has; NULL: not known. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[]);

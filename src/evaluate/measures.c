@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "base/list.h"
+#include "scene/foundation.h"
+#include "scene/neighbour.h"
 
 static const Measure MEASURES[N_MEASURES] = {
 #define X(id, name, unit, sense, needs, value, what) {name, unit, sense, needs, what},
@@ -50,6 +52,38 @@ unsigned measures_need(MeasureSet set)
     for (int k = 0; k < N_MEASURES; k++)
         needs |= set >> k & 1 ? MEASURES[k].needs : NEEDS_NOTHING;
     return needs;
+}
+
+/* What a scene has of NEEDS_. */
+static unsigned has_of(const CoreOptions *core, const Building *b)
+{
+    Foundation f = {0};
+    const CoreSection section = core_section(core);
+    foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
+    return NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) | (f.rotation > 0 ? NEEDS_TURNING : 0u) |
+           (f.radius_m > 0 ? NEEDS_RADIUS : 0u) | (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) |
+           (section == CORE_BOX ? NEEDS_WALLS : 0u);
+}
+
+Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err)
+{
+    static const struct {
+        unsigned needs;
+        const char *words;
+    } LACKS[] = {
+        {NEEDS_YIELDING, "no storey yields: set building.yield_drift, or a column yield_drift of storeys.csv"},
+        {NEEDS_TURNING, "the core's base does not turn: set core.foundation to soil=, g= or rotation="},
+        {NEEDS_RADIUS, "no radius is known: set core.foundation with radius= [m]"},
+        {NEEDS_SHAPE, "the core has no section: set core.section = box or plate, and core.model = none"},
+        {NEEDS_WALLS, "the core has no walls: set core.section = box, and core.model = none"},
+    };
+    const unsigned has = has_of(core, b);
+    for (int k = 0; k < N_MEASURES; k++)
+        for (size_t i = 0; set >> k & 1 && i < sizeof LACKS / sizeof LACKS[0]; i++)
+            if (MEASURES[k].needs & LACKS[i].needs & ~has)
+                return fail(err, STATUS_BAD_DATA, "search.objectives: %s (there or in search.limits): %s",
+                            MEASURES[k].name, LACKS[i].words);
+    return STATUS_OK;
 }
 
 /* Whether a building of n_floors can have anything but 0 there. */

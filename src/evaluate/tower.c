@@ -99,21 +99,6 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
     return status;
 }
 
-/* Is there what is judged? */
-static Status check_scene(const Tower *t, const Scenario *w, Err *err)
-{
-    const unsigned needs = measures_need(t->judged);
-    if ((needs & NEEDS_GROUND) && strcmp(w->options.core.foundation, "fixed") == 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "search.objectives, search.limits: base rotation and uplift are of a core on the ground; set "
-                    "core.foundation");
-    return !(needs & NEEDS_YIELDING) || scene_building(w->scene)->yields
-               ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA,
-                      "search.objectives, search.limits: ductility, plastic and residual drifts and hysteresis are of "
-                      "storeys that yield; set building.yield_drift, or a column yield_drift of storeys.csv");
-}
-
 static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
 {
     Record *r = &t->record[t->recipe->scene[place % t->recipe->n_scenes].record];
@@ -125,8 +110,11 @@ static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
         const SceneOptions options = settings_scene(s);
         status = scenario_open(w, &options, &s->motion, &r->motion, err);
     }
-    if (status == STATUS_OK && (status = check_scene(t, w, err)) != STATUS_OK)
-        scenario_close(w);
+    if (status == STATUS_OK) {
+        status = measures_check(t->judged, &w->options.core, scene_building(w->scene), err);
+        if (status != STATUS_OK)
+            scenario_close(w);
+    }
     free(s);
     return status;
 }

@@ -109,6 +109,14 @@ static inline int beyond_contact_law(const SimResult *r)
     return r->indentation_ratio > INDENTATION_RATIO_MAX;
 }
 
+/* The foundation of the core begins to lift at its edge. From LIFTED on its weight alone does not hold the moment, M =
+ * W r (scene/foundation.h). */
+#define LIFTED 3.0
+static inline int foundation_lifts(const SimResult *r)
+{
+    return r->forces_known && r->forces.uplift_ratio > 1;
+}
+
 /* The state at one instant: modes 0..n_building-1 are the building's, the others the core's, each group padded with
  * idle ones. Energies since the start, as in SimResult; what the mode q has is (q'^2 + omega^2 q^2) / 2. */
 typedef struct {
