@@ -2,6 +2,9 @@
  *
  *   minimise f(x),  g(x) <= 0,  lower <= x <= upper
  *
+ * A variable is real; real, and searched on the scale of its logarithm; a whole number; or a choice, whose numbers
+ * 0, 1, ... stand for words and have no order.
+ *
  * One design is n_parts simulations (replicates under every record, say), each a task that any worker can do:
  *
  *   task -> Simulator.simulate -> part (part_size bytes)      all parts of a design -> Simulator.combine -> Evaluation
@@ -25,6 +28,8 @@
 
 typedef struct Queue Queue;
 typedef struct Problem Problem;
+
+typedef enum { VARIABLE_REAL, VARIABLE_LOG, VARIABLE_WHOLE, VARIABLE_CHOICE } VariableKind;
 
 /* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
 typedef struct {
@@ -78,7 +83,8 @@ typedef void (*RepairFn)(double x[], const void *self);
 
 struct Problem {
     size_t n_var, n_obj, n_con, n_extra;
-    const double *lower, *upper; /* (n_var) */
+    const double *lower, *upper; /* (n_var) whole ones of whole numbers; of a choice 0 and the last word */
+    const VariableKind *kind;    /* (n_var) NULL: all are real */
     RepairFn repair;             /* NULL: the box is all */
     JudgeFn judge;               /* NULL: f as it is, and no g */
     const void *user;            /* of judge */
@@ -109,26 +115,62 @@ static inline double violation_of(size_t n_con, const double g[])
     return sum;
 }
 
+static inline VariableKind problem_kind(const Problem *p, size_t d)
+{
+    return p->kind ? p->kind[d] : VARIABLE_REAL;
+}
+
+static inline int problem_is_discrete(const Problem *p, size_t d)
+{
+    return problem_kind(p, d) >= VARIABLE_WHOLE;
+}
+
 /* Into the set of designs that can be built; 0 has no sign, as in the run that it is stored in. */
 static inline void problem_repair(const Problem *p, double x[])
 {
-    for (size_t d = 0; d < p->n_var; d++)
+    for (size_t d = 0; d < p->n_var; d++) {
+        if (problem_is_discrete(p, d))
+            x[d] = fmin(fmax(round(x[d]), p->lower[d]), p->upper[d]);
         x[d] += 0.0;
+    }
     if (p->repair)
         p->repair(x, p->self);
 }
 
 /* The box as the unit cube; a variable without width is 0 there. */
+static inline double problem_to_unit(const Problem *p, size_t d, double x)
+{
+    const double lower = p->lower[d], upper = p->upper[d];
+    if (!(upper > lower))
+        return 0.0;
+    return problem_kind(p, d) == VARIABLE_LOG ? log(x / lower) / log(upper / lower) : (x - lower) / (upper - lower);
+}
+
+static inline double problem_from_unit(const Problem *p, size_t d, double u)
+{
+    const double lower = p->lower[d], upper = p->upper[d];
+    const double x = problem_kind(p, d) == VARIABLE_LOG ? lower * pow(upper / lower, u) : lower + u * (upper - lower);
+    return fmin(fmax(x, lower), upper);
+}
+
 static inline void problem_to_cube(const Problem *p, const double x[], double u[])
 {
     for (size_t d = 0; d < p->n_var; d++)
-        u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
+        u[d] = problem_to_unit(p, d, x[d]);
 }
 
 static inline void problem_from_cube(const Problem *p, const double u[], double x[])
 {
     for (size_t d = 0; d < p->n_var; d++)
-        x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
+        x[d] = problem_from_unit(p, d, u[d]);
+}
+
+/* Variable d at 0 <= u <= 1 of an even spread: every whole number and every word has the same share. */
+static inline double problem_spread(const Problem *p, size_t d, double u)
+{
+    const double lower = p->lower[d], upper = p->upper[d];
+    return problem_is_discrete(p, d) ? fmin(floor(lower + u * (upper - lower + 1.0)), upper)
+                                     : problem_from_unit(p, d, u);
 }
 
 static inline void problem_close(Problem *p)

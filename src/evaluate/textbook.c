@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "evaluate/kinds.h"
 
 void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[])
 {
@@ -82,8 +83,28 @@ typedef struct {
     size_t n_var, n_obj;
     double noise;
     uint32_t seed;
+    VariableKind kind[TEXTBOOK_VAR_MAX];
     double lower[TEXTBOOK_VAR_MAX], upper[TEXTBOOK_VAR_MAX];
 } Exercise;
+
+/* Where in the width of its variable a number of another kind stands. */
+static double share_of(const Exercise *e, size_t j, double x)
+{
+    const long words = (long)e->upper[j] + 1, stride = words % 3 == 0 ? 4 : 3;
+    if (e->kind[j] == VARIABLE_LOG)
+        return log(x / e->lower[j]) / log(e->upper[j] / e->lower[j]);
+    if (e->kind[j] == VARIABLE_CHOICE)
+        return words > 1 ? (double)((long)x * stride % words) / (double)(words - 1) : 0.0;
+    return x / e->upper[j];
+}
+
+static void evaluate(const Exercise *e, const double x[], double f[])
+{
+    double real[TEXTBOOK_VAR_MAX];
+    for (size_t j = 0; j < e->n_var; j++)
+        real[j] = e->kind[j] == VARIABLE_REAL ? x[j] : share_of(e, j, x[j]) * textbook_upper(e->function, j);
+    e->function->evaluate(e->n_var, e->n_obj, real, f);
+}
 
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
@@ -92,7 +113,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     (void)worker;
     (void)err;
     Random noise = random_stream(e->seed, RANDOM_NOISE, 0, (uint32_t)(task->id - 1));
-    e->function->evaluate(e->n_var, e->n_obj, task->x, f);
+    evaluate(e, task->x, f);
     for (size_t k = 0; e->noise > 0.0 && k < e->n_obj; k++)
         f[k] *= 1.0 + e->noise * random_normal(&noise);
     return STATUS_OK;
@@ -107,6 +128,22 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
 }
 
 static const Simulator TEXTBOOK = {simulate, combine, free};
+
+static Status set_variables(Exercise *e, const char *kinds, Err *err)
+{
+    for (size_t j = 0; j < e->n_var; j++) {
+        e->lower[j] = 1.0;
+        e->upper[j] = 10.0;
+    }
+    TRY(kinds_read(kinds, e->n_var, e->kind, e->lower, e->upper, err));
+    for (size_t j = 0; j < e->n_var; j++) {
+        if (e->kind[j] != VARIABLE_CHOICE)
+            e->lower[j] = e->kind[j] == VARIABLE_LOG ? 1e-3 : 0.0;
+        if (e->kind[j] <= VARIABLE_LOG)
+            e->upper[j] = e->kind[j] == VARIABLE_LOG ? 1.0 : textbook_upper(e->function, j);
+    }
+    return STATUS_OK;
+}
 
 Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *err)
 {
@@ -125,12 +162,16 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
     e->n_obj = (size_t)m;
     e->noise = o->noise;
     e->seed = seed;
-    for (size_t j = 0; j < e->n_var; j++)
-        e->upper[j] = textbook_upper(e->function, j);
+    const Status status = set_variables(e, o->kinds, err);
+    if (status != STATUS_OK) {
+        free(e);
+        return status;
+    }
     *p = (Problem){.n_var = e->n_var,
                    .n_obj = e->n_obj,
                    .lower = e->lower,
                    .upper = e->upper,
+                   .kind = kinds_are_real(o->kinds) ? NULL : e->kind,
                    .simulator = &TEXTBOOK,
                    .self = e,
                    .n_parts = 1,
@@ -142,5 +183,5 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
 void textbook_exact(const Problem *p, const double x[], double f[])
 {
     const Exercise *e = p->self;
-    e->function->evaluate(e->n_var, e->n_obj, x, f);
+    evaluate(e, x, f);
 }

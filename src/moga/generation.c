@@ -148,11 +148,13 @@ static size_t add_samples(Search *s, size_t n, size_t n_samples)
 {
     const Problem *p = s->common.problem;
     double *X = s->scratch.samples;
-    latin_hypercube(s->common.config->seed, (uint32_t)s->common.generation, n_samples, p->n_var, p->lower, p->upper, X,
-                    s->scratch.slices);
+    latin_hypercube(s->common.config->seed, (uint32_t)s->common.generation, n_samples, p->n_var, X, s->scratch.slices);
     for (size_t i = 0; i < n_samples; i++) {
-        problem_repair(p, X + i * p->n_var);
-        n = batch_add(&s->batch, &s->common, n, X + i * p->n_var, KIND_SAMPLED);
+        double *x = X + i * p->n_var;
+        for (size_t d = 0; d < p->n_var; d++)
+            x[d] = problem_spread(p, d, x[d]);
+        problem_repair(p, x);
+        n = batch_add(&s->batch, &s->common, n, x, KIND_SAMPLED);
     }
     return n;
 }

@@ -31,6 +31,50 @@ static const double *tournament(const Population *p, Random *random)
     return p->X + (b_wins ? b : a) * p->n_var;
 }
 
+/* To the scale on which variables are varied, and back. */
+static void to_scale(const Problem *p, const double x[], double y[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        y[d] = problem_kind(p, d) == VARIABLE_LOG ? log(x[d]) : x[d];
+}
+
+static void from_scale(const Problem *p, double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        if (problem_kind(p, d) == VARIABLE_LOG)
+            x[d] = fmin(fmax(exp(x[d]), p->lower[d]), p->upper[d]);
+}
+
+/* Two children of mother and father, where variables are of several kinds. */
+static void breed_mixed(Offspring *o, const Problem *p, Random *r, double eta, const double mother[],
+                        const double father[])
+{
+    const size_t n = p->n_var;
+    double *child = o->children, *lower = o->mixed, *upper = lower + n, *parent = upper + n, *before = parent + 2 * n;
+    to_scale(p, p->lower, lower);
+    to_scale(p, p->upper, upper);
+    to_scale(p, mother, parent);
+    to_scale(p, father, parent + n);
+    crossover_sbx(r, n, lower, upper, SBX_ETA, parent, parent + n, child, child + n);
+    cross_choices(r, n, p->kind, mother, father, child, child + n);
+    for (int i = 0; i < 2; i++, child += n) {
+        memcpy(before, child, n * sizeof *child);
+        mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, eta, child);
+        mutate_discrete(r, n, p->kind, lower, upper, before, child);
+        from_scale(p, child);
+    }
+}
+
+static void breed_real(Offspring *o, const Problem *p, Random *r, double eta, const double mother[],
+                       const double father[])
+{
+    const size_t n = p->n_var;
+    double *child = o->children;
+    crossover_sbx(r, n, p->lower, p->upper, SBX_ETA, mother, father, child, child + n);
+    for (int i = 0; i < 2; i++)
+        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, eta, child + (size_t)i * n);
+}
+
 /* Appends a population of children of the present members; a share of the pairs is mutated over the whole box. Pair j
  * of step has its own streams. */
 static void breed(Offspring *o, const Common *c, Population *population, uint32_t step, double far)
@@ -43,11 +87,9 @@ static void breed(Offspring *o, const Common *c, Population *population, uint32_
         Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
         const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : MUTATION_ETA;
-        crossover_sbx(&change, p->n_var, p->lower, p->upper, SBX_ETA, mother, father, o->children,
-                      o->children + p->n_var);
+        (p->kind ? breed_mixed : breed_real)(o, p, &change, eta, mother, father);
         for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
             double *x = o->children + i * p->n_var;
-            mutate_polynomial(&change, p->n_var, p->lower, p->upper, 1.0 / (double)p->n_var, eta, x);
             problem_repair(p, x);
             population_add(population, x);
         }
@@ -84,6 +126,26 @@ static void add_evolved(Offspring *o, const Breeding *w)
     append_predicted(o);
 }
 
+/* Beside the end of a descent, which moves no choice and whole numbers as if they were real: designs with one of those
+ * elsewhere, a whole number one more or less. SWAPS variables, from any one on. */
+static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[])
+{
+    double *y = o->children;
+    const size_t first = random_below(r, p->n_var);
+    int n = 0;
+    for (size_t i = 0; i < p->n_var && n < SWAPS; i++) {
+        const size_t d = (first + i) % p->n_var;
+        if (!problem_is_discrete(p, d) || !(p->upper[d] > p->lower[d]))
+            continue;
+        memcpy(y, x, p->n_var * sizeof *y);
+        y[d] += random_uniform(r) < 0.5 ? 1.0 : -1.0;
+        mutate_discrete(r, 1, p->kind + d, p->lower + d, p->upper + d, x + d, y + d);
+        problem_repair(p, y);
+        population_add(&o->members, y);
+        n++;
+    }
+}
+
 /* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the
  * criteria share them. */
 static void add_descended(Offspring *o, const Breeding *w)
@@ -105,6 +167,8 @@ static void add_descended(Offspring *o, const Breeding *w)
     for (size_t i = 0; i < n; i++) {
         problem_repair(p, X + i * p->n_var);
         population_add(&o->members, X + i * p->n_var);
+        if (p->kind)
+            add_swaps(o, p, &random, X + i * p->n_var);
     }
 }
 
@@ -125,7 +189,7 @@ static void add_probes(Offspring *o, const Breeding *w)
         const double place = GOLDEN * (double)(o->n_probed / p->n_var) + M_SQRT2 * (double)d;
         double *x = o->children;
         memcpy(x, c->archive.X + infill_best(near, vector) * p->n_var, p->n_var * sizeof *x);
-        x[d] = p->lower[d] + (place - floor(place)) * (p->upper[d] - p->lower[d]);
+        x[d] = problem_spread(p, d, place - floor(place));
         problem_repair(p, x);
         population_add(&o->members, x);
     }

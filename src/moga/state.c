@@ -18,17 +18,18 @@ static void layout(void *search, Carve *c)
 {
     Search *s = search;
     const Problem *p = s->common.problem;
-    const size_t n_var = p->n_var, n_pool = s->offspring.pool.n_max;
+    const size_t n_var = p->n_var, n_pool = s->offspring.pool.n_max, n_members = s->offspring.members.n_max;
     Batch *b = &s->batch;
     Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
     b->X = carve(c, b->size_max * n_var, sizeof(double));
     b->kind = carve(c, b->size_max, 1);
     b->repeat = carve(c, b->size_max, sizeof(size_t));
-    o->allowed = carve(c, n_pool, 1);
+    o->allowed = carve(c, n_members, 1);
     o->survivors = carve(c, n_pool, sizeof(size_t));
-    o->bound = carve(c, n_pool * p->n_obj, sizeof(double));
+    o->bound = carve(c, n_members * p->n_obj, sizeof(double));
     o->children = carve(c, 2 * n_var, sizeof(double));
+    o->mixed = carve(c, p->kind ? 5 * n_var : 0, sizeof(double));
     o->descent_vector = carve(c, s->criteria.vectors.n, sizeof(size_t));
     o->descent_X = carve(c, n_pool * n_var, sizeof(double));
     w->members = carve(c, n_pool, sizeof(size_t));
@@ -72,16 +73,17 @@ Status state_create(Search *s, Err *err)
     const size_t population = c->population, initial = c->n_given + generation_samples(s);
     const size_t pending = pending_max(c, p->n_workers);
     const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * pending;
+    const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = c->max_evals > 4 ? c->max_evals : 4;
     const size_t centres = c->surrogate_max < evals ? c->surrogate_max : evals;
     s->batch.size_max = initial > population ? initial : population;
     s->offspring.pending_max = pending;
     TRY(create_selection(s, n_pool, err));
-    TRY(create_criteria(s, n_pool, err));
+    TRY(create_criteria(s, n_members, err));
     TRY(pareto_archive_init(&s->common.archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
-    TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
+    TRY(surrogate_create(&s->surrogate, p, centres, n_members, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
-    TRY(population_create(&s->offspring.members, n_pool, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->offspring.members, n_members, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.pool, n_pool, p->n_var, p->n_obj, err));
     s->store = carve_all(layout, s);
     return s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);

@@ -19,17 +19,19 @@ struct Surrogate {
     Rbf *rbf;
     Rbf *success;       /* 1 where a design succeeded, 0 where it failed */
     int knows_failures; /* it is fitted */
+    size_t n_dim; /* coordinates */
     size_t n_out, n_max, n_archive_max, predict_max;
     size_t n, n_tuned; /* centres; size of the archive at the last tuning */
     int fitted;
-    double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
+    double *U, *F;     /* (n_max, n_dim) (n_max, n_out) centres */
     double *noise;     /* (n_max, n_out) variances of the values, in nuggets of each output */
     double *range;     /* (n_out) of each output in the archive */
     double *errors;    /* (n_max) sorted for the median */
     size_t *member;    /* (predict_max) members that are predicted */
+    unsigned char *is_held; /* (n_dim) coordinates of choices: descents leave them */
     double *descent;   /* (predict_max + RBF_BLOCK, descent_length) */
     double *chance;    /* (predict_max) predictions of success */
-    double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
+    double *u, *f, *e; /* (predict_max, n_dim) (predict_max, n_out) twice */
     void *store;
     size_t *centre;   /* (n_archive_max) rows of the centres; grows with the archive */
     double *distance; /* (n_archive_max) of rows from the front */
@@ -37,21 +39,68 @@ struct Surrogate {
 
 static size_t descent_length(const Surrogate *s);
 
+/* -- coordinates of a design --------------------------------------------------------------------------------------- */
+
+static size_t n_coordinates(const Problem *p, size_t d)
+{
+    return problem_kind(p, d) == VARIABLE_CHOICE && p->upper[d] > 1.0 ? (size_t)p->upper[d] : 1;
+}
+
+/* Corner `word` of the regular simplex of edge 1 in n dimensions: with every new dimension i a corner stands above the
+ * middle of the i + 1 before it, at a height of sqrt((i + 2) / (2 i + 2)). */
+static void set_corner(size_t n, size_t word, double u[])
+{
+    for (size_t i = 0; i < n; i++) {
+        const double height = sqrt((double)(i + 2) / (double)(2 * i + 2));
+        u[i] = i + 1 < word ? height / (double)(i + 2) : i + 1 == word ? height : 0.0;
+    }
+}
+
+static void set_coordinates(const Problem *p, const double x[], double u[])
+{
+    if (!p->kind) {
+        problem_to_cube(p, x, u);
+        return;
+    }
+    for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
+        if (p->kind[d] == VARIABLE_CHOICE)
+            set_corner(n_coordinates(p, d), (size_t)x[d], u);
+        else
+            *u = problem_to_unit(p, d, x[d]);
+}
+
+/* The design x with what is no choice at u. */
+static void move_to(const Problem *p, const double u[], double x[])
+{
+    for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
+        if (problem_kind(p, d) != VARIABLE_CHOICE)
+            x[d] = problem_from_unit(p, d, *u);
+}
+
 static void layout(void *surrogate, Carve *c)
 {
     Surrogate *s = surrogate;
-    const size_t n_var = s->problem->n_var;
-    s->U = carve(c, s->n_max * n_var, sizeof(double));
+    const size_t n_dim = s->n_dim;
+    s->U = carve(c, s->n_max * n_dim, sizeof(double));
     s->F = carve(c, s->n_max * s->n_out, sizeof(double));
     s->noise = carve(c, s->n_max * s->n_out, sizeof(double));
     s->range = carve(c, s->n_out, sizeof(double));
     s->errors = carve(c, s->n_max, sizeof(double));
-    s->u = carve(c, s->predict_max * n_var, sizeof(double));
+    s->u = carve(c, s->predict_max * n_dim, sizeof(double));
     s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
     s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
     s->chance = carve(c, s->predict_max, sizeof(double));
     s->member = carve(c, s->predict_max, sizeof(size_t));
+    s->is_held = carve(c, n_dim, 1);
     s->descent = carve(c, (s->predict_max + RBF_BLOCK) * descent_length(s), sizeof(double));
+}
+
+static void hold_choices(Surrogate *s)
+{
+    const Problem *p = s->problem;
+    for (size_t d = 0, at = 0; d < p->n_var; d++)
+        for (const size_t end = at + n_coordinates(p, d); at < end; at++)
+            s->is_held[at] = problem_kind(p, d) == VARIABLE_CHOICE;
 }
 
 Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
@@ -61,15 +110,19 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for the surrogate");
     s->problem = problem;
+    for (size_t d = 0; d < problem->n_var; d++)
+        s->n_dim += n_coordinates(problem, d);
     s->n_out = problem->n_obj + problem->n_con;
     s->n_max = surrogate_max;
     s->predict_max = predict_max;
     s->store = carve_all(layout, s);
     Status status = s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
-    if (status == STATUS_OK && problem->n_var <= RBF_DIM_MAX)
-        status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
-    if (status == STATUS_OK && problem->n_var <= RBF_DIM_MAX)
-        status = rbf_create(&s->success, surrogate_max, problem->n_var, 1, err);
+    if (status == STATUS_OK)
+        hold_choices(s);
+    if (status == STATUS_OK && s->n_dim <= RBF_DIM_MAX)
+        status = rbf_create(&s->rbf, surrogate_max, s->n_dim, s->n_out, err);
+    if (status == STATUS_OK && s->n_dim <= RBF_DIM_MAX)
+        status = rbf_create(&s->success, surrogate_max, s->n_dim, 1, err);
     if (status != STATUS_OK) {
         surrogate_free(s);
         *out = NULL;
@@ -176,7 +229,7 @@ static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
     for (size_t i = 0, k = 0; i < a->n; i++) {
         if (a->replicates[i] == 0 || (k++) * kept / n_designs < n || n == kept)
             continue;
-        problem_to_cube(s->problem, a->X + i * a->n_var, s->U + n * a->n_var);
+        set_coordinates(s->problem, a->X + i * a->n_var, s->U + n * s->n_dim);
         s->F[n++] = a->usable[i] || (a->kind[i] == KIND_SCREENED && a->ok[i]); /* which may have been dropped */
     }
     TRY((tuning ? rbf_tune : rbf_fit)(s->success, n, s->U, s->F, NULL, err));
@@ -195,7 +248,7 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
         const size_t row = s->centre[i];
-        problem_to_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
+        set_coordinates(s->problem, a->X + row * a->n_var, s->U + i * s->n_dim);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
         for (size_t k = 0; k < s->n_out; k++)
@@ -259,7 +312,7 @@ static size_t gather(Surrogate *s, const Population *population, size_t first)
     size_t n = 0;
     for (size_t i = first; i < population->n; i++)
         if (population->row[i] == PREDICTED) {
-            problem_to_cube(s->problem, population->X + i * population->n_var, s->u + n * population->n_var);
+            set_coordinates(s->problem, population->X + i * population->n_var, s->u + n * s->n_dim);
             s->member[n++] = i;
         }
     return n;
@@ -298,15 +351,15 @@ static void fill_member(const Surrogate *s, Population *population, size_t i, co
 
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty)
 {
-    const size_t n_var = s->problem->n_var, n = s->fitted ? gather(s, population, first) : 0;
+    const size_t n_dim = s->n_dim, n = s->fitted ? gather(s, population, first) : 0;
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK)
-        rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->f + i * s->n_out,
+        rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_dim, s->f + i * s->n_out,
                  with_uncertainty ? s->e + i * s->n_out : NULL);
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK)
         if (s->knows_failures)
-            rbf_eval(s->success, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->chance + i, NULL);
+            rbf_eval(s->success, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_dim, s->chance + i, NULL);
     for (size_t i = 0; i < n; i++)
         fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
                     s->knows_failures ? s->chance[i] : 1.0);
@@ -314,20 +367,20 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
 
 /* State of one descent; u, f and J of a block lie together, as rbf_slope takes them. */
 typedef struct {
-    double *best, *g, *g_last, *step; /* (n_var) */
+    double *best, *g, *g_last, *step; /* (n_dim) */
     double *slope;                    /* (n_obj) */
     double min, violation;            /* of the best point */
 } Descent;
 
 static size_t descent_length(const Surrogate *s)
 {
-    const size_t d = s->problem->n_var;
+    const size_t d = s->n_dim;
     return d + s->n_out + s->n_out * d + 1 + d + 4 * d + s->problem->n_obj;
 }
 
 static Descent descent_on(const Surrogate *s, double *store)
 {
-    const size_t d = s->problem->n_var;
+    const size_t d = s->n_dim;
     return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY, INFINITY};
 }
 
@@ -337,14 +390,14 @@ static double penalise(const Surrogate *s, Descent *w, const double f[], const d
 {
     const Problem *p = s->problem;
     double violation = fmax(SUCCESS_MIN - success, 0.0);
-    for (size_t d = 0; violation > 0.0 && d < p->n_var; d++)
+    for (size_t d = 0; violation > 0.0 && d < s->n_dim; d++)
         w->g[d] -= PENALTY * J_success[d];
     for (size_t c = p->n_obj; c < s->n_out; c++) {
         if (!(f[c] > 0.0))
             continue;
         violation += f[c] / s->range[c];
-        for (size_t d = 0; d < p->n_var; d++)
-            w->g[d] += PENALTY * J[c * p->n_var + d] / s->range[c];
+        for (size_t d = 0; d < s->n_dim; d++)
+            w->g[d] += PENALTY * J[c * s->n_dim + d] / s->range[c];
     }
     return violation;
 }
@@ -353,20 +406,22 @@ static double penalise(const Surrogate *s, Descent *w, const double f[], const d
 static void descent_step(const Surrogate *s, const Infill *near, size_t vector, Descent *w, double u[],
                          const double f[], const double J[], double success, const double J_success[])
 {
-    const size_t n_var = s->problem->n_var;
+    const size_t n_dim = s->n_dim;
     const double value = infill_slope(near, vector, f, w->slope);
-    for (size_t d = 0; d < n_var; d++) {
+    for (size_t d = 0; d < n_dim; d++) {
         w->g[d] = 0.0;
         for (size_t k = 0; k < s->problem->n_obj; k++)
-            w->g[d] += w->slope[k] * J[k * n_var + d];
+            w->g[d] += w->slope[k] * J[k * n_dim + d];
     }
     const double violation = penalise(s, w, f, J, success, J_success);
     if (violation < w->violation || (violation == w->violation && value < w->min)) {
         w->violation = violation;
         w->min = value;
-        memcpy(w->best, u, n_var * sizeof *u);
+        memcpy(w->best, u, n_dim * sizeof *u);
     }
-    for (size_t d = 0; d < n_var; d++) {
+    for (size_t d = 0; d < n_dim; d++) {
+        if (s->is_held[d])
+            continue;
         const double move = rprop_move(w->g[d], &w->g_last[d], &w->step[d]);
         u[d] = fmin(fmax(u[d] + fmin(fmax(move, -DESCENT_STEP_MAX), DESCENT_STEP_MAX), 0.0), 1.0);
     }
@@ -375,14 +430,14 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
 /* n <= RBF_BLOCK descents side by side, starting at U; the best point of each goes there. */
 static void descend(const Surrogate *s, const Infill *near, size_t n, const size_t vectors[], double *store)
 {
-    const size_t n_var = s->problem->n_var, own = 4 * n_var + s->problem->n_obj;
-    double *U = store, *F = U + RBF_BLOCK * n_var, *J = F + RBF_BLOCK * s->n_out,
-           *success = J + RBF_BLOCK * s->n_out * n_var, *J_success = success + RBF_BLOCK,
-           *rest = J_success + RBF_BLOCK * n_var;
+    const size_t n_dim = s->n_dim, own = 4 * n_dim + s->problem->n_obj;
+    double *U = store, *F = U + RBF_BLOCK * n_dim, *J = F + RBF_BLOCK * s->n_out,
+           *success = J + RBF_BLOCK * s->n_out * n_dim, *J_success = success + RBF_BLOCK,
+           *rest = J_success + RBF_BLOCK * n_dim;
     Descent w[RBF_BLOCK];
     for (size_t p = 0; p < n; p++) {
         w[p] = descent_on(s, rest + p * own);
-        for (size_t d = 0; d < n_var; d++) {
+        for (size_t d = 0; d < n_dim; d++) {
             w[p].step[d] = DESCENT_STEP_FIRST;
             w[p].g_last[d] = 0.0;
         }
@@ -392,11 +447,11 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
         if (s->knows_failures)
             rbf_slope(s->success, n, U, success, J_success);
         for (size_t p = 0; p < n; p++)
-            descent_step(s, near, vectors[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var,
-                         s->knows_failures ? success[p] : 1.0, J_success + p * n_var);
+            descent_step(s, near, vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
+                         s->knows_failures ? success[p] : 1.0, J_success + p * n_dim);
     }
     for (size_t p = 0; p < n; p++)
-        memcpy(U + p * n_var, w[p].best, n_var * sizeof *U);
+        memcpy(U + p * n_dim, w[p].best, n_dim * sizeof *U);
 }
 
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[], double X[])
@@ -406,12 +461,14 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
-        double *U = s->descent + i * length;
-        for (size_t j = 0; j < count; j++)
-            problem_to_cube(p, a->X + infill_best(near, vectors[i + j]) * p->n_var, U + j * p->n_var);
+        double *U = s->descent + i * length, *x = X + i * p->n_var;
+        for (size_t j = 0; j < count; j++) {
+            memcpy(x + j * p->n_var, a->X + infill_best(near, vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
+            set_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
+        }
         descend(s, near, count, vectors + i, U);
         for (size_t j = 0; j < count; j++)
-            problem_from_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
+            move_to(p, U + j * s->n_dim, x + j * p->n_var);
     }
 }
 

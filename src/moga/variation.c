@@ -58,17 +58,50 @@ void mutate_polynomial(Random *r, size_t n_var, const double lower[], const doub
     }
 }
 
-void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, const double lower[],
-                     const double upper[], double X[], size_t slices[])
+void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, double X[], size_t slices[])
 {
     for (size_t d = 0; d < n_var; d++) {
         Random r = random_stream(seed, RANDOM_SAMPLING, generation, (uint32_t)d);
         for (size_t i = 0; i < n; i++)
             slices[i] = i;
         random_shuffle(&r, n, slices);
-        for (size_t i = 0; i < n; i++) {
-            const double u = ((double)slices[i] + random_uniform(&r)) / (double)n;
-            X[i * n_var + d] = clamp(lower[d] + u * (upper[d] - lower[d]), lower[d], upper[d]);
-        }
+        for (size_t i = 0; i < n; i++)
+            X[i * n_var + d] = ((double)slices[i] + random_uniform(&r)) / (double)n;
     }
+}
+
+void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const double mother[], const double father[],
+                   double child1[], double child2[])
+{
+    for (size_t d = 0; d < n_var; d++) {
+        if (kind[d] != VARIABLE_CHOICE)
+            continue;
+        const int swapped = random_uniform(r) < 0.5;
+        child1[d] = swapped ? father[d] : mother[d];
+        child2[d] = swapped ? mother[d] : father[d];
+    }
+}
+
+static double other_word(Random *r, double upper, double word)
+{
+    const double other = (double)random_below(r, (size_t)upper);
+    return other < word ? other : other + 1.0;
+}
+
+static double other_number(double lower, double upper, double before, double x)
+{
+    const double step = fmax(round(fabs(x - before)), 1.0), to = round(before) + (x < before ? -step : step);
+    return to < lower || to > upper ? round(before) + (x < before ? 1.0 : -1.0) : to;
+}
+
+void mutate_discrete(Random *r, size_t n_var, const VariableKind kind[], const double lower[], const double upper[],
+                     const double before[], double x[])
+{
+    for (size_t d = 0; d < n_var; d++)
+        if (kind[d] < VARIABLE_WHOLE || x[d] == before[d])
+            continue;
+        else if (kind[d] == VARIABLE_CHOICE)
+            x[d] = other_word(r, upper[d], before[d]);
+        else
+            x[d] = other_number(lower[d], upper[d], before[d], x[d]);
 }

@@ -3,7 +3,8 @@
  *   simulated binary crossover   children spread around their parents as one-point crossover of binary strings would;
  *                                eta large: close to the parents
  *   polynomial mutation          one variable moved by a share of its box
- *   Latin hypercube              n samples, exactly one in each of the n slices of every variable
+ *   Latin hypercube              n samples in the unit cube, exactly one in each of the n slices of every variable
+ *   choices                      one parent's or the other's; mutated, any other word with the same probability
  *
  * All stay within lower..upper; a variable whose bounds are equal stays there.
  * Threads  no state but the random stream handed in
@@ -15,6 +16,7 @@
 #include <stddef.h>
 
 #include "base/random.h"
+#include "evaluate/problem.h"
 
 /* Two children of two parents; each variable is recombined with probability 1/2. */
 void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double eta,
@@ -25,7 +27,14 @@ void mutate_polynomial(Random *r, size_t n_var, const double lower[], const doub
                        double eta, double x[]);
 
 /* X (n, n_var); slices holds n numbers. Streams (seed, sampling, generation, variable). */
-void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, const double lower[],
-                     const double upper[], double X[], size_t slices[]);
+void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, double X[], size_t slices[]);
+
+/* Children of crossover: of a choice each has that of one parent, whatever became of it. */
+void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const double mother[], const double father[],
+                   double child1[], double child2[]);
+
+/* After mutation: a whole number or a choice that is no longer what it was moves by 1 at least, to another word. */
+void mutate_discrete(Random *r, size_t n_var, const VariableKind kind[], const double lower[], const double upper[],
+                     const double before[], double x[]);
 
 #endif

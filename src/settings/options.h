@@ -31,6 +31,7 @@ typedef struct {
     double timeout_s;
     long variables, objectives;
     char lower[OPTION_TEXT_MAX], upper[OPTION_TEXT_MAX]; /* one number or a comma list */
+    char kinds[OPTION_TEXT_MAX];                         /* of the variables (evaluate/kinds.h) */
     char senses[OPTION_TEXT_MAX];                        /* min or max, one word or a list */
     char variable_names[OPTION_TEXT_MAX], objective_names[OPTION_TEXT_MAX];
     Noisy noisy;

@@ -239,6 +239,7 @@ static const Option OPTIONS[] = {
     WHOLE(problem.objectives, "7", 1, 100, "number of objectives; not of a tower"),
     TEXT(problem.lower, "0", "external: lower bounds, one number for all or a comma list"),
     TEXT(problem.upper, "1", "external: upper bounds, one number for all or a comma list"),
+    TEXT(problem.kinds, "real", "not of a tower: real, log, int or choice:WORD|WORD, one for all or a comma list"),
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),

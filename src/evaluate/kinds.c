@@ -1,0 +1,108 @@
+#include "evaluate/kinds.h"
+
+#include <string.h>
+
+#include "base/list.h"
+
+static const char CHOICE[] = "choice:";
+
+/* The item of variable j. */
+static int item_of(const char *list, size_t j, char item[LIST_MAX])
+{
+    return list_item(list, list_count(list) == 1 ? 0 : j, item, LIST_MAX);
+}
+
+int kinds_are_real(const char *list)
+{
+    char item[LIST_MAX];
+    for (size_t j = 0; j < list_count(list); j++)
+        if (!list_item(list, j, item, sizeof item) || strcmp(item, "real") != 0)
+            return 0;
+    return 1;
+}
+
+/* Word i of "choice:a|b|c"; 0: there is none, or it is too long. */
+static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
+{
+    const char *at = strncmp(item, CHOICE, sizeof CHOICE - 1) == 0 ? item + sizeof CHOICE - 1 : NULL;
+    for (; at && i > 0; i--)
+        at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
+    const size_t n = at ? strcspn(at, "|") : 0;
+    if (n == 0 || n >= KIND_WORD_MAX)
+        return 0;
+    memcpy(word, at, n);
+    word[n] = 0;
+    return 1;
+}
+
+int kinds_word(const char *list, size_t j, double number, char word[KIND_WORD_MAX])
+{
+    char item[LIST_MAX];
+    return number >= 0.0 && number < LIST_MAX && item_of(list, j, item) && word_at(item, (size_t)number, word);
+}
+
+int kinds_number(const char *list, size_t j, const char *word, double *number)
+{
+    char item[LIST_MAX], other[KIND_WORD_MAX];
+    for (size_t i = 0; item_of(list, j, item) && word_at(item, i, other); i++)
+        if (strcmp(word, other) == 0) {
+            *number = (double)i;
+            return 1;
+        }
+    return 0;
+}
+
+static Status read_choice(const char *item, double *upper, Err *err)
+{
+    char word[KIND_WORD_MAX];
+    double first;
+    size_t n = 0, bars = 0;
+    for (const char *c = item; *c; c++)
+        bars += *c == '|';
+    for (; word_at(item, n, word); n++)
+        if (kinds_number(item, 0, word, &first) && first < (double)n)
+            return fail(err, STATUS_BAD_DATA, "problem.kinds: %s names %s twice", item, word);
+    if (n != bars + 1)
+        return fail(err, STATUS_BAD_DATA, "problem.kinds: %s: word %zu is empty or longer than %d letters", item, n + 1,
+                    KIND_WORD_MAX - 1);
+    *upper = (double)(n - 1);
+    return STATUS_OK;
+}
+
+static Status read_kind(const char *item, size_t j, VariableKind *kind, double *lower, double *upper, Err *err)
+{
+    static const char *const WORDS[] = {"real", "log", "int"};
+    if (strncmp(item, CHOICE, sizeof CHOICE - 1) == 0) {
+        *kind = VARIABLE_CHOICE;
+        *lower = 0.0;
+        return read_choice(item, upper, err);
+    }
+    size_t k = 0;
+    while (k < 3 && strcmp(item, WORDS[k]) != 0)
+        k++;
+    if (k == 3)
+        return fail(err, STATUS_BAD_DATA, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
+    *kind = (VariableKind)k;
+    if (*kind == VARIABLE_LOG && !(*lower > 0.0))
+        return fail(err, STATUS_BAD_DATA, "problem.lower: is %g for variable %zu, which is log: set it above 0", *lower,
+                    j + 1);
+    if (*kind == VARIABLE_WHOLE && (*lower != floor(*lower) || *upper != floor(*upper)))
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.lower, problem.upper: %g and %g of variable %zu, which is int, are no whole numbers",
+                    *lower, *upper, j + 1);
+    return STATUS_OK;
+}
+
+Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err)
+{
+    const size_t n = list_count(list);
+    char item[LIST_MAX];
+    if (n != 1 && n != n_var)
+        return fail(err, STATUS_BAD_DATA, "problem.kinds: %zu kinds for %zu variables", n, n_var);
+    for (size_t j = 0; j < n_var; j++) {
+        if (!item_of(list, j, item))
+            return fail(err, STATUS_BAD_DATA, "problem.kinds: kind %zu is missing", j + 1);
+        TRY(read_kind(item, j, &kind[j], &lower[j], &upper[j], err));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,26 @@
+/* evaluate/kinds.h -- which values the variables of a problem have, by problem.kinds: one item for all, or a comma list.
+ *
+ *   real                           any number between the bounds
+ *   log                            the same, above 0, searched on the scale of its logarithm
+ *   int                            a whole number between the bounds
+ *   choice:steel|timber|concrete   one of these words: 0, 1, 2 in the archive, the word wherever people or workers
+ *                                  read; its bounds are not read
+ *
+ * Threads  no state */
+#ifndef IMTET_EVALUATE_KINDS_H
+#define IMTET_EVALUATE_KINDS_H
+
+#include "evaluate/problem.h"
+
+enum { KIND_WORD_MAX = 64 }; /* bytes of a word */
+
+int kinds_are_real(const char *list); /* every variable is */
+
+/* kind (n_var), and checks its bounds; a choice gets its own. */
+Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err);
+
+/* The word that a choice has for its number, and back; 0: variable j is no choice or has none such. */
+int kinds_word(const char *list, size_t j, double number, char word[KIND_WORD_MAX]);
+int kinds_number(const char *list, size_t j, const char *word, double *number);
+
+#endif
