@@ -176,6 +176,19 @@ TEST(failed_and_infeasible_designs_do_not_change_that)
     check_every_moment(&c, 2);
 }
 
+TEST(whole_numbers_choices_and_logarithms_go_on_the_same)
+{
+    static const VariableKind KINDS[] = {VARIABLE_REAL,  VARIABLE_LOG,    VARIABLE_WHOLE,
+                                         VARIABLE_WHOLE, VARIABLE_CHOICE, VARIABLE_CHOICE};
+    static const double UPPER[] = {1, 1, 5, 40, 2, 4};
+    world(&here, 6, 3, 0);
+    memcpy(here.upper, UPPER, sizeof UPPER);
+    here.lower[1] = 1e-3;
+    here.problem.kind = KINDS;
+    const SearchConfig c = config(20, 90);
+    check_every_moment(&c, 2);
+}
+
 /* The surface foretells badly: what is remembered of that decides about the next batch. */
 TEST(a_surface_that_is_half_believed_goes_on_the_same)
 {

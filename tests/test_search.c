@@ -156,7 +156,7 @@ static double volume_of_hypercube(const World *w, size_t n)
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
     double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX];
     size_t slices[ROWS_MAX];
-    latin_hypercube(1, 0, n, n_var, w->lower, w->upper, X, slices);
+    latin_hypercube(1, 0, n, n_var, X, slices); /* the box is the unit cube */
     for (size_t i = 0; i < n; i++)
         dtlz2(n_var, m, X + i * n_var, F + i * m);
     return volume(n, m, F);

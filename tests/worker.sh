@@ -10,6 +10,7 @@ while read -r line; do
     x2=${x#*,}
     x2=${x2%%,*}
     good="{\"id\":$id,\"f\":[$x1,$x2]}"
+    [ "$1" = words ] && case $x1 in '"steel"') good="{\"id\":$id,\"f\":[1,$x2]}" ;; '"oak"') good="{\"id\":$id,\"f\":[0,1$x2]}" ;; *) good=no ;; esac
     [ "$1" = steady ] && sleep 0.04
     [ "$1" = uneven ] && if [ $((id % 10)) -eq 0 ]; then sleep 0.1; else sleep 0.005; fi
     [ "$1" = tenth ] && [ $((id % 10)) -eq 0 ] && good="{\"id\":$id,\"error\":\"every tenth\"}"

@@ -17,10 +17,11 @@
 #include "base/list.h"
 #include "base/visible.h"
 #include "evaluate/helper.h"
+#include "evaluate/kinds.h"
 
 enum {
     REQUEST_BYTES = 64,
-    NUMBER_BYTES = 26,
+    VALUE_BYTES = KIND_WORD_MAX + 4, /* of a variable: a word in quotes, or a number of 17 digits */
     LINE_MAX_BYTES = 1 << 20,
     READ_BYTES = 1 << 16,
     WORDS_MAX = 128,
@@ -40,7 +41,7 @@ typedef struct {
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
     size_t n_line;
-    char *request; /* behind it, REQUEST_BYTES and NUMBER_BYTES of each variable */
+    char *request; /* behind it, REQUEST_BYTES and VALUE_BYTES of each variable */
     size_t n_request, n_sent;
     ExternalAnswer *answer; /* to be filled; NULL: idle */
     long id;
@@ -55,7 +56,9 @@ typedef struct {
     size_t n_var, n_obj, n_workers, part_size;
     double timeout_s;
     double *lower, *upper; /* (n_var) */
-    Worker *worker;        /* (n_workers) */
+    VariableKind *kind;    /* (n_var) NULL: all are real */
+    char kinds[OPTION_TEXT_MAX];
+    Worker *worker; /* (n_workers) */
     Helper helper;
 } External;
 
@@ -190,10 +193,13 @@ __attribute__((format(printf, 5, 6))) static void settle(External *e, Worker *w,
 /* Into room that is there from the start: half a request would be waited for. */
 static void write_request(const External *e, Worker *w, const Task *task)
 {
-    char *to = w->request;
+    char *to = w->request, word[KIND_WORD_MAX];
     to += sprintf(to, "{\"id\":%ld,\"x\":[", w->id);
     for (size_t d = 0; d < e->n_var; d++)
-        to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
+        if (e->kind && kinds_word(e->kinds, d, task->x[d], word))
+            to += sprintf(to, "%s\"%s\"", d ? "," : "", word);
+        else
+            to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
     to += sprintf(to, "]}\n");
     w->n_request = (size_t)(to - w->request);
     w->n_sent = 0;
@@ -426,6 +432,7 @@ static void external_close(void *self)
     helper_end(&e->helper);
     free(e->worker);
     free(e->lower);
+    free(e->kind);
     free(e->text);
     free(e);
 }
@@ -451,6 +458,16 @@ static Status read_bounds(const char *key, const char *list, size_t n, double bo
     return STATUS_OK;
 }
 
+static Status set_kinds(External *e, const ProblemOptions *o, Err *err)
+{
+    if (kinds_are_real(o->kinds))
+        return STATUS_OK;
+    snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
+    e->kind = calloc(e->n_var, sizeof *e->kind);
+    return e->kind ? kinds_read(e->kinds, e->n_var, e->kind, e->lower, e->upper, err)
+                   : fail(err, STATUS_NO_MEMORY, "no memory for %zu variables", e->n_var);
+}
+
 static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
 {
     e->lower = calloc(2 * e->n_var, sizeof *e->lower);
@@ -459,6 +476,7 @@ static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
     e->upper = e->lower + e->n_var;
     TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
     TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
+    TRY(set_kinds(e, o, err)); /* a choice has bounds of its own */
     for (size_t j = 0; j < e->n_var; j++)
         if (e->lower[j] > e->upper[j])
             return fail(err, STATUS_BAD_DATA, "problem.lower: %g is above problem.upper = %g (variable %zu)",
@@ -471,7 +489,7 @@ static Status create_workers(External *e, size_t n, Err *err)
     e->worker = calloc(n, sizeof *e->worker);
     for (; e->worker && e->n_workers < n; e->n_workers++) {
         Worker *w = &e->worker[e->n_workers];
-        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES + REQUEST_BYTES + NUMBER_BYTES * e->n_var)};
+        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES + REQUEST_BYTES + VALUE_BYTES * e->n_var)};
         if (!w->line)
             break;
         w->request = w->line + LINE_MAX_BYTES;
@@ -505,6 +523,7 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .n_obj = e->n_obj,
                    .lower = e->lower,
                    .upper = e->upper,
+                   .kind = e->kind,
                    .simulator = &EXTERNAL,
                    .self = e,
                    .n_parts = 1,

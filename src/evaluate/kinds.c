@@ -28,7 +28,7 @@ static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
     for (; at && i > 0; i--)
         at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
     const size_t n = at ? strcspn(at, "|") : 0;
-    if (n == 0 || n >= KIND_WORD_MAX)
+    if (n == 0 || n >= KIND_WORD_MAX || strcspn(at, "\"\\") < n)
         return 0;
     memcpy(word, at, n);
     word[n] = 0;
@@ -63,7 +63,8 @@ static Status read_choice(const char *item, double *upper, Err *err)
         if (kinds_number(item, 0, word, &first) && first < (double)n)
             return fail(err, STATUS_BAD_DATA, "problem.kinds: %s names %s twice", item, word);
     if (n != bars + 1)
-        return fail(err, STATUS_BAD_DATA, "problem.kinds: %s: word %zu is empty or longer than %d letters", item, n + 1,
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.kinds: %s: word %zu is empty, longer than %d letters or holds a quote", item, n + 1,
                     KIND_WORD_MAX - 1);
     *upper = (double)(n - 1);
     return STATUS_OK;

@@ -106,6 +106,8 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
                        .replicates = s->sim.replicates,
                        .is_noisy = schema_is_noisy(s),
                        .has_spread = schema_is_noisy(s)};
+    if (!kinds_are_real(s->problem.kinds))
+        memcpy(schema->kinds, s->problem.kinds, sizeof schema->kinds);
     TRY(allocate(schema, err));
     const Status status = fill_from_settings(schema, s, err);
     if (status != STATUS_OK)
@@ -126,6 +128,11 @@ const Column *schema_objective(const Schema *schema, size_t k)
 const Column *schema_extra(const Schema *schema, size_t k)
 {
     return &schema->column[schema->n_var + schema->n_obj + k];
+}
+
+int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MAX])
+{
+    return schema->kinds[0] && kinds_word(schema->kinds, j, x, word);
 }
 
 size_t schema_find_objective(const Schema *schema, const char *name)

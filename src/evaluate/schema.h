@@ -9,6 +9,8 @@
 
 #include "base/list.h"
 #include "base/csv.h"
+#include "base/option.h"
+#include "evaluate/kinds.h"
 #include "scene/design.h"
 #include "evaluate/measures.h"
 
@@ -25,9 +27,10 @@ typedef struct {
     size_t n_var, n_obj, n_extra;
     DesignSpace design; /* of a tower */
     Column *column;
-    MeasureOrder order; /* of the tower: measures behind the columns; else empty */
-    long replicates;    /* simulations of each record behind one evaluation: sim.replicates */
-    int is_noisy;       /* schema_is_noisy */
+    MeasureOrder order;          /* of the tower: measures behind the columns; else empty */
+    char kinds[OPTION_TEXT_MAX]; /* problem.kinds; empty: all variables are real */
+    long replicates;             /* simulations of each record behind one evaluation: sim.replicates */
+    int is_noisy;                /* schema_is_noisy */
     int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations */
     size_t n_limited, limited[N_MEASURES]; /* measures among the n_extra that search.limits limits, ascending */
 } Schema;
@@ -40,6 +43,9 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err);
 const Column *schema_variable(const Schema *schema, size_t j);
 const Column *schema_objective(const Schema *schema, size_t k);
 const Column *schema_extra(const Schema *schema, size_t k);
+
+/* The word that stands for x where variable j is a choice; else 0. */
+int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MAX]);
 
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);

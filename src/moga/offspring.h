@@ -20,7 +20,7 @@ typedef struct {
     double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
     size_t *survivors;      /* (pool) of the environmental selection */
     double *children;       /* (2, n_var) */
-    double *mixed;          /* (5, n_var) bounds, parents and a child on the scale of variation; of real variables none */
+    double *mixed; /* (5, n_var) bounds, parents and a child on the scale of variation; of real variables none */
     size_t *descent_vector; /* (vectors) in the order of this generation */
     double *descent_X;      /* (pool, n_var) */
     size_t pending_max;     /* designs that may be pending */

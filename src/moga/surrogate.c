@@ -19,19 +19,19 @@ struct Surrogate {
     Rbf *rbf;
     Rbf *success;       /* 1 where a design succeeded, 0 where it failed */
     int knows_failures; /* it is fitted */
-    size_t n_dim; /* coordinates */
+    size_t n_dim;       /* coordinates */
     size_t n_out, n_max, n_archive_max, predict_max;
     size_t n, n_tuned; /* centres; size of the archive at the last tuning */
     int fitted;
-    double *U, *F;     /* (n_max, n_dim) (n_max, n_out) centres */
-    double *noise;     /* (n_max, n_out) variances of the values, in nuggets of each output */
-    double *range;     /* (n_out) of each output in the archive */
-    double *errors;    /* (n_max) sorted for the median */
-    size_t *member;    /* (predict_max) members that are predicted */
+    double *U, *F;          /* (n_max, n_dim) (n_max, n_out) centres */
+    double *noise;          /* (n_max, n_out) variances of the values, in nuggets of each output */
+    double *range;          /* (n_out) of each output in the archive */
+    double *errors;         /* (n_max) sorted for the median */
+    size_t *member;         /* (predict_max) members that are predicted */
     unsigned char *is_held; /* (n_dim) coordinates of choices: descents leave them */
-    double *descent;   /* (predict_max + RBF_BLOCK, descent_length) */
-    double *chance;    /* (predict_max) predictions of success */
-    double *u, *f, *e; /* (predict_max, n_dim) (predict_max, n_out) twice */
+    double *descent;        /* (predict_max + RBF_BLOCK, descent_length) */
+    double *chance;         /* (predict_max) predictions of success */
+    double *u, *f, *e;      /* (predict_max, n_dim) (predict_max, n_out) twice */
     void *store;
     size_t *centre;   /* (n_archive_max) rows of the centres; grows with the archive */
     double *distance; /* (n_archive_max) of rows from the front */

@@ -17,6 +17,7 @@ typedef enum {
     PART_ORIGIN,
     PART_VIOLATION,
     PART_X,
+    PART_POINT, /* the same, choices as numbers */
     PART_F,
     PART_MEANS,
     PART_LIMITED,
@@ -30,7 +31,7 @@ static const Part PARTS[][8] = {
     [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD, PART_ERR},
     [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA, PART_ERR, PART_ERR_EXTRA},
     [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
-    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERR},
+    [EXPORT_PAGE] = {PART_ID, PART_POINT, PART_MEANS, PART_LIMITED, PART_ERR},
 };
 
 /* Numbers of a design, each behind a comma. */
@@ -49,6 +50,7 @@ static Numbers numbers_of(const Schema *s, const Evaluation *e, const double f[]
     const int is_tower = s->order.n_obj > 0;
     switch (part) {
     case PART_X:
+    case PART_POINT:
         return (Numbers){s->n_var, s->column, e->x, .begin = ""};
     case PART_F:
         return (Numbers){s->n_obj, objectives, e->f, .begin = ""};
@@ -83,6 +85,7 @@ static void put_heads(FILE *f, const Schema *s, Part part)
 static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 {
     const double none = NAN;
+    char word[KIND_WORD_MAX];
     const Evaluation *e = &run->table.row[row];
     const Numbers n = numbers_of(&run->schema, e, run_f(run, row), part);
     if (part == PART_ID)
@@ -92,7 +95,10 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
     if (part == PART_VIOLATION)
         print_cells(f, 1, &e->violation);
     for (size_t i = 0; i < n.n; i++)
-        print_cells(f, 1, n.value ? &n.value[n.of ? n.of[i] : i] : &none);
+        if (part == PART_X && schema_word(&run->schema, i, e->x[i], word))
+            fprintf(f, ",%s", word);
+        else
+            print_cells(f, 1, n.value ? &n.value[n.of ? n.of[i] : i] : &none);
     if (part == PART_SD && n.n > 0)
         print_cells(f, 1, e->replicates > 0 ? &(double){(double)e->replicates} : &none);
 }
@@ -117,6 +123,20 @@ static void put_value(FILE *f, const char *before, json_t *value)
     json_decref(value);
 }
 
+static void put_design(FILE *f, const Schema *s, const double x[])
+{
+    char word[KIND_WORD_MAX];
+    fputs(",\"x\":[", f);
+    for (size_t j = 0; j < s->n_var; j++) {
+        fputs(j > 0 ? "," : "", f);
+        if (schema_word(s, j, x[j], word))
+            fprintf(f, "\"%s\"", word);
+        else
+            print_number(f, x[j]);
+    }
+    fputc(']', f);
+}
+
 static void put_object(FILE *f, const Run *run, size_t i)
 {
     const Evaluation *e = &run->table.row[i];
@@ -124,8 +144,7 @@ static void put_object(FILE *f, const Run *run, size_t i)
     fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\"", i == 0 ? "\n" : ",\n", e->id,
             e->generation, kind_word(e->kind), outcome_word(e->outcome));
     put_value(f, ",\"reason\":", json_words(e->reason));
-    fputs(",\"x\":", f);
-    print_list(f, s->n_var, e->x);
+    put_design(f, s, e->x);
     put_list(f, ",\"f\":", s->n_obj, e->f);
     fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
     put_list(f, ",\"sd\":", s->n_obj, e->sd);

@@ -14,8 +14,11 @@ static Status copy_columns(const Table *t, const char *path, const Schema *schem
         const char *name = schema_variable(schema, j)->name;
         if (table_column(t, name) < 0)
             return fail(err, STATUS_BAD_DATA, "search.start: %s: has no column %s", path, name);
-        for (size_t i = 0; i < t->n_rows; i++)
-            TRY(sheet_number(t, i, name, NAN, &X[i * schema->n_var + j], err));
+        for (size_t i = 0; i < t->n_rows; i++) {
+            double *x = &X[i * schema->n_var + j];
+            if (!schema->kinds[0] || !kinds_number(schema->kinds, j, sheet_text(t, i, name), x))
+                TRY(sheet_number(t, i, name, NAN, x, err));
+        }
     }
     return STATUS_OK;
 }

@@ -143,6 +143,11 @@ static Status descend(Polish *p, double step)
     problem_to_cube(p->problem, p->best->x, p->at);
     nlopt_set_lower_bounds1(p->opt, 0.0);
     nlopt_set_upper_bounds1(p->opt, 1.0);
+    for (unsigned d = 0; d < n_var; d++) /* whole numbers and choices stay */
+        if (problem_is_discrete(p->problem, d)) {
+            nlopt_set_lower_bound(p->opt, (int)d, p->at[d]);
+            nlopt_set_upper_bound(p->opt, (int)d, p->at[d]);
+        }
     nlopt_set_initial_step1(p->opt, step);
     nlopt_set_xtol_rel(p->opt, 1e-6);
     nlopt_set_ftol_abs(p->opt, 0.1 * p->goal->gain_min); /* of one step, of which a descent has many */
