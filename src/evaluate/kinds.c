@@ -15,7 +15,7 @@ static int item_of(const char *list, size_t j, char item[LIST_MAX])
 int kinds_are_real(const char *list)
 {
     char item[LIST_MAX];
-    for (size_t j = 0; j < list_count(list); j++)
+    for (size_t j = 0; list[0] && j < list_count(list); j++)
         if (!list_item(list, j, item, sizeof item) || strcmp(item, "real") != 0)
             return 0;
     return 1;

@@ -14,7 +14,7 @@
 
 enum { KIND_WORD_MAX = 64 }; /* bytes of a word */
 
-int kinds_are_real(const char *list); /* every variable is */
+int kinds_are_real(const char *list); /* every variable is; also where the list is empty */
 
 /* kind (n_var), and checks its bounds; a choice gets its own. */
 Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err);
