@@ -1,7 +1,8 @@
 /* base/carve.h -- one allocation, laid out once.
  *
- * A layout function calls carve for each array. The first pass (base NULL) only counts, the second hands out slices:
+ * A layout function names each array. The first pass (base NULL) only counts, the second hands out slices:
  *
+ *   CARVE(c, m->x, n);                                   m->x: room for n of what it points to
  *   m->store = carve_all(layout, m);                     NULL: out of memory
  *
  * Every slice starts on a cache line. The store is zeroed and released by free. */
@@ -25,6 +26,7 @@ static inline void *carve(Carve *c, size_t n, size_t size)
     c->used += (n * size + CARVE_LINE - 1) / CARVE_LINE * CARVE_LINE;
     return slice;
 }
+#define CARVE(c, array, n) ((array) = carve(c, n, sizeof *(array)))
 
 static inline void *carve_store(const Carve *c)
 {
@@ -49,5 +51,6 @@ static inline void *carve_wider(Carve *c, const void *old, size_t n_old, size_t 
     char *slice = carve(c, n, size);
     return slice && n_old > 0 ? memcpy(slice, old, n_old * size) : slice;
 }
+#define CARVE_WIDER(c, array, n_old, n) ((array) = carve_wider(c, array, n_old, n, sizeof *(array)))
 
 #endif

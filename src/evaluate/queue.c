@@ -75,13 +75,13 @@ static void layout(Slot *s, const Queue *q, Carve *c)
 {
     const Problem *p = q->problem;
     carve(c, 1, sizeof *s);
-    s->e.x = carve(c, p->n_var, sizeof *s->e.x);
-    s->e.f = carve(c, p->n_obj, sizeof *s->e.f);
-    s->e.sd = carve(c, p->n_obj, sizeof *s->e.sd);
-    s->e.extra = carve(c, p->n_extra, sizeof *s->e.extra);
-    s->e.room = carve(c, REASON_MAX, 1);
-    s->f = carve(c, p->n_obj, sizeof *s->f);
-    s->g = carve(c, p->n_con, sizeof *s->g);
+    CARVE(c, s->e.x, p->n_var);
+    CARVE(c, s->e.f, p->n_obj);
+    CARVE(c, s->e.sd, p->n_obj);
+    CARVE(c, s->e.extra, p->n_extra);
+    CARVE(c, s->e.room, REASON_MAX);
+    CARVE(c, s->f, p->n_obj);
+    CARVE(c, s->g, p->n_con);
     s->parts = carve(c, p->n_parts, p->part_size);
 }
 

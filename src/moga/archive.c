@@ -23,11 +23,11 @@ static void layout_means(Archive *a, Carve *c)
         a->G = a->H;
         return;
     }
-    a->F = carve_wider(c, a->F, n * m, n_max * m, sizeof *a->F);
-    a->G = carve_wider(c, a->G, n * k, n_max * k, sizeof *a->G);
-    a->S = carve_wider(c, a->S, known, n_max * m, sizeof *a->S);
-    a->sd = carve_wider(c, a->sd, known, n_max * m, sizeof *a->sd);
-    a->error = carve_wider(c, a->error, known, n_max * m, sizeof *a->error);
+    CARVE_WIDER(c, a->F, n * m, n_max * m);
+    CARVE_WIDER(c, a->G, n * k, n_max * k);
+    CARVE_WIDER(c, a->S, known, n_max * m);
+    CARVE_WIDER(c, a->sd, known, n_max * m);
+    CARVE_WIDER(c, a->error, known, n_max * m);
 }
 
 /* The first n rows stay as they are. */
@@ -35,20 +35,20 @@ static void layout(void *archive, Carve *c)
 {
     Archive *a = archive;
     const size_t n = a->n, n_max = a->n_max, v = a->n_var, m = a->n_obj, k = a->n_con;
-    a->X = carve_wider(c, a->X, n * v, n_max * v, sizeof *a->X);
-    a->Y = carve_wider(c, a->Y, n * m, n_max * m, sizeof *a->Y);
-    a->H = carve_wider(c, a->H, n * k, n_max * k, sizeof *a->H);
+    CARVE_WIDER(c, a->X, n * v, n_max * v);
+    CARVE_WIDER(c, a->Y, n * m, n_max * m);
+    CARVE_WIDER(c, a->H, n * k, n_max * k);
     layout_means(a, c);
-    a->violation = carve_wider(c, a->violation, n, n_max, sizeof *a->violation);
-    a->generation = carve_wider(c, a->generation, n, n_max, sizeof *a->generation);
-    a->front = carve_wider(c, a->front, a->n_listed, n_max, sizeof *a->front);
-    a->replicates = carve_wider(c, a->replicates, n, n_max, sizeof *a->replicates);
-    a->noise = carve_wider(c, a->noise, n > 0 ? m : 0, m, sizeof *a->noise);
-    a->ok = carve_wider(c, a->ok, n, n_max, 1);
-    a->usable = carve_wider(c, a->usable, n, n_max, 1);
-    a->kind = carve_wider(c, a->kind, n, n_max, 1);
-    a->on_front = carve_wider(c, a->on_front, n, n_max, 1);
-    a->slot = carve(c, a->n_slots, sizeof *a->slot);
+    CARVE_WIDER(c, a->violation, n, n_max);
+    CARVE_WIDER(c, a->generation, n, n_max);
+    CARVE_WIDER(c, a->front, a->n_listed, n_max);
+    CARVE_WIDER(c, a->replicates, n, n_max);
+    CARVE_WIDER(c, a->noise, n > 0 ? m : 0, m);
+    CARVE_WIDER(c, a->ok, n, n_max);
+    CARVE_WIDER(c, a->usable, n, n_max);
+    CARVE_WIDER(c, a->kind, n, n_max);
+    CARVE_WIDER(c, a->on_front, n, n_max);
+    CARVE(c, a->slot, a->n_slots);
 }
 
 /* FNV-1a of whole words. */

@@ -32,16 +32,16 @@ static void layout(void *infill, Carve *c)
 {
     Infill *q = infill;
     const size_t m = q->n_obj;
-    q->normalisation.ideal = carve(c, m, sizeof(double));
-    q->normalisation.width = carve(c, m, sizeof(double));
-    q->unit = carve(c, q->n_dir * m, sizeof(double));
-    q->across = carve(c, q->n_dir * m, sizeof(double));
-    q->over = carve(c, q->n_dir * m, sizeof(double));
-    q->row = carve(c, q->n_dir, sizeof(double));
-    q->best_value = carve(c, q->n_dir, sizeof(double));
-    q->best = carve(c, q->n_dir, sizeof(size_t));
-    q->value = carve(c, q->n_max * q->n_dir, sizeof(double));
-    q->gain = carve(c, q->n_max, sizeof(double));
+    CARVE(c, q->normalisation.ideal, m);
+    CARVE(c, q->normalisation.width, m);
+    CARVE(c, q->unit, q->n_dir * m);
+    CARVE(c, q->across, q->n_dir * m);
+    CARVE(c, q->over, q->n_dir * m);
+    CARVE(c, q->row, q->n_dir);
+    CARVE(c, q->best_value, q->n_dir);
+    CARVE(c, q->best, q->n_dir);
+    CARVE(c, q->value, q->n_max * q->n_dir);
+    CARVE(c, q->gain, q->n_max);
 }
 
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)

@@ -7,13 +7,13 @@
 static void layout(void *population, Carve *c)
 {
     Population *p = population;
-    p->X = carve(c, p->n_max * p->n_var, sizeof(double));
-    p->F = carve(c, p->n_max * p->n_obj, sizeof(double));
-    p->error = carve(c, p->n_max * p->n_obj, sizeof(double));
-    p->violation = carve(c, p->n_max, sizeof(double));
-    p->uncertainty = carve(c, p->n_max, sizeof(double));
-    p->chance = carve(c, p->n_max, sizeof(double));
-    p->row = carve(c, p->n_max, sizeof(size_t));
+    CARVE(c, p->X, p->n_max * p->n_var);
+    CARVE(c, p->F, p->n_max * p->n_obj);
+    CARVE(c, p->error, p->n_max * p->n_obj);
+    CARVE(c, p->violation, p->n_max);
+    CARVE(c, p->uncertainty, p->n_max);
+    CARVE(c, p->chance, p->n_max);
+    CARVE(c, p->row, p->n_max);
 }
 
 Status population_create(Population *p, size_t n_max, size_t n_var, size_t n_obj, Err *err)

@@ -28,21 +28,21 @@ static void layout(void *selection, Carve *c)
 {
     Selection *s = selection;
     const size_t n = s->n_max, m = s->n_obj, r = s->n_dir;
-    s->unit = carve(c, r * m, sizeof(double));
-    s->normalisation.ideal = carve(c, m, sizeof(double));
-    s->normalisation.width = carve(c, m, sizeof(double));
-    s->normalisation.plane = carve(c, m * (m + 1), sizeof(double));
-    s->normalisation.pivot = carve(c, m, sizeof(int));
-    s->rank = carve(c, n, sizeof(size_t));
-    s->scratch = carve(c, 3 * n, sizeof(size_t));
-    s->list = carve(c, n, sizeof(size_t));
-    s->niche = carve(c, n, sizeof(size_t));
-    s->distance = carve(c, n, sizeof(double));
-    s->z = carve(c, m, sizeof(double));
-    s->members = carve(c, r, sizeof(size_t));
-    s->candidates = carve(c, r, sizeof(size_t));
-    s->ties = carve(c, n > r ? n : r, sizeof(size_t));
-    s->taken = carve(c, n, 1);
+    CARVE(c, s->unit, r * m);
+    CARVE(c, s->normalisation.ideal, m);
+    CARVE(c, s->normalisation.width, m);
+    CARVE(c, s->normalisation.plane, m * (m + 1));
+    CARVE(c, s->normalisation.pivot, m);
+    CARVE(c, s->rank, n);
+    CARVE(c, s->scratch, 3 * n);
+    CARVE(c, s->list, n);
+    CARVE(c, s->niche, n);
+    CARVE(c, s->distance, n);
+    CARVE(c, s->z, m);
+    CARVE(c, s->members, r);
+    CARVE(c, s->candidates, r);
+    CARVE(c, s->ties, n > r ? n : r);
+    CARVE(c, s->taken, n);
 }
 
 Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err)

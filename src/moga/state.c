@@ -22,23 +22,23 @@ static void layout(void *search, Carve *c)
     Batch *b = &s->batch;
     Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
-    b->X = carve(c, b->size_max * n_var, sizeof(double));
-    b->kind = carve(c, b->size_max, 1);
-    b->repeat = carve(c, b->size_max, sizeof(size_t));
-    o->allowed = carve(c, n_members, 1);
-    o->survivors = carve(c, n_pool, sizeof(size_t));
-    o->bound = carve(c, n_members * p->n_obj, sizeof(double));
-    o->children = carve(c, 2 * n_var, sizeof(double));
-    o->mixed = carve(c, p->kind ? 5 * n_var : 0, sizeof(double));
-    o->descent_vector = carve(c, s->criteria.vectors.n, sizeof(size_t));
-    o->descent_X = carve(c, n_pool * n_var, sizeof(double));
-    w->members = carve(c, n_pool, sizeof(size_t));
-    w->slices = carve(c, b->size_max, sizeof(size_t));
-    w->samples = carve(c, b->size_max * n_var, sizeof(double));
-    w->given = carve(c, n_var, sizeof(double));
-    w->f = carve(c, p->n_obj, sizeof(double));
-    w->g = carve(c, p->n_con, sizeof(double));
-    w->x = carve(c, n_var, sizeof(double));
+    CARVE(c, b->X, b->size_max * n_var);
+    CARVE(c, b->kind, b->size_max);
+    CARVE(c, b->repeat, b->size_max);
+    CARVE(c, o->allowed, n_members);
+    CARVE(c, o->survivors, n_pool);
+    CARVE(c, o->bound, n_members * p->n_obj);
+    CARVE(c, o->children, 2 * n_var);
+    CARVE(c, o->mixed, p->kind ? 5 * n_var : 0);
+    CARVE(c, o->descent_vector, s->criteria.vectors.n);
+    CARVE(c, o->descent_X, n_pool * n_var);
+    CARVE(c, w->members, n_pool);
+    CARVE(c, w->slices, b->size_max);
+    CARVE(c, w->samples, b->size_max * n_var);
+    CARVE(c, w->given, n_var);
+    CARVE(c, w->f, p->n_obj);
+    CARVE(c, w->g, p->n_con);
+    CARVE(c, w->x, n_var);
 }
 
 static Status create_criteria(Search *s, size_t n_pool, Err *err)

@@ -81,18 +81,18 @@ static void layout(void *surrogate, Carve *c)
 {
     Surrogate *s = surrogate;
     const size_t n_dim = s->n_dim;
-    s->U = carve(c, s->n_max * n_dim, sizeof(double));
-    s->F = carve(c, s->n_max * s->n_out, sizeof(double));
-    s->noise = carve(c, s->n_max * s->n_out, sizeof(double));
-    s->range = carve(c, s->n_out, sizeof(double));
-    s->errors = carve(c, s->n_max, sizeof(double));
-    s->u = carve(c, s->predict_max * n_dim, sizeof(double));
-    s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
-    s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
-    s->chance = carve(c, s->predict_max, sizeof(double));
-    s->member = carve(c, s->predict_max, sizeof(size_t));
-    s->is_held = carve(c, n_dim, 1);
-    s->descent = carve(c, (s->predict_max + RBF_BLOCK) * descent_length(s), sizeof(double));
+    CARVE(c, s->U, s->n_max * n_dim);
+    CARVE(c, s->F, s->n_max * s->n_out);
+    CARVE(c, s->noise, s->n_max * s->n_out);
+    CARVE(c, s->range, s->n_out);
+    CARVE(c, s->errors, s->n_max);
+    CARVE(c, s->u, s->predict_max * n_dim);
+    CARVE(c, s->f, s->predict_max * s->n_out);
+    CARVE(c, s->e, s->predict_max * s->n_out);
+    CARVE(c, s->chance, s->predict_max);
+    CARVE(c, s->member, s->predict_max);
+    CARVE(c, s->is_held, n_dim);
+    CARVE(c, s->descent, (s->predict_max + RBF_BLOCK) * descent_length(s));
 }
 
 static void hold_choices(Surrogate *s)

@@ -18,43 +18,43 @@ static void layout(void *interpolant, Carve *c)
     Rbf *m = interpolant;
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES,
                  with_squares = spread + m->stride, tuned = n < TUNE_CENTRES_MAX ? n : TUNE_CENTRES_MAX;
-    m->C = carve(c, 3 * spread, sizeof(double));
-    m->F = carve(c, m->n_out * n, sizeof(double));
-    m->noise = carve(c, m->n_out * n, sizeof(double));
-    m->output = carve(c, m->n_out, sizeof(Output));
-    m->worker = carve(c, m->n_workers, sizeof(Worker));
+    CARVE(c, m->C, 3 * spread);
+    CARVE(c, m->F, m->n_out * n);
+    CARVE(c, m->noise, m->n_out * n);
+    CARVE(c, m->output, m->n_out);
+    CARVE(c, m->worker, m->n_workers);
     for (size_t k = 0; k < m->n_out; k++) {
         Output counted, *o = c->base ? &m->output[k] : &counted;
-        o->shape.theta = carve(c, d, sizeof(double));
-        o->S = carve(c, with_squares, sizeof(double));
-        o->tail = carve(c, t, sizeof(double));
-        o->weight = carve(c, n, sizeof(double));
-        o->leave_one_out = carve(c, n, sizeof(double));
+        CARVE(c, o->shape.theta, d);
+        CARVE(c, o->S, with_squares);
+        CARVE(c, o->tail, t);
+        CARVE(c, o->weight, n);
+        CARVE(c, o->leave_one_out, n);
     }
     for (size_t k = 0; k < m->n_workers; k++) {
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
-        w->C = carve(c, 3 * spread, sizeof(double));
-        w->S = carve(c, with_squares, sizeof(double));
-        w->Z = carve(c, spread, sizeof(double));
-        w->by_a = carve(c, n, sizeof(double));
-        w->by_b = carve(c, n, sizeof(double));
-        w->A = carve(c, n * n, sizeof(double));
-        w->K = carve(c, tuned * tuned, sizeof(double));
-        w->P = carve(c, n * (t + 1), sizeof(double));
-        w->M = carve(c, t * t, sizeof(double));
-        w->b = carve(c, t, sizeof(double));
-        w->y = carve(c, n, sizeof(double));
-        w->w = carve(c, n, sizeof(double));
-        w->noise = carve(c, n, sizeof(double));
-        w->q = carve(c, n, sizeof(double));
-        w->log_p = carve(c, d + 3, sizeof(double));
-        w->best_p = carve(c, d + 3, sizeof(double));
-        w->gradient = carve(c, d + 3, sizeof(double));
-        w->last_gradient = carve(c, d + 3, sizeof(double));
-        w->step = carve(c, d + 3, sizeof(double));
-        w->theta = carve(c, d, sizeof(double));
-        w->shape.theta = carve(c, d, sizeof(double));
-        w->best_shape.theta = carve(c, d, sizeof(double));
+        CARVE(c, w->C, 3 * spread);
+        CARVE(c, w->S, with_squares);
+        CARVE(c, w->Z, spread);
+        CARVE(c, w->by_a, n);
+        CARVE(c, w->by_b, n);
+        CARVE(c, w->A, n * n);
+        CARVE(c, w->K, tuned * tuned);
+        CARVE(c, w->P, n * (t + 1));
+        CARVE(c, w->M, t * t);
+        CARVE(c, w->b, t);
+        CARVE(c, w->y, n);
+        CARVE(c, w->w, n);
+        CARVE(c, w->noise, n);
+        CARVE(c, w->q, n);
+        CARVE(c, w->log_p, d + 3);
+        CARVE(c, w->best_p, d + 3);
+        CARVE(c, w->gradient, d + 3);
+        CARVE(c, w->last_gradient, d + 3);
+        CARVE(c, w->step, d + 3);
+        CARVE(c, w->theta, d);
+        CARVE(c, w->shape.theta, d);
+        CARVE(c, w->best_shape.theta, d);
     }
 }
 

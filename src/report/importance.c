@@ -25,16 +25,16 @@ typedef struct {
 static void layout(void *sobol, Carve *c)
 {
     Sobol *s = sobol;
-    s->row = carve(c, s->n, sizeof *s->row);
-    s->low = carve(c, s->n_var, sizeof(double));
-    s->span = carve(c, s->n_var, sizeof(double));
-    s->U = carve(c, s->n * s->n_var, sizeof(double));
-    s->F = carve(c, s->n * s->n_obj, sizeof(double));
-    s->A = carve(c, s->n_samples * s->n_var, sizeof(double));
-    s->B = carve(c, s->n_samples * s->n_var, sizeof(double));
-    s->X = carve(c, s->n_samples * s->n_var, sizeof(double));
-    s->fa = carve(c, s->n_samples * s->n_obj, sizeof(double));
-    s->fx = carve(c, s->n_samples * s->n_obj, sizeof(double));
+    CARVE(c, s->row, s->n);
+    CARVE(c, s->low, s->n_var);
+    CARVE(c, s->span, s->n_var);
+    CARVE(c, s->U, s->n * s->n_var);
+    CARVE(c, s->F, s->n * s->n_obj);
+    CARVE(c, s->A, s->n_samples * s->n_var);
+    CARVE(c, s->B, s->n_samples * s->n_var);
+    CARVE(c, s->X, s->n_samples * s->n_var);
+    CARVE(c, s->fa, s->n_samples * s->n_obj);
+    CARVE(c, s->fx, s->n_samples * s->n_obj);
 }
 
 /* A design that the interpolant can learn from; repeats of one have the same x. */

@@ -158,14 +158,14 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 static void layout(void *model, Carve *c)
 {
     BuildingModel *m = model;
-    const size_t n = (size_t)m->n, real = sizeof(double);
-    m->K = carve(c, n * n, real);
-    m->M = carve(c, n * n, real);
-    m->phi = carve(c, n * n, real);
-    m->omega = carve(c, n, real);
-    m->gamma = carve(c, n, real);
-    m->zeta = carve(c, n, real);
-    m->like = carve(c, n, sizeof *m->like);
+    const size_t n = (size_t)m->n;
+    CARVE(c, m->K, n * n);
+    CARVE(c, m->M, n * n);
+    CARVE(c, m->phi, n * n);
+    CARVE(c, m->omega, n);
+    CARVE(c, m->gamma, n);
+    CARVE(c, m->zeta, n);
+    CARVE(c, m->like, n);
 }
 
 static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *from, Err *err)

@@ -23,16 +23,16 @@ typedef struct {
 static void layout(void *reduction, Carve *c)
 {
     Reduction *r = reduction;
-    const size_t n = (size_t)r->n, i = (size_t)r->i, real = sizeof(double);
+    const size_t n = (size_t)r->n, i = (size_t)r->i;
     double **const square[] = {&r->Kii, &r->Mii, &r->factor, &r->phi};
     for (int k = 0; k < 4; k++)
-        *square[k] = carve(c, i * i, real);
-    r->Psi = carve(c, i * (size_t)r->f, real);
-    r->mu = carve(c, i, real);
-    r->missed = carve(c, i, real);
-    r->M_r = carve(c, i, real);
-    r->T = carve(c, n * (n + 1), real);
-    r->work = carve(c, n * (n + 1), real);
+        CARVE(c, *square[k], i * i);
+    CARVE(c, r->Psi, i * (size_t)r->f);
+    CARVE(c, r->mu, i);
+    CARVE(c, r->missed, i);
+    CARVE(c, r->M_r, i);
+    CARVE(c, r->T, n * (n + 1));
+    CARVE(c, r->work, n * (n + 1));
 }
 
 static Status constraint_modes(Reduction *r, const FrameFull *full, Err *err)

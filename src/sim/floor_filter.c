@@ -72,13 +72,13 @@ void floor_filter_free(FloorFilter *f)
 static void layout(void *object, Carve *c)
 {
     FloorFilter *f = object;
-    f->u = carve(c, ENTERED * f->width, sizeof(double));
-    f->ground = carve(c, 1 + ENTERED, sizeof(double));
-    f->state = carve(c, STATES * f->width, sizeof(double));
-    f->y = carve(c, (1 + f->block + f->padding) * f->width, sizeof(double));
-    f->z = carve(c, (1 + f->block + f->padding) * f->width, sizeof(double));
-    f->most = carve(c, f->width, sizeof(double));
-    f->peak = carve(c, f->width, sizeof(double));
+    CARVE(c, f->u, ENTERED * f->width);
+    CARVE(c, f->ground, 1 + ENTERED);
+    CARVE(c, f->state, STATES * f->width);
+    CARVE(c, f->y, (1 + f->block + f->padding) * f->width);
+    CARVE(c, f->z, (1 + f->block + f->padding) * f->width);
+    CARVE(c, f->most, f->width);
+    CARVE(c, f->peak, f->width);
 }
 
 /* sum |g| of one pass. */

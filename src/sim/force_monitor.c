@@ -85,10 +85,10 @@ static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_buildi
 static void layout(void *object, Carve *c)
 {
     ForceMonitor *m = object;
-    m->group = carve(c, (size_t)m->n_groups, sizeof *m->group);
-    m->due = carve(c, (size_t)m->n_groups, sizeof *m->due);
+    CARVE(c, m->group, (size_t)m->n_groups);
+    CARVE(c, m->due, (size_t)m->n_groups);
     for (int i = 0; i < N_REACHES; i++)
-        m->limit[i] = carve(c, (size_t)eights(m->n_groups) * LANES8, sizeof(double));
+        CARVE(c, m->limit[i], (size_t)eights(m->n_groups) * LANES8);
     for (int i = 0; i < m->n_groups; i++)
         layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i >= m->at_both, i < m->at_slow);
 }

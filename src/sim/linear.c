@@ -61,33 +61,33 @@ static int n_coordinates(const Linear *d)
 static void layout(void *linear, Carve *c)
 {
     Linear *d = linear;
-    const size_t m = (size_t)d->s->m, size = (size_t)d->size, out = (size_t)d->rows.n, real = sizeof(double);
+    const size_t m = (size_t)d->s->m, size = (size_t)d->size, out = (size_t)d->rows.n;
     const size_t stretches = (size_t)d->stretches_max, losses = (size_t)d->s->n_loss, n = (size_t)d->s->n;
     const size_t widest = n > losses ? n : losses, work = 3 * size > widest ? 3 * size : widest;
     const size_t loads = (size_t)d->loads;
     const size_t coordinates = d->run->forces ? (size_t)n_coordinates(d) : 0;
-    d->D = carve(c, m * m, real);
-    d->Y_ddot = carve(c, m * size, real);
-    d->coordinates = carve(c, coordinates * size, real);
-    d->outputs = carve(c, out * size, real);
-    d->slopes = carve(c, (losses + loads) * size, real);
-    d->exponential = carve(c, size * size, real);
-    d->whole = carve(c, size * size, real);
-    d->z = carve(c, size, real);
-    d->Z = carve(c, size * stretches, real);
-    d->Z_next = carve(c, size * stretches, real);
-    d->Y = carve(c, (size_t)(d->parts_max + 1) * out * stretches, real);
-    d->Q = carve(c, (size_t)(d->parts_max + 1) * coordinates * stretches, real);
-    d->Y_slope = carve(c, (losses + loads) * stretches, real);
-    d->load = carve(c, loads * BLOCK_STRETCHES, real);
-    d->load_slope = carve(c, loads * BLOCK_STRETCHES, real);
-    d->damped = carve(c, losses, real);
-    d->rate_max = carve(c, losses, real);
-    d->apart_max = carve(c, (size_t)d->s->n_apart, real);
-    d->work = carve(c, work * size, real);
-    d->drift = carve(c, d->storeys ? n * m : 0, real);
-    d->answer = carve(c, d->storeys ? n * n : 0, real);
-    d->spent = carve(c, d->storeys ? n : 0, real);
+    CARVE(c, d->D, m * m);
+    CARVE(c, d->Y_ddot, m * size);
+    CARVE(c, d->coordinates, coordinates * size);
+    CARVE(c, d->outputs, out * size);
+    CARVE(c, d->slopes, (losses + loads) * size);
+    CARVE(c, d->exponential, size * size);
+    CARVE(c, d->whole, size * size);
+    CARVE(c, d->z, size);
+    CARVE(c, d->Z, size * stretches);
+    CARVE(c, d->Z_next, size * stretches);
+    CARVE(c, d->Y, (size_t)(d->parts_max + 1) * out * stretches);
+    CARVE(c, d->Q, (size_t)(d->parts_max + 1) * coordinates * stretches);
+    CARVE(c, d->Y_slope, (losses + loads) * stretches);
+    CARVE(c, d->load, loads * BLOCK_STRETCHES);
+    CARVE(c, d->load_slope, loads * BLOCK_STRETCHES);
+    CARVE(c, d->damped, losses);
+    CARVE(c, d->rate_max, losses);
+    CARVE(c, d->apart_max, (size_t)d->s->n_apart);
+    CARVE(c, d->work, work * size);
+    CARVE(c, d->drift, d->storeys ? n * m : 0);
+    CARVE(c, d->answer, d->storeys ? n * n : 0);
+    CARVE(c, d->spent, d->storeys ? n : 0);
 }
 
 /* -- storeys that yield -------------------------------------------------------------------------------------------- */

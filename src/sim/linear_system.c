@@ -10,13 +10,13 @@
 static void layout(void *system, Carve *c)
 {
     LinearSystem *s = system;
-    const size_t n = (size_t)s->n, m = (size_t)s->m, losses = (size_t)s->n_loss, real = sizeof(double);
-    s->omega = carve(c, m, real);
-    s->gamma = carve(c, m, real);
-    s->psi = carve(c, n * m, real);
-    s->P = carve(c, losses * m, real);
-    s->loss = carve(c, losses, real);
-    s->apart = carve(c, (size_t)s->n_apart * m, real);
+    const size_t n = (size_t)s->n, m = (size_t)s->m, losses = (size_t)s->n_loss;
+    CARVE(c, s->omega, m);
+    CARVE(c, s->gamma, m);
+    CARVE(c, s->psi, n * m);
+    CARVE(c, s->P, losses * m);
+    CARVE(c, s->loss, losses);
+    CARVE(c, s->apart, (size_t)s->n_apart * m);
 }
 
 static Status reserve(LinearSystem *s, Err *err)

@@ -33,12 +33,12 @@ typedef struct {
 static void layout(void *polish, Carve *c)
 {
     Polish *p = polish;
-    const size_t n_var = p->problem->n_var, real = sizeof(double);
-    p->u = carve(c, n_var, real);
-    p->x = carve(c, n_var, real);
-    p->at = carve(c, n_var, real);
-    p->f = carve(c, p->problem->n_obj, real);
-    p->g = carve(c, p->problem->n_con, real);
+    const size_t n_var = p->problem->n_var;
+    CARVE(c, p->u, n_var);
+    CARVE(c, p->x, n_var);
+    CARVE(c, p->at, n_var);
+    CARVE(c, p->f, p->problem->n_obj);
+    CARVE(c, p->g, p->problem->n_con);
 }
 
 static double value_of(const Polish *p, const double f[])

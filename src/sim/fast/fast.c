@@ -7,81 +7,81 @@
 #include "sim/fast/kernel.h"
 
 /* Room for vectors of `length` numbers each. */
-#define CARVE(c, length, ...)                                                                                          \
+#define CARVE_EACH(c, length, ...)                                                                                     \
     do {                                                                                                               \
         vec **const of[] = {__VA_ARGS__};                                                                              \
         for (size_t i_ = 0; i_ < sizeof of / sizeof of[0]; i_++)                                                       \
-            *of[i_] = carve(c, length, sizeof(double));                                                                \
+            *CARVE(c, of[i_], length);                                                                \
     } while (0)
 
 static void layout_state(State *s, Carve *c, size_t modes, size_t channels)
 {
-    CARVE(c, modes, &s->q, &s->v, &s->load, &s->contact_work, &s->ground_work, &s->defect);
-    CARVE(c, channels, &s->w, &s->w_dot, &s->force);
+    CARVE_EACH(c, modes, &s->q, &s->v, &s->load, &s->contact_work, &s->ground_work, &s->defect);
+    CARVE_EACH(c, channels, &s->w, &s->w_dot, &s->force);
 }
 
 static void layout_flight(FlightScratch *f, Carve *c, size_t modes, size_t floors)
 {
-    CARVE(c, modes, &f->amplitude, &f->start_q, &f->start_v, &f->start_a, &f->start_j, &f->end_q, &f->end_v, &f->end_a,
-          &f->end_j, &f->bound_q, &f->bound_a);
-    CARVE(c, floors, &f->u0, &f->u0_dot, &f->u1, &f->u1_dot, &f->core0, &f->core0_dot, &f->core1, &f->core1_dot, &f->a0,
-          &f->a0_dot, &f->a1, &f->a1_dot, &f->error_u, &f->error_core, &f->error_a, &f->reach_a);
+    CARVE_EACH(c, modes, &f->amplitude, &f->start_q, &f->start_v, &f->start_a, &f->start_j, &f->end_q, &f->end_v,
+               &f->end_a, &f->end_j, &f->bound_q, &f->bound_a);
+    CARVE_EACH(c, floors, &f->u0, &f->u0_dot, &f->u1, &f->u1_dot, &f->core0, &f->core0_dot, &f->core1, &f->core1_dot,
+               &f->a0, &f->a0_dot, &f->a1, &f->a1_dot, &f->error_u, &f->error_core, &f->error_a, &f->reach_a);
 }
 
 static void layout_contact(ContactScratch *s, Carve *c, size_t modes, size_t floors)
 {
-    CARVE(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bend_q, &s->bend_a, &s->bound_q,
-          &s->bound_a);
-    CARVE(c, floors, &s->missed);
+    CARVE_EACH(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bend_q, &s->bend_a, &s->bound_q,
+               &s->bound_a);
+    CARVE_EACH(c, floors, &s->missed);
     for (int i = 0; i < 9; i++)
-        CARVE(c, floors, &s->sample[i / 3][i % 3]);
+        CARVE_EACH(c, floors, &s->sample[i / 3][i % 3]);
 }
 
 static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)
 {
-    CARVE(c, modes, &r->bound_q, &r->bound_a);
-    CARVE(c, floors, &r->u, &r->drift, &r->a, &r->core);
+    CARVE_EACH(c, modes, &r->bound_q, &r->bound_a);
+    CARVE_EACH(c, floors, &r->u, &r->drift, &r->a, &r->core);
 }
 
 static void layout_level(Level *l, Carve *c, size_t rows, size_t modes, size_t channels)
 {
-    CARVE(c, FLOW_ROWS * modes, &l->coef);
-    CARVE(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
-    l->compliance = carve(c, COMPLIANCES * rows * channels, sizeof(double));
-    l->compliance_pair = carve(c, rows * rows, sizeof(v4));
+    CARVE_EACH(c, FLOW_ROWS * modes, &l->coef);
+    CARVE_EACH(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
+    CARVE(c, l->compliance, COMPLIANCES * rows * channels);
+    CARVE(c, l->compliance_pair, rows * rows);
 }
 
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
     const size_t channels = k->may_yield ? 2 * floors : floors, rows = k->may_yield ? channels : n;
-    CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
-          &k->max_shape_drift);
-    CARVE(c, modes, &k->held, &k->push[0], &k->push[1], &k->push_rise, &k->swing[0], &k->swing[1]);
-    CARVE(c, floors, &k->rest, &k->peak_u, &k->peak_d, &k->peak_a);
-    CARVE(c, channels, &k->gap, &k->middle, &k->bubble);
+    CARVE_EACH(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
+               &k->max_shape_drift);
+    CARVE_EACH(c, modes, &k->held, &k->push[0], &k->push[1], &k->push_rise, &k->swing[0], &k->swing[1]);
+    CARVE_EACH(c, floors, &k->rest, &k->peak_u, &k->peak_d, &k->peak_a);
+    CARVE_EACH(c, channels, &k->gap, &k->middle, &k->bubble);
     layout_state(&k->now, c, modes, channels);
     layout_state(&k->next, c, modes, channels);
     layout_flight(&k->flight, c, modes, floors);
     layout_contact(&k->contact, c, modes, floors);
     layout_reach(&k->reach, c, modes, floors);
-    CARVE(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
-          &k->record.most, &k->record.per_most);
-    CARVE(c, floors, &k->record.force, &k->record.plastic);
+    CARVE_EACH(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
+               &k->record.most, &k->record.per_most);
+    CARVE_EACH(c, floors, &k->record.force, &k->record.plastic);
     for (int i = 0; i < HELD_MAX; i++)
-        CARVE(c, modes - floors, &k->record.held[i].q, &k->record.held[i].v); /* of the building */
+        CARVE_EACH(c, modes - floors, &k->record.held[i].q, &k->record.held[i].v); /* of the building */
     for (int i = 0; i < 4; i++) {
-        CARVE(c, modes, &k->record.batch_q[i]);
-        CARVE(c, floors, &k->record.batch_u[i]);
+        CARVE_EACH(c, modes, &k->record.batch_q[i]);
+        CARVE_EACH(c, floors, &k->record.batch_u[i]);
     }
-    k->R = carve(c, modes * floors, sizeof(double));
-    k->flex = carve(c, n * floors, sizeof(double));
-    k->R_abs = carve(c, modes * floors, sizeof(double));
-    k->D_abs = carve(c, modes * floors, sizeof(double));
-    k->RT = carve(c, modes * channels, sizeof(double));
+    CARVE(c, k->R, modes * floors);
+    CARVE(c, k->flex, n * floors);
+    CARVE(c, k->R_abs, modes * floors);
+    CARVE(c, k->D_abs, modes * floors);
+    CARVE(c, k->RT, modes * channels);
     k->E = k->may_yield ? carve(c, modes * channels, sizeof(double)) : k->R;
-    k->newton_g = carve(c, rows * rows, sizeof(m22));
-    k->newton_LU = carve(c, rows * rows, sizeof(m22));
+    CARVE(c, k->newton_g, rows * rows);
+    CARVE(c, k->newton_LU, rows * rows);
     for (int i = 0; i <= LEVEL_MAX; i++)
         layout_level(&k->level[i], c, rows, modes, channels);
 }
