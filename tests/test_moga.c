@@ -308,7 +308,7 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
         assert_at_most(worst_kept, best_left);
     }
     assert_int_equal(selection_select(s, 5, F, NULL, KEEP, &(Random){0}, chosen), 5);
-    selection_free(s);
+    free(s);
     directions_free(&d);
 }
 
@@ -332,7 +332,7 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     assert_int_equal(chosen[1], 1);
     for (size_t i = 2; i < 12; i++)
         assert_int_equal(chosen[i], 18 + i);
-    selection_free(s);
+    free(s);
     directions_free(&d);
 }
 
@@ -364,7 +364,7 @@ TEST(thousands_of_designs_are_selected_in_seconds)
     const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
     if (seconds > 5.0)
         fail_msg("%.1f s", seconds);
-    selection_free(s);
+    free(s);
     directions_free(&d);
     free(F);
     free(selected);
@@ -548,7 +548,7 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     assert_int_equal(infill_pick(q, allowed), 2);
     assert_int_equal(infill_pick(q, allowed), 0);
     assert_int_equal(infill_pick(q, allowed), 4); /* infeasible most likely, but the one with a gain */
-    infill_free(q);
+    free(q);
     directions_free(&d);
 }
 
@@ -590,8 +590,8 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
                 infill_take(lazy, taken[n++]);
             }
         }
-        infill_free(lazy);
-        infill_free(anew);
+        free(lazy);
+        free(anew);
         directions_free(&d);
     }
 }
@@ -645,7 +645,7 @@ TEST(the_lengths_of_rays_measure_the_hypervolume)
         ratio += pow(one / half, 3.0) / (double)(d.n - 3);
     }
     assert_close(ratio, 8.0, 1e-6);
-    infill_free(q);
+    free(q);
     directions_free(&d);
 }
 
@@ -682,7 +682,7 @@ TEST(the_slope_of_pbi_equals_differences)
             assert_less(fabs(slope[k] - (up - down) / (2 * h)), 1e-6);
         }
     }
-    infill_free(q);
+    free(q);
     directions_free(&d);
 }
 

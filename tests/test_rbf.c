@@ -47,7 +47,7 @@ TEST(the_surface_goes_through_its_data)
             rbf_eval(m, 1, X + i * D, f, NULL);
             assert_less(fabs(f[0] - F[i * OUT]), 1e-4);
         }
-        rbf_free(m);
+        free(m);
     }
 }
 
@@ -62,7 +62,7 @@ TEST(linear_functions_are_reproduced_everywhere)
         assert_close(f[1], wanted[i * OUT + 1], 1e-9);
     }
     assert_less(1 - 1e-12, rbf_explained(m, 1));
-    rbf_free(m);
+    free(m);
 }
 
 TEST(tuning_lowers_the_error_at_unseen_points)
@@ -76,7 +76,7 @@ TEST(tuning_lowers_the_error_at_unseen_points)
             rbf_eval(m, 1, Y + i * D, f, NULL);
             square[tune] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / N;
         }
-        rbf_free(m);
+        free(m);
     }
     assert_less(square[1], square[0]);
     assert_less(sqrt(square[1]), 5e-3);
@@ -123,8 +123,8 @@ TEST(closed_form_leave_one_out_errors_equal_refits)
                     assert_less(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])), 2e-6);
                 }
             }
-    rbf_free(all);
-    rbf_free(without);
+    free(all);
+    free(without);
 }
 
 /* Answers again of the same designs are centres that coincide, and the likelihood of a surface knows them by their mean
@@ -167,8 +167,8 @@ TEST(a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them)
         for (size_t k = 0; k < OUT; k++)
             assert_close(f[k], wanted[k], 1e-9);
     }
-    rbf_free(means);
-    rbf_free(all);
+    free(means);
+    free(all);
 }
 
 /* Every other answer scatters ten times as much. The nugget is that of the rest. */
@@ -193,7 +193,7 @@ TEST(tuning_finds_the_nugget_of_answers_of_different_variance)
             rbf_eval(m, 1, Y + i * D, f, NULL);
             square[told] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / MANY;
         }
-        rbf_free(m);
+        free(m);
     }
     if (!(square[1] < 0.25 * square[0] && square[1] < deviation * deviation))
         fail_msg("root mean square error %g where the variances are told, %g where they are not", sqrt(square[1]),
@@ -209,7 +209,7 @@ TEST(equal_designs_with_different_answers_are_averaged)
     Rbf *m = fitted(N, X, F, 1);
     rbf_eval(m, 1, X, f, NULL);
     assert_less(fabs(f[0] - (F[0] + 0.1)), 0.08);
-    rbf_free(m);
+    free(m);
 }
 
 TEST(the_error_estimate_is_of_the_size_of_the_true_error)
@@ -224,7 +224,7 @@ TEST(the_error_estimate_is_of_the_size_of_the_true_error)
             square += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]);
             estimate += e[0] * e[0];
         }
-        rbf_free(m);
+        free(m);
     }
     if (!(estimate > square / 4 && estimate < square * 9))
         fail_msg("estimate %g, true %g", estimate, square);
@@ -240,7 +240,7 @@ TEST(a_constant_output_is_predicted_without_error)
     rbf_eval(m, 1, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
     assert_close(f[0], 4.0, 1e-12);
     assert_less(e[0], 1e-12);
-    rbf_free(m);
+    free(m);
 }
 
 TEST(a_value_that_is_not_finite_is_refused)
@@ -253,7 +253,7 @@ TEST(a_value_that_is_not_finite_is_refused)
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
     assert_int_equal(rbf_fit(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
     assert_int_equal(rbf_tune(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
-    rbf_free(m);
+    free(m);
 }
 
 /* Without that centre nothing is known of its variable: its coefficient of the tail has no leave-one-out error. */
@@ -272,7 +272,7 @@ TEST(a_centre_that_alone_moves_a_variable_is_fitted_all_the_same)
         rbf_eval(m, 1, (const double[D]){0.1, 0.2, 0.1, 0.1}, f, e);
         for (int k = 0; k < OUT; k++)
             assert_true(isfinite(f[k]) && isfinite(e[k]) && isfinite(rbf_explained(m, (size_t)k)));
-        rbf_free(m);
+        free(m);
     }
 }
 
@@ -293,7 +293,7 @@ TEST(the_mean_stands_for_an_output_that_cannot_be_fitted)
     assert_true(rbf_explained(m, 0) == 0.0 && rbf_explained(m, 1) > 0.0);
     for (int i = 0; i < N; i++)
         assert_close(rbf_leave_one_out(m, 0)[i], (F[i * OUT] - mean) * N / (N - 1), 1e-9);
-    rbf_free(m);
+    free(m);
 }
 
 TEST(the_slope_of_the_surface_equals_differences_for_every_form)
@@ -323,7 +323,7 @@ TEST(the_slope_of_the_surface_equals_differences_for_every_form)
             assert_less(fabs(J[d] - (up[0] - down[0]) / (2 * h)), 1e-4);
             assert_less(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)), 10.0); /* of 1e5 */
         }
-        rbf_free(m);
+        free(m);
     }
 }
 
@@ -361,7 +361,7 @@ TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_ther
         spread += (answer - 5.0) * (answer - 5.0);
     }
     assert_less(square, 0.1 * spread);
-    rbf_free(m);
+    free(m);
 }
 
 int main(void)

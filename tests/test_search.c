@@ -591,7 +591,7 @@ static void test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit
                  unlikely);
     population_free(&p);
     surrogate_free(s);
-    infill_free(near);
+    free(near);
     directions_free(&vectors);
     pareto_archive_free(&a);
 }

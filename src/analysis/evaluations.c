@@ -32,7 +32,7 @@ Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *e
 {
     EvaluatedRecord *more = realloc(e->record, (e->n_records + 1) * sizeof *more);
     if (!more)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu records", e->n_records + 1);
+        return fail_memory(err, e->n_records + 1, "records");
     e->record = more;
     more[e->n_records] = (EvaluatedRecord){.path = strdup(path), .from_folder = from_folder};
     if (!more[e->n_records].path)
@@ -88,9 +88,8 @@ static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
     if (e->level)
         motion_unscale(&s.motion);
     s.sim.replicates = e->replicates > 0 ? e->replicates : 1;
-    const Status status = paths && scenes
-                              ? tower_open_scenes(&e->tower, &s, e->n_records, paths, n, scenes, err)
-                              : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * N_EVALUATED);
+    const Status status = paths && scenes ? tower_open_scenes(&e->tower, &s, e->n_records, paths, n, scenes, err)
+                                          : fail_memory(err, n * N_EVALUATED, "simulations");
     free(paths);
     free(scenes);
     return status;
@@ -113,9 +112,7 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
 {
     TRY(open_tower(e, s, err));
     e->is_estimated = s->sim.engine == ENGINE_FAST;
-    e->run = calloc(e->n_records * e->n_levels, sizeof *e->run);
-    if (!e->run)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu records", e->n_records);
+    TRY_ROOM(e->run, e->n_records * e->n_levels, "records", err);
     for (size_t i = 0; i < e->n_records; i++) {
         EvaluatedRecord *r = &e->record[i];
         for (size_t l = 0; l < e->n_levels && r->readable == STATUS_OK; l++)
@@ -178,7 +175,7 @@ static Status run_round(Evaluations *e, MakeTasks *make, const double x[], Evalu
     SimTask *tasks = calloc(n * N_WITH_DEVICES, sizeof *tasks);
     size_t n_tasks = 0;
     if (!tasks)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * N_WITH_DEVICES);
+        return fail_memory(err, n * N_WITH_DEVICES, "simulations");
     for (size_t i = 0; i < n; i++)
         if (e->record[i / e->n_levels].readable == STATUS_OK)
             n_tasks += make(e, i, x, tasks + n_tasks);

@@ -59,8 +59,7 @@ Status full_model_find(const Settings *settings, SceneKind kind, size_t n, const
     if (estimates)
         out->error = calloc(n, N_MEASURES * sizeof *out->error);
     const int is_there = tasks && out->result[REDUCED] && out->result[FULL] && (out->error || !estimates);
-    const Status status = is_there ? find(&s, kind, n, X, tasks, out, err)
-                                   : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
+    const Status status = is_there ? find(&s, kind, n, X, tasks, out, err) : fail_memory(err, n, "simulations");
     free(tasks);
     if (status != STATUS_OK)
         full_model_free(out);

@@ -120,7 +120,7 @@ static Status simulate(Job *job, const Settings *s, Err *err)
     }
     const char *const record = s->motion.record;
     Status status = job->parts && tasks ? tower_open_scenes(&p, s, 1, &record, job->n_scenes, job->scene, err)
-                                        : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
+                                        : fail_memory(err, n, "simulations");
     if (status == STATUS_OK) {
         status = tower_run(&p, n_tasks, tasks, NULL, NULL, err);
         problem_close(&p);
@@ -136,7 +136,7 @@ static Status find(Job *job, const Settings *s, Err *err)
     job->out = calloc(job->n_var + N_KEYS, sizeof *job->out);
     job->X = calloc(job->n_var * SIDES_OF_TWO_STEPS * job->n_var, sizeof *job->X);
     if (!job->out || !job->X)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu parameters", job->n_var + N_KEYS);
+        return fail_memory(err, job->n_var + N_KEYS, "parameters");
     list_variables(job);
     list_settings(job, s);
     TRY(simulate(job, s, err));

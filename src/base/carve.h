@@ -4,6 +4,7 @@
  *
  *   CARVE(c, m->x, n);                                   m->x: room for n of what it points to
  *   m->store = carve_all(layout, m);                     NULL: out of memory
+ *   m = carve_object(layout, &plain, sizeof plain);      the same with the object itself
  *
  * Every slice starts on a cache line. The store is zeroed and released by free. */
 #ifndef IMTET_BASE_CARVE_H
@@ -43,6 +44,19 @@ static inline void *carve_all(void (*layout)(void *object, Carve *c), void *obje
     if (store)
         layout(object, &(Carve){.base = store});
     return store;
+}
+
+/* An object and its arrays in one store: a copy of `plain` (size), which knows how long they are. NULL: no memory. */
+static inline void *carve_object(void (*layout)(void *object, Carve *c), void *plain, size_t size)
+{
+    Carve c = {0};
+    carve(&c, 1, size);
+    const size_t own = c.used;
+    layout(plain, &c);
+    char *object = carve_store(&c);
+    if (object)
+        layout(memcpy(object, plain, size), &(Carve){object, own});
+    return object;
 }
 
 /* A wider slice that begins with the n_old elements of the old one. */

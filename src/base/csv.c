@@ -23,7 +23,7 @@ static Status read_stream(FILE *f, const char *path, size_t largest, char **text
     for (size_t capacity = 1 << 16; *length <= largest; capacity *= 2) {
         char *wider = realloc(*text, capacity + 1);
         if (!wider)
-            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu bytes", path, capacity);
+            return fail_memory(err, capacity, "bytes");
         *text = wider;
         *length += fread(*text + *length, 1, capacity - *length, f);
         (*text)[*length] = 0;
@@ -212,9 +212,7 @@ static Status read_names(Reading *r, const char *from, const char *to, Err *err)
 {
     Table *t = r->t;
     size_t n = 0;
-    t->names = calloc(t->n_cols, sizeof *t->names);
-    if (!t->names)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu column names", t->path, t->n_cols);
+    TRY_ROOM(t->names, t->n_cols, "column names", err);
     for (const char *p = from; p <= to; n++) {
         const Cell c = cell_next(&p, to, r->separator);
         if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
@@ -238,7 +236,7 @@ static Status room_for_row(Reading *r, Err *err)
         t->values = wider;
     int *line = wider ? realloc(t->line, rows * sizeof *line) : NULL;
     if (!line)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows", t->path, rows);
+        return fail_memory(err, rows, "rows");
     t->line = line;
     r->rows = rows;
     return STATUS_OK;
@@ -301,7 +299,7 @@ static Status read_rows(Reading *r, size_t length, Err *err)
     if (r->of_words)
         t->text = malloc(2 * length + 1); /* a cell is closed by a zero instead of its separator */
     if (r->of_words && !t->text)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu bytes", t->path, 2 * length);
+        return fail_memory(err, 2 * length, "bytes");
     while (next_row(r, &from, &to)) {
         for (const char *p = from; t->n_cols == 0 || (p > from && p <= to); t->n_cols++)
             cell_next(&p, to, r->separator);

@@ -114,9 +114,8 @@ static int eigen(int n, double A[], double B[], double values[])
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
 {
     const size_t nn = (size_t)n * (size_t)n;
-    double *A = malloc(2 * nn * sizeof *A);
-    if (!A)
-        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d x %d matrices", n, n);
+    double *A;
+    TRY_ROOM(A, 2 * nn, "numbers of two matrices", err);
     double *B = A + nn;
     memcpy(A, K, nn * sizeof *A);
     memcpy(B, M, nn * sizeof *B);

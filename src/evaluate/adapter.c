@@ -90,10 +90,9 @@ static Status open_all(Adapter *a, const Settings *s, Err *err)
 
 Status adapter_open(Adapter **out, const Settings *s, Err *err)
 {
-    Adapter *a = calloc(1, sizeof *a);
     *out = NULL;
-    if (!a)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    Adapter *a;
+    TRY_ROOM(a, 1, "a problem", err);
     a->threads = (int)threads_wanted(s->search.threads);
     const Status status = open_all(a, s, err);
     if (status == STATUS_OK)

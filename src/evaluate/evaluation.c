@@ -118,7 +118,7 @@ static Status grow(EvaluationTable *t, Err *err)
     for (size_t i = 0; i < t->n_used; i++)
         point_row(t, i);
     if (lacks)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", n_max);
+        return fail_memory(err, n_max, "evaluations");
     t->n_max = n_max;
     return STATUS_OK;
 }

@@ -83,9 +83,7 @@ static int take_word(const char **from, char **to)
 
 static Status split_command(External *e, const char *command, Err *err)
 {
-    e->text = calloc(strlen(command) + 2, 1);
-    if (!e->text)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the command");
+    TRY_ROOM(e->text, strlen(command) + 2, "bytes of the command", err);
     char *to = e->text;
     for (size_t n = 0;;) {
         command += strspn(command, " \t");
@@ -470,9 +468,7 @@ static Status set_kinds(External *e, const ProblemOptions *o, Err *err)
 
 static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
 {
-    e->lower = calloc(2 * e->n_var, sizeof *e->lower);
-    if (!e->lower)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu variables", e->n_var);
+    TRY_ROOM(e->lower, 2 * e->n_var, "bounds of variables", err);
     e->upper = e->lower + e->n_var;
     TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
     TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
@@ -494,7 +490,7 @@ static Status create_workers(External *e, size_t n, Err *err)
             break;
         w->request = w->line + LINE_MAX_BYTES;
     }
-    return e->n_workers == n ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", n);
+    return e->n_workers == n ? STATUS_OK : fail_memory(err, n, "workers");
 }
 
 static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
@@ -507,9 +503,8 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
 
 Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)
 {
-    External *e = calloc(1, sizeof *e);
-    if (!e)
-        return fail(err, STATUS_NO_MEMORY, "no memory for workers");
+    External *e;
+    TRY_ROOM(e, 1, "a set of workers", err);
     e->n_var = (size_t)o->variables;
     e->n_obj = (size_t)o->objectives;
     e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);

@@ -93,7 +93,7 @@ static Status slot_create(Slot **out, const Queue *q, Err *err)
     Slot *s = carve_store(&c);
     *out = s;
     if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs under way", q->n_pool + 1);
+        return fail_memory(err, q->n_pool + 1, "designs under way");
     layout(s, q, &(Carve){.base = (char *)s});
     return STATUS_OK;
 }
@@ -105,7 +105,7 @@ static Status widen(Queue *q, Err *err)
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         Slot **wider = realloc(*lists[i], n * sizeof *wider);
         if (!wider)
-            return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs under way", n);
+            return fail_memory(err, n, "designs under way");
         *lists[i] = wider;
     }
     q->n_max = n;
@@ -540,7 +540,7 @@ static Status start(Queue *q, Err *err)
         return q->problem->executor->start(&q->executing, q, err);
     q->worker = n > 1 ? calloc(n, sizeof *q->worker) : NULL;
     if (n > 1 && !q->worker)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu threads", n);
+        return fail_memory(err, n, "threads");
     for (; n > 1 && q->n_threads < n; q->n_threads++) {
         Worker *w = &q->worker[q->n_threads];
         *w = (Worker){.queue = q, .number = q->n_threads};
@@ -554,10 +554,9 @@ static Status start(Queue *q, Err *err)
 
 Status queue_open(Queue **out, const Problem *problem, QueueOrder order, long n_before, Err *err)
 {
-    Queue *q = calloc(1, sizeof *q);
     *out = NULL;
-    if (!q)
-        return fail(err, STATUS_NO_MEMORY, "no memory for designs under way");
+    Queue *q;
+    TRY_ROOM(q, 1, "a queue", err);
     q->problem = problem;
     q->order = order;
     q->last_request = q->last_id = n_before;

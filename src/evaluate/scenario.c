@@ -18,15 +18,13 @@ static Status build(Scenario *w, Err *err)
 Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err)
 {
     *out = *read;
-    out->accel = malloc(read->n * sizeof *out->accel);
-    if (!out->accel)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a motion of %zu samples", read->n);
+    TRY_ROOM(out->accel, read->n, "samples of a motion", err);
     memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
     const size_t rows = read->force_rows ? read->n_force_rows * (size_t)(read->n_force + 1) : 0;
     out->force_rows = rows ? malloc(rows * sizeof *out->force_rows) : NULL;
     if (rows && !out->force_rows) {
         motion_free(out);
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu forces", rows);
+        return fail_memory(err, rows, "forces");
     }
     if (rows)
         memcpy(out->force_rows, read->force_rows, rows * sizeof *out->force_rows);

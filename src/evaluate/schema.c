@@ -12,7 +12,7 @@
 static Status allocate(Schema *schema, Err *err)
 {
     schema->column = calloc(schema->n_var + schema->n_obj + schema->n_extra, sizeof *schema->column);
-    return schema->column ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu columns", schema->n_var);
+    return schema->column ? STATUS_OK : fail_memory(err, schema->n_var, "columns");
 }
 
 static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, Err *err)

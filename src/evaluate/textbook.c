@@ -154,9 +154,8 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
     if (m < 2 || n_var < m)
         return fail(err, STATUS_BAD_DATA,
                     "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
-    Exercise *e = calloc(1, sizeof *e);
-    if (!e)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    Exercise *e;
+    TRY_ROOM(e, 1, "a problem", err);
     e->function = textbook((size_t)(o->kind - PROBLEM_TEXTBOOK));
     e->n_var = (size_t)n_var;
     e->n_obj = (size_t)m;

@@ -58,10 +58,8 @@ static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err
 {
     const Recipe *r = t->recipe;
     const SceneChange *c = &r->scene[place % r->n_scenes];
-    Settings *s = malloc(sizeof *s);
-    *out = s;
-    if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for settings");
+    TRY_ROOM(*out, 1, "a set of settings", err);
+    Settings *s = *out;
     *s = r->settings;
     memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
     if (place >= r->n_scenes)
@@ -326,7 +324,7 @@ static Status make_room(Tower *t, Err *err)
     t->worker = calloc(t->n_places * t->n_workers, sizeof(SimWorker *));
     t->at = calloc(t->n_workers, sizeof *t->at);
     if (!t->record || !t->place || !t->worker || !t->at)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", r->n_scenes);
+        return fail_memory(err, r->n_scenes, "scenes");
     for (size_t i = 0; i < r->n_records; i++)
         pthread_mutex_init(&t->record[i].lock, NULL);
     for (size_t i = 0; i < t->n_places; i++)
@@ -427,7 +425,7 @@ static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes,
     if (!r && s->problem.kind != PROBLEM_TOWER)
         fail(err, STATUS_BAD_DATA, "problem.kind: is no tower, which alone has a building, a core and a motion");
     else if (!r)
-        fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", n_scenes);
+        fail_memory(err, n_scenes, "scenes");
     else
         *r = (Recipe){.settings = *s, .n_records = n_records, .n_scenes = n_scenes};
     return r;
@@ -471,7 +469,7 @@ Status tower_reopen(Problem *p, const Recipe *recipe, Err *err)
     const size_t size = recipe_size(recipe->n_records, recipe->n_scenes);
     Recipe *own = malloc(size);
     if (!own)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", recipe->n_scenes);
+        return fail_memory(err, recipe->n_scenes, "scenes");
     memcpy(own, recipe, size);
     return open_recipe(p, own, SIZE_MAX, err);
 }
@@ -586,9 +584,8 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err)
 {
-    SimTask *tasks = calloc(n, sizeof *tasks);
-    if (!tasks)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    SimTask *tasks;
+    TRY_ROOM(tasks, n, "designs", err);
     for (size_t i = 0; i < n; i++)
         tasks[i] = (SimTask){.x = X + i * p->n_var, .n_parts = p->n_parts, .summary = &out[i]};
     const Status status = run(p, n, tasks, shown, NULL, NULL, err);

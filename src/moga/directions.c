@@ -82,7 +82,7 @@ Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner
     if (d->W && parts)
         return STATUS_OK;
     directions_free(d);
-    return fail(err, STATUS_NO_MEMORY, "no memory for %zu reference directions", n);
+    return fail_memory(err, n, "reference directions");
 }
 
 /* Candidate j of the spread: the axes, then uniform on the positive part of the sphere. */
@@ -144,7 +144,7 @@ Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err)
     if (d->W && C)
         return STATUS_OK;
     directions_free(d);
-    return fail(err, STATUS_NO_MEMORY, "no memory for %zu directions", n);
+    return fail_memory(err, n, "directions");
 }
 
 void directions_unit(const Directions *d, double unit[])

@@ -25,7 +25,6 @@ struct Infill {
     double *value;                                  /* (n, n_dir) of the candidates */
     double *gain;                                   /* (n) */
     const double *violation, *uncertainty, *chance; /* (n) */
-    void *store;
 };
 
 static void layout(void *infill, Carve *c)
@@ -46,20 +45,11 @@ static void layout(void *infill, Carve *c)
 
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)
 {
-    Infill *q = calloc(1, sizeof *q);
-    *out = q;
+    const size_t n_obj = vectors->n_obj;
+    Infill plain = {kind, n_obj, vectors->n, candidates_max, .normalisation.n_obj = n_obj};
+    Infill *q = *out = carve_object(layout, &plain, sizeof plain);
     if (!q)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the infill criterion");
-    q->n_obj = q->normalisation.n_obj = vectors->n_obj;
-    q->n_dir = vectors->n;
-    q->kind = kind;
-    q->n_max = candidates_max;
-    q->store = carve_all(layout, q);
-    if (!q->store) {
-        infill_free(q);
-        *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for infill among %zu designs", candidates_max);
-    }
+        return fail_memory(err, candidates_max, "candidates of infill");
     directions_unit(vectors, q->unit);
     for (size_t r = 0; r < q->n_dir; r++)
         for (size_t k = 0; k < q->n_obj; k++) {
@@ -67,13 +57,6 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
             q->over[k * q->n_dir + r] = 1.0 / fmax(q->unit[r * q->n_obj + k], LEAST);
         }
     return STATUS_OK;
-}
-
-void infill_free(Infill *q)
-{
-    if (q)
-        free(q->store);
-    free(q);
 }
 
 /* Minus the length of every ray that f dominates. */

@@ -12,7 +12,7 @@
  * spreads over the vectors. Where no candidate has a gain the least certain one is picked, where none is feasible the
  * least violating.
  *
- * Life cycle  infill_create -> (infill_measure -> infill_offer -> infill_pick ...) ... -> infill_free
+ * Life cycle  infill_create -> (infill_measure -> infill_offer -> infill_pick ...) ... -> free
  * Memory      all of it in infill_create
  * Threads     one Infill per thread
  * Sources     Zhang and Li, IEEE Trans. Evol. Comput. 11 (2007) 712-731 (PBI)
@@ -28,7 +28,6 @@ typedef struct Infill Infill;
 typedef enum { INFILL_PBI, INFILL_HYPERVOLUME, INFILL_KINDS } InfillKind;
 
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err);
-void infill_free(Infill *q); /* NULL is fine */
 
 /* Normalises by the rows front[0..n) of F and takes their values as best_w. */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);

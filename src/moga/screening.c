@@ -126,7 +126,7 @@ static Status grow(Screening *q, Err *err)
     size_t *rows = realloc(q->rows, n_max * sizeof *rows);
     q->rows = rows ? rows : q->rows;
     if (!design || !y || !rows)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu screened designs", n_max);
+        return fail_memory(err, n_max, "screened designs");
     q->n_max = n_max;
     return STATUS_OK;
 }
@@ -307,7 +307,7 @@ static Status find_front(Screening *q, const Archive *a, Err *err)
         q->front = calloc(q->front_max, sizeof *q->front);
         q->is_chosen = calloc(q->front_max, 1);
         if (!q->front || !q->is_chosen)
-            return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", q->front_max);
+            return fail_memory(err, q->front_max, "designs");
     }
     memset(q->is_chosen, 0, a->n);
     Status status = nd_tree_create(&tree, a->n_obj, err);
@@ -355,9 +355,8 @@ static size_t append(Screening *q, const Archive *a, Batch *b, size_t n, size_t 
 static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hypervolume **out, Err *err)
 {
     const size_t m = a->n_obj;
-    double *lower = calloc(2 * m, sizeof *lower);
-    if (!lower)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a box of %zu objectives", m);
+    double *lower;
+    TRY_ROOM(lower, 2 * m, "corners of objectives", err);
     double *reference = lower + m;
     for (size_t k = 0; k < m; k++) {
         double min = INFINITY, max = -INFINITY;

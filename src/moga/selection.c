@@ -21,7 +21,6 @@ struct Selection {
     size_t *candidates; /* (n_dir) that are left in the layer which does not fit */
     size_t *ties;       /* (n_dir or n_max) */
     unsigned char *taken;
-    void *store;
 };
 
 static void layout(void *selection, Carve *c)
@@ -47,28 +46,13 @@ static void layout(void *selection, Carve *c)
 
 Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err)
 {
-    Selection *s = calloc(1, sizeof *s);
-    *out = s;
+    const size_t n_obj = directions->n_obj;
+    Selection plain = {n_max, n_obj, directions->n, .normalisation.n_obj = n_obj};
+    Selection *s = *out = carve_object(layout, &plain, sizeof plain);
     if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection");
-    s->n_max = n_max;
-    s->n_obj = s->normalisation.n_obj = directions->n_obj;
-    s->n_dir = directions->n;
-    s->store = carve_all(layout, s);
-    if (!s->store) {
-        selection_free(s);
-        *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection of %zu designs", n_max);
-    }
+        return fail_memory(err, n_max, "designs to select from");
     directions_unit(directions, s->unit);
     return STATUS_OK;
-}
-
-void selection_free(Selection *s)
-{
-    if (s)
-        free(s->store);
-    free(s);
 }
 
 /* Nearest direction and the distance of the normalised objectives from its line. */

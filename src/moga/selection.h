@@ -7,7 +7,7 @@
  *
  * Nothing is kept from one call to the next.
  *
- * Life cycle  selection_create -> selection_select ... -> selection_free
+ * Life cycle  selection_create -> selection_select ... -> free
  * Memory      all of it in selection_create, for at most n_max designs
  * Threads     one Selection per thread
  * Source      Deb and Jain (see moga/search.h). */
@@ -21,7 +21,6 @@ typedef struct Selection Selection;
 
 /* Borrows the directions. */
 Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err);
-void selection_free(Selection *s); /* NULL is fine */
 
 /* Selects min(n, keep) of F (n, n_obj), violation (n) or NULL; selected holds their rows in ascending order. */
 size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,

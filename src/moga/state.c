@@ -94,9 +94,9 @@ void state_free(Search *s)
     directions_free(&s->directions);
     directions_free(&s->criteria.vectors);
     pareto_archive_free(&s->common.archive);
-    selection_free(s->selection);
+    free(s->selection);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
-        infill_free(s->criteria.select[kind]);
+        free(s->criteria.select[kind]);
     surrogate_free(s->surrogate);
     screening_free(&s->screening);
     population_free(&s->population);
@@ -121,7 +121,7 @@ Status state_grow_rows(Search *s, Err *err)
     if (rows->importance && rows->counts)
         return STATUS_OK;
     rows->n_max = 0;
-    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->common.archive.n);
+    return fail_memory(err, s->common.archive.n, "designs");
 }
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */

@@ -105,10 +105,8 @@ static void hold_choices(Surrogate *s)
 
 Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
 {
-    Surrogate *s = calloc(1, sizeof *s);
-    *out = s;
-    if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the surrogate");
+    TRY_ROOM(*out, 1, "a surrogate", err);
+    Surrogate *s = *out;
     s->problem = problem;
     for (size_t d = 0; d < problem->n_var; d++)
         s->n_dim += n_coordinates(problem, d);
@@ -116,7 +114,7 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     s->n_max = surrogate_max;
     s->predict_max = predict_max;
     s->store = carve_all(layout, s);
-    Status status = s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
+    Status status = s->store ? STATUS_OK : fail_memory(err, predict_max, "predictions");
     if (status == STATUS_OK)
         hold_choices(s);
     if (status == STATUS_OK && s->n_dim <= RBF_DIM_MAX)
@@ -133,8 +131,8 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
 void surrogate_free(Surrogate *s)
 {
     if (s) {
-        rbf_free(s->rbf);
-        rbf_free(s->success);
+        free(s->rbf);
+        free(s->success);
         free(s->store);
         free(s->centre);
         free(s->distance);

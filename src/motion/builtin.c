@@ -237,9 +237,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
     const Model *model = &MODELS[k];
     m->n = (size_t)lround(model->duration_s / DT_S) + 1;
     m->dt_s = DT_S;
-    m->accel = malloc(m->n * sizeof *m->accel);
-    if (!m->accel)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", source, m->n);
+    TRY_ROOM(m->accel, m->n, "samples of a motion", err);
     generate(model, m->n, m->accel);
     normalize(model->pga_m_s2, m->n, m->accel);
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);

@@ -53,9 +53,7 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
     TRY(check_rows(t, err));
     const size_t width = (size_t)m->n_force + 1;
     m->n_force_rows = t->n_rows;
-    m->force_rows = calloc(t->n_rows * width, sizeof *m->force_rows);
-    if (!m->force_rows)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows", t->path, t->n_rows);
+    TRY_ROOM(m->force_rows, t->n_rows * width, "forces", err);
     for (size_t c = 0; c < t->n_cols; c++) {
         floor = 0;
         if (c > 0)

@@ -308,11 +308,9 @@ static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, do
     return STATUS_OK;
 }
 
-static Status allocate(Motion *m, const char *path, size_t n, double dt, Err *err)
+static Status allocate(Motion *m, size_t n, double dt, Err *err)
 {
-    m->accel = malloc(n * sizeof *m->accel);
-    if (!m->accel)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", path, n);
+    TRY_ROOM(m->accel, n, "samples of a motion", err);
     m->n = n;
     m->dt_s = dt;
     return STATUS_OK;
@@ -327,7 +325,7 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     if (!(n >= 2 && n <= most))
         return fail(err, STATUS_BAD_DATA, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n,
                     s->n, span);
-    TRY(allocate(m, s->path, (size_t)n, dt, err));
+    TRY(allocate(m, (size_t)n, dt, err));
     snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
              "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
     for (size_t k = 0, i = 0; k < m->n; k++) {
@@ -385,7 +383,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
     if (status != STATUS_OK)
         return resample(m, &s, how->dt_s, to_m_s2, offset, err);
-    TRY(allocate(m, path, c->n, dt, err));
+    TRY(allocate(m, c->n, dt, err));
     for (size_t i = 0; i < m->n; i++)
         m->accel[i] = to_m_s2 * (row_at(&s, i)->a - offset);
     return STATUS_OK;
@@ -439,9 +437,8 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
 {
     Members *members = user;
     Err why = {0};
-    Record *one = calloc(1, sizeof *one);
-    if (!one)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", members->path);
+    Record *one;
+    TRY_ROOM(one, 1, "a record", err);
     Status status = read_content(one, name, bytes, n, members->hints, members->deep + 1, &why);
     if (status == STATUS_OK)
         status = record_append(members->r, one, members->path, name, err);
@@ -512,9 +509,8 @@ static Status read_motion(Motion *m, Record *r, const char *path, const char *by
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
 {
     memset(m, 0, sizeof *m);
-    Record *r = calloc(1, sizeof *r);
-    if (!r)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", path);
+    Record *r;
+    TRY_ROOM(r, 1, "a record", err);
     const Status s = read_motion(m, r, path, text, length, how, err);
     record_free(r);
     free(r);

@@ -71,9 +71,8 @@ static Status subtract_baseline(Motion *m, int degree, Err *err)
 /* Zeros before and behind the record. */
 static Status pad(Motion *m, size_t before, size_t behind, Err *err)
 {
-    double *wider = calloc(before + m->n + behind, sizeof *wider);
-    if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to filter it", m->name);
+    double *wider;
+    TRY_ROOM(wider, before + m->n + behind, "samples of a motion", err);
     memcpy(wider + before, m->accel, m->n * sizeof *wider);
     free(m->accel);
     m->accel = wider;

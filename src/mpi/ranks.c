@@ -166,7 +166,7 @@ static Status more_tickets(Ranks *r, Err *err)
             break;
         idle[r->n_idle++] = r->n_tickets;
     }
-    return r->n_idle > 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu tasks under way", n);
+    return r->n_idle > 0 ? STATUS_OK : fail_memory(err, n, "tasks under way");
 }
 
 static void send_task(Ranks *r, int to, const Task *task)
@@ -365,19 +365,16 @@ static void stop(void *self)
 static Status start(void **self, Queue *q, Err *err)
 {
     size_t n;
-    Ranks *r = calloc(1, sizeof *r);
+    Ranks *r;
+    TRY_ROOM(r, 1, "a set of ranks", err);
     *self = r;
-    if (!r)
-        return fail(err, STATUS_NO_MEMORY, "no memory for ranks");
     cluster_executor(&n);
     r->queue = q;
     r->problem = queue_problem(q);
     r->n = (int)n;
     r->epoch = (int64_t)(1e9 * clock_seconds());
     r->looked_s = clock_seconds();
-    r->rank = calloc((size_t)r->n + 1, sizeof *r->rank);
-    if (!r->rank)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %d ranks", r->n);
+    TRY_ROOM(r->rank, r->n + 1, "ranks", err);
     TRY(open_problem(r, err));
     r->is_running = pthread_create(&r->thread, NULL, exchange, r) == 0;
     return r->is_running ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);

@@ -151,9 +151,7 @@ static Status start_workers(Service *s, Err *err)
 {
     const size_t n = s->problem.n_workers, part = s->problem.part_size;
     s->closing = 0;
-    s->worker = calloc(n, sizeof *s->worker);
-    if (!s->worker)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu threads", n);
+    TRY_ROOM(s->worker, n, "threads", err);
     for (; s->n_workers < n; s->n_workers++) {
         Worker *w = &s->worker[s->n_workers];
         *w = (Worker){.service = s, .number = s->n_workers};

@@ -67,7 +67,6 @@ struct Rbf {
     double *noise;  /* (n_out, n_max) variance of each value, in nuggets */
     Output *output;
     Worker *worker;
-    void *store;
 };
 
 /* S (n_dim + 1, stride): n centres C (3, n_dim, stride) warped and scaled, and their squares. */

@@ -64,22 +64,15 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     *out = NULL;
     if (threads > 1 && n_out > 1)
         TRY(linalg_room(n_out < (size_t)threads ? n_out : (size_t)threads, err));
-    Rbf *m = calloc(1, sizeof *m);
-    *out = m;
+    Rbf plain = {.n_max = n_max,
+                 .n_dim = n_dim,
+                 .n_out = n_out,
+                 .n_tail_max = 1 + 2 * n_dim,
+                 .stride = (n_max + KERNEL_LANES - 1) / KERNEL_LANES * KERNEL_LANES,
+                 .n_workers = n_out < (size_t)threads ? n_out : (size_t)threads};
+    Rbf *m = *out = carve_object(layout, &plain, sizeof plain);
     if (!m)
-        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant");
-    m->n_max = n_max;
-    m->n_dim = n_dim;
-    m->n_out = n_out;
-    m->n_tail_max = 1 + 2 * n_dim;
-    m->stride = (n_max + KERNEL_LANES - 1) / KERNEL_LANES * KERNEL_LANES;
-    m->n_workers = n_out < (size_t)threads ? n_out : (size_t)threads;
-    m->store = carve_all(layout, m);
-    if (!m->store) {
-        rbf_free(m);
-        *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant on %zu designs", n_max);
-    }
+        return fail_memory(err, n_max, "centres of an interpolant");
     for (size_t k = 0; k < n_out; k++) {
         m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN, 0.0};
         for (size_t d = 0; d < n_dim; d++)
@@ -87,13 +80,6 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
         m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
     }
     return STATUS_OK;
-}
-
-void rbf_free(Rbf *m)
-{
-    if (m)
-        free(m->store);
-    free(m);
 }
 
 void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[])

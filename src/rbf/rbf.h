@@ -16,7 +16,7 @@
  * over scales, warp and nugget and takes the kernel and tail with the smallest leave-one-out error; rbf_fit keeps them.
  *
  * Error       of a prediction: root mean square of the leave-one-out errors weighted with 1/r^4, a local average
- * Life cycle  rbf_create -> (rbf_fit or rbf_tune -> rbf_eval ...) ... -> rbf_free; rbf_tune now and then
+ * Life cycle  rbf_create -> (rbf_fit or rbf_tune -> rbf_eval ...) ... -> free; rbf_tune now and then
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
@@ -44,7 +44,6 @@ typedef struct Rbf Rbf;
 enum { RBF_DIM_MAX = 512 };
 
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
-void rbf_free(Rbf *m); /* NULL is fine */
 
 /* Fits F at X with the present forms and scales; variances are nugget times noise (n, n_out), NULL: 1; rbf_create
  * starts with Matern, linear tail, theta = 1 / n_dim, no warp. */

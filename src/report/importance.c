@@ -133,7 +133,7 @@ static Status find(Sobol *s, size_t known, Importance *out, Err *err)
             out->explained[k] = rbf_explained(m, k);
         out->n_centres = s->n;
     }
-    rbf_free(m);
+    free(m);
     return status;
 }
 

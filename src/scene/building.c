@@ -174,7 +174,7 @@ static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *fro
     m->n = from->n;
     *store = carve_all(layout, m);
     if (!*store)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d degrees of freedom", m->n);
+        return fail_memory(err, m->n, "degrees of freedom");
     memcpy(m->K, from->K, bytes);
     memcpy(m->M, from->M, bytes);
     return STATUS_OK;
@@ -202,9 +202,7 @@ static Status make_floors(Building *b, const BuildingFiles *files, const Buildin
     b->omega = m->omega;
     b->gamma = m->gamma;
     b->zeta = m->zeta;
-    b->storey_m = calloc(3 * (size_t)b->n, sizeof *b->storey_m);
-    if (!b->storey_m)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d heights", b->n);
+    TRY_ROOM(b->storey_m, 3 * (size_t)b->n, "numbers of storeys", err);
     b->yield_m = b->storey_m + b->n;
     b->yield_n_m = b->yield_m + b->n;
     TRY(find_heights(b, files, o, err));
@@ -317,9 +315,8 @@ void building_join_core(const CoreBeam *c, const BuildingModel *building, double
 Status building_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err)
 {
     const int m = b->model.n, mm = m * m;
-    double *K = malloc((3 * (size_t)mm + (size_t)m) * sizeof *K);
-    if (!K)
-        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d degrees of freedom", m);
+    double *K;
+    TRY_ROOM(K, 3 * (size_t)mm + (size_t)m, "numbers of modes", err);
     double *M = K + mm, *phi = M + mm, *omega = phi + mm;
     building_join_core(c, &b->model, K, M);
     const Status status = linalg_modes(m, K, M, omega, phi, err);

@@ -163,7 +163,7 @@ static Status allocate(BuildingFiles *b, int n, Err *err)
     TRY(frame_full_make(&b->floors, n, err));
     b->storey_m = calloc(2 * (size_t)n, sizeof *b->storey_m);
     b->yield_drift = b->storey_m ? b->storey_m + n : NULL;
-    return b->storey_m ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
+    return b->storey_m ? STATUS_OK : fail_memory(err, n, "floors");
 }
 
 /* ---- storeys -------------------------------------------------------------------------------------------------- */

@@ -79,9 +79,9 @@ Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double 
 {
     const int slaves = n + (base && base->rotation > 0) + (base && base->translation > 0);
     const size_t size = (size_t)(n + slaves), nn = (size_t)n * (size_t)n, rn = (size_t)slaves * (size_t)n;
-    double *whole_K = calloc(2 * size * size + (size_t)(slaves * slaves) + nn + rn + size * (size_t)n, sizeof *whole_K);
-    if (!whole_K)
-        return fail(err, STATUS_NO_MEMORY, "beam: no memory for %d elements", n);
+    double *whole_K;
+    TRY_ROOM(whole_K, 2 * size * size + (size_t)(slaves * slaves) + nn + rn + size * (size_t)n, "numbers of a core",
+             err);
     double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + slaves * slaves, *R = T + nn,
            *work = R + rn;
     assemble(n, beam, base, (int)size, whole_K, whole_M);
@@ -239,9 +239,8 @@ Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const 
 {
     CoreOptions by_theory = *o;
     by_theory.theory = theory;
-    CoreBeam *core = malloc(sizeof *core);
-    if (!core)
-        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
+    CoreBeam *core;
+    TRY_ROOM(core, 1, "a core", err);
     const Status status = core_beam_make(core, &by_theory, n, storey_m, t_base_m, t_top_m, err);
     *hz = status == STATUS_OK ? core->omega[0] / (2 * M_PI) : 0;
     free(core);

@@ -55,7 +55,7 @@ static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, s
     if ((n & (n - 1)) == 0) {
         char *wider = realloc(parts, (n ? 2 * n : 1) * size);
         if (!wider)
-            return fail(err, STATUS_NO_MEMORY, "no memory for %zu parts of a frame", n);
+            return fail_memory(err, n, "parts of a frame");
         memcpy(list, &wider, sizeof wider);
         parts = wider;
     }
@@ -172,9 +172,8 @@ static void find_levels(const Frame *f, double tolerance, double z[], int *n)
 
 static Status number_floors(Frame *f, Err *err)
 {
-    double *z = malloc((size_t)f->n[FRAME_ELEMENTS] * sizeof *z);
-    if (!z)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d elements", f->n[FRAME_ELEMENTS]);
+    double *z;
+    TRY_ROOM(z, f->n[FRAME_ELEMENTS], "heights of a frame", err);
     const double tolerance = 1e-6 * frame_extent(f);
     int n;
     find_levels(f, tolerance, z, &n);
@@ -267,9 +266,7 @@ Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
         return fail(err, STATUS_BAD_DATA, "%s: no floors: no level element has ends that may move sideways", model);
     if (f->n_floors > FLOORS_MAX)
         return fail(err, STATUS_BAD_DATA, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
-    f->storey_m = calloc((size_t)f->n_floors, sizeof *f->storey_m);
-    if (!f->storey_m)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d floors", f->n_floors);
+    TRY_ROOM(f->storey_m, f->n_floors, "storeys of a frame", err);
     if (rigid)
         tie_floors(f);
     return measure_storeys(f, model, err);

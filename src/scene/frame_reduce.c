@@ -85,9 +85,8 @@ static Status number_unknowns(Numbering *u, Err *err)
 {
     const Frame *f = u->frame;
     const int n = f->n[FRAME_NODES];
-    Place *place = malloc((size_t)n * sizeof *place);
-    if (!place)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d nodes", n);
+    Place *place;
+    TRY_ROOM(place, n, "nodes of a frame", err);
     for (int i = 0; i < n; i++)
         place[i] = (Place){f->node[i].z, f->node[i].x, i};
     qsort(place, (size_t)n, sizeof *place, by_height);
@@ -213,7 +212,7 @@ static Status find_kept(Numbering *u, Err *err)
     int named = 0;
     double largest = 0, *mass = calloc((size_t)n, sizeof *mass);
     if (!mass)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d masses", n);
+        return fail_memory(err, n, "masses");
     add_up_mass(f, mass);
     for (int i = 0; i < n; i++) {
         largest = fmax(largest, mass[i]);
@@ -232,7 +231,7 @@ static Status numbering_make(Numbering *u, const Frame *f, int full, Err *err)
     const int n = n_displacements(f);
     *u = (Numbering){.frame = f, .unknown = malloc((size_t)n * sizeof *u->unknown)};
     if (!u->unknown)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d unknowns", n);
+        return fail_memory(err, n, "unknowns");
     for (int i = 0; i < n; i++)
         u->unknown[i] = SLAVE;
     if (full)
@@ -357,9 +356,8 @@ static void sum_up(const Numbering *u, const Shapes *s, int is_mass, double A[])
 static Status check_sway(const Numbering *u, const Shapes *s, const double K[], Err *err)
 {
     const int n = n_masters(u);
-    double *L = malloc((size_t)(n * n) * sizeof *L);
-    if (!L)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d x %d", n, n);
+    double *L;
+    TRY_ROOM(L, n * n, "numbers of a frame", err);
     for (int j = 0; j < n; j++)
         for (int i = j; i < n; i++)
             L[j * n + i - j] = K[i * u->n_shapes + j];
@@ -418,9 +416,7 @@ static Status reduce(Numbering *u, FrameFull *out, Err *err)
     if (u->n_shapes > n_masters(u)) /* and so does what they miss of it */
         out->influence[n_masters(u)] = 1;
     Shapes s = {.rows = (size_t)u->n + 1};
-    s.Kss = calloc(n * band + (2 * shapes + 1) * s.rows, sizeof *s.Kss);
-    if (!s.Kss)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
+    TRY_ROOM(s.Kss, n * band + (2 * shapes + 1) * s.rows, "numbers of a frame", err);
     s.T = s.Kss + n * band;
     s.F = s.T + shapes * s.rows;
     s.diag = s.F + shapes * s.rows;
@@ -447,7 +443,7 @@ Status frame_full_make(FrameFull *full, int n, Err *err)
     const size_t size = (size_t)n, nn = size * size;
     *full = (FrameFull){.n = n, .K = calloc(2 * nn + size, sizeof *full->K)};
     if (!full->K)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d degrees of freedom", n);
+        return fail_memory(err, n, "degrees of freedom");
     full->M = full->K + nn;
     full->influence = full->M + nn;
     return STATUS_OK;

@@ -551,9 +551,8 @@ static Tcl_Interp *create_tcl(void)
 Status opensees_read(Frame *f, const char *path, double length_m, double force_n, Err *err)
 {
     memset(f, 0, sizeof *f);
-    Reader *r = calloc(1, sizeof *r);
-    if (!r)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", path);
+    Reader *r;
+    TRY_ROOM(r, 1, "a model", err);
     r->path = path;
     r->length = length_m;
     r->force = force_n;

@@ -27,7 +27,7 @@ static void layout(void *reduction, Carve *c)
     double **const square[] = {&r->Kii, &r->Mii, &r->factor, &r->phi};
     for (int k = 0; k < 4; k++)
         CARVE(c, *square[k], i * i);
-    CARVE(c, r->Psi, i * (size_t)r->f);
+    CARVE(c, r->Psi, i * r->f);
     CARVE(c, r->mu, i);
     CARVE(c, r->missed, i);
     CARVE(c, r->M_r, i);

@@ -66,10 +66,8 @@ static Status compare_theories(SceneSummary *s, const CoreOptions *core, const d
 static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *of, const Building *b,
                              double t_base, double t_top, Err *err)
 {
-    const int n = s->n_floors;
-    CoreBeam *beam = malloc(sizeof *beam);
-    if (!beam)
-        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
+    CoreBeam *beam;
+    TRY_ROOM(beam, 1, "a core", err);
     Status status = core_make(beam, core, of, b, t_base, t_top, err);
     if (status == STATUS_OK) {
         s->core_mass_kg = beam->mass_kg;

@@ -110,7 +110,7 @@ static Status growth_in(const Run *run, const double lower[], const double refer
     hypervolume_free(h);
     json_put(out, "simulated=%p volume=%p", simulated, volume);
     if (!first)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", n);
+        return fail_memory(err, n, "generations");
     free(first);
     return STATUS_OK;
 }

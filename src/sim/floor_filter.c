@@ -362,7 +362,7 @@ static void run_out(FloorFilter *f)
 Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err)
 {
     if (f->out_of_memory)
-        return fail(err, STATUS_NO_MEMORY, "filter: no memory for %d floors", f->n);
+        return fail_memory(err, f->n, "floors");
     if (!f->store)
         return filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, f->h, err);
     run_out(f);

@@ -88,7 +88,7 @@ static void differentiate(FloorRecord *f)
 Status floor_record_accelerations(FloorRecord *f, const double **rows, size_t *n, size_t *width, Err *err)
 {
     if (f->out_of_memory)
-        return fail(err, STATUS_NO_MEMORY, "floors: no memory for %zu samples", f->rows);
+        return fail_memory(err, f->rows, "samples");
     if (f->rows > 0)
         differentiate(f);
     *rows = f->u;

@@ -85,20 +85,19 @@ static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_buildi
 static void layout(void *object, Carve *c)
 {
     ForceMonitor *m = object;
-    CARVE(c, m->group, (size_t)m->n_groups);
-    CARVE(c, m->due, (size_t)m->n_groups);
+    CARVE(c, m->group, m->n_groups);
+    CARVE(c, m->due, m->n_groups);
     for (int i = 0; i < N_REACHES; i++)
-        CARVE(c, m->limit[i], (size_t)eights(m->n_groups) * LANES8);
+        CARVE(c, m->limit[i], eights(m->n_groups) * LANES8);
     for (int i = 0; i < m->n_groups; i++)
         layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i >= m->at_both, i < m->at_slow);
 }
 
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
 {
-    ForceMonitor *m = calloc(1, sizeof *m);
     *out = NULL;
-    if (!m)
-        return fail(err, STATUS_NO_MEMORY, "forces: out of memory");
+    ForceMonitor *m;
+    TRY_ROOM(m, 1, "a monitor of forces", err);
     m->n = n_floors;
     m->nb = nb;
     m->at_both = eights(2 * n_floors + 1);
@@ -108,7 +107,7 @@ Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
     m->store = carve_all(layout, m);
     if (!m->store) {
         free(m);
-        return fail(err, STATUS_NO_MEMORY, "forces: no memory for %d floors", n_floors);
+        return fail_memory(err, n_floors, "floors");
     }
     for (int i = m->at_slow; i < m->n_groups; i++) {
         m->group[i].spacing = SLOW_SPACING;

@@ -76,14 +76,14 @@ static void layout(void *linear, Carve *c)
     CARVE(c, d->z, size);
     CARVE(c, d->Z, size * stretches);
     CARVE(c, d->Z_next, size * stretches);
-    CARVE(c, d->Y, (size_t)(d->parts_max + 1) * out * stretches);
-    CARVE(c, d->Q, (size_t)(d->parts_max + 1) * coordinates * stretches);
+    CARVE(c, d->Y, (d->parts_max + 1) * out * stretches);
+    CARVE(c, d->Q, (d->parts_max + 1) * coordinates * stretches);
     CARVE(c, d->Y_slope, (losses + loads) * stretches);
     CARVE(c, d->load, loads * BLOCK_STRETCHES);
     CARVE(c, d->load_slope, loads * BLOCK_STRETCHES);
     CARVE(c, d->damped, losses);
     CARVE(c, d->rate_max, losses);
-    CARVE(c, d->apart_max, (size_t)d->s->n_apart);
+    CARVE(c, d->apart_max, d->s->n_apart);
     CARVE(c, d->work, work * size);
     CARVE(c, d->drift, d->storeys ? n * m : 0);
     CARVE(c, d->answer, d->storeys ? n * n : 0);
@@ -485,7 +485,7 @@ static Status prepare(Linear *d, const Motion *motion, Err *err)
     d->stretches_max = d->storeys ? 1 : d->s->m > LARGE || fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit < 1 ? 1 : fit;
     d->store = carve_all(layout, d);
     if (!d->store)
-        return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", n);
+        return fail_memory(err, n, "floors");
     set_acceleration(d);
     if (d->storeys)
         set_storeys(d);

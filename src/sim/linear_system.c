@@ -16,13 +16,13 @@ static void layout(void *system, Carve *c)
     CARVE(c, s->psi, n * m);
     CARVE(c, s->P, losses * m);
     CARVE(c, s->loss, losses);
-    CARVE(c, s->apart, (size_t)s->n_apart * m);
+    CARVE(c, s->apart, s->n_apart * m);
 }
 
 static Status reserve(LinearSystem *s, Err *err)
 {
     s->store = carve_all(layout, s);
-    return s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", s->n);
+    return s->store ? STATUS_OK : fail_memory(err, s->n, "floors");
 }
 
 void linear_system_free(LinearSystem *s)
@@ -93,7 +93,7 @@ static Status make_rigid(LinearSystem *s, const Building *b, const CoreBeam *cor
     if (!K || !like) {
         free(K);
         free(like);
-        return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", s->n);
+        return fail_memory(err, s->n, "floors");
     }
     double *M = K + mm, *psi = M + mm;
     building_join_core(core, &b->model, K, M);
@@ -145,9 +145,8 @@ static Status make_tmd(LinearSystem *s, const Building *b, double mass, const Li
 {
     const size_t m = (size_t)s->m;
     const double w_t = 2 * M_PI * d->tmd_hz;
-    double *K = calloc(3 * m * m + m, sizeof *K);
-    if (!K)
-        return fail(err, STATUS_NO_MEMORY, "linear: no memory for %zu modes", m);
+    double *K;
+    TRY_ROOM(K, 3 * m * m + m, "numbers of modes", err);
     double *M = K + m * m, *Q = M + m * m, *r = Q + m * m;
     for (size_t i = 0; i < m; i++)
         M[i * m + i] = 1;

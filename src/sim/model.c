@@ -21,7 +21,7 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
     model->store = p;
     if (!p || !model->like) {
         model_free(model);
-        return fail(err, STATUS_NO_MEMORY, "model: no memory for %d floors", n);
+        return fail_memory(err, n, "floors");
     }
     for (int i = 0; i < nb_max; i++)
         model->like[i] = i < n ? i : -1;

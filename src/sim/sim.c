@@ -73,9 +73,8 @@ double sim_steps_per_contact(const SimOptions *o)
 
 static Status set_tail_input(Scene *scene, Err *err)
 {
-    double *input = malloc(scene->motion->n * sizeof *input);
-    if (!input)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", scene->motion->name, scene->motion->n);
+    double *input;
+    TRY_ROOM(input, scene->motion->n, "samples of a motion", err);
     scene->run.tail_input = scene->tail_input = input;
     return tail_input(&scene->building.model, scene->motion, input, err);
 }
@@ -83,9 +82,7 @@ static Status set_tail_input(Scene *scene, Err *err)
 static Status set_neighbour(Scene *scene, Err *err)
 {
     const SceneOptions *o = &scene->options;
-    scene->neighbour = malloc(sizeof *scene->neighbour);
-    if (!scene->neighbour)
-        return fail(err, STATUS_NO_MEMORY, "core.model: out of memory");
+    TRY_ROOM(scene->neighbour, 1, "a neighbour", err);
     TRY(core_make(scene->neighbour, &o->core, &o->building, &scene->building, 0, 0, err));
     const size_t n = (size_t)scene->building.n;
     scene->building.hash ^= hash_fnv1a(scene->neighbour->K, n * n * sizeof *scene->neighbour->K, HASH_SEED);
@@ -98,9 +95,8 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
         return fail(err, STATUS_BAD_DATA, "%s: %zu samples, %g s apart, are no motion; two or more are needed",
                     motion->name, motion->n, motion->dt_s);
-    Scene *scene = calloc(1, sizeof *scene);
-    if (!scene)
-        return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
+    Scene *scene;
+    TRY_ROOM(scene, 1, "a scene", err);
     scene->options = *o;
     scene->motion = motion;
     scene->engine = engine_entry(o->sim.engine);
@@ -161,9 +157,8 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 {
     const int n = scene->building.n;
     CoreOptions options = scene->options.core;
-    CoreBeam *core = malloc(sizeof *core);
-    if (!core)
-        return fail(err, STATUS_NO_MEMORY, "modes: out of memory");
+    CoreBeam *core;
+    TRY_ROOM(core, 1, "a core", err);
     Design d;
     design_of(&scene->design, x, &d);
     if (d.side > 0)
@@ -183,9 +178,8 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
 {
     *out = NULL;
-    SimWorker *w = calloc(1, sizeof *w);
-    if (!w)
-        return fail(err, STATUS_NO_MEMORY, "simulator: out of memory");
+    SimWorker *w;
+    TRY_ROOM(w, 1, "a simulator", err);
     w->scene = scene;
     w->options = &scene->options;
     w->building = &scene->building;

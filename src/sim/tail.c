@@ -29,7 +29,7 @@ Status tail_input(const BuildingModel *b, const Motion *motion, double input[], 
 {
     double *work = calloc(motion->n, sizeof *work); /* in the step before sample k, of all modes */
     if (!work)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", motion->name, motion->n);
+        return fail_memory(err, motion->n, "samples");
     for (int i = 0; i < b->n; i++) {
         double c[FLOW_ROWS], q = 0, v = 0;
         flow_coefficients(1, &b->omega[i], &b->zeta[i], motion->dt_s, c, 1);

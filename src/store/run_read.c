@@ -20,11 +20,6 @@ typedef struct {
     EvaluationTable polished; /* rows that go behind those of the search */
 } Loading;
 
-static Status no_memory(const Loading *l, size_t n, const char *what, Err *err)
-{
-    return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu %s", database_path(l->d), n, what);
-}
-
 /* -- settings and generations -------------------------------------------------------------------------------------- */
 
 /* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
@@ -46,7 +41,7 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     run->settings = calloc(1, sizeof *run->settings);
     run->provenance = strdup(column_text(row, 1));
     if (!run->settings || !run->provenance)
-        return no_memory(l, 1, "settings", err);
+        return fail_memory(err, 1, "a run");
     if (!tables_head_is_whole(row))
         return database_damaged(l->d, err, "its settings are not what was written");
     settings_defaults(run->settings);
@@ -74,7 +69,7 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
     run->n_state = n;
     run->state = malloc(n + 1);
     if (!run->state)
-        return no_memory(l, n, "bytes of a state", err);
+        return fail_memory(err, n, "bytes of a state");
     if (n > 0)
         memcpy(run->state, bytes, n);
     return STATUS_OK;
@@ -130,7 +125,7 @@ static Status make_places(Loading *l, Err *err)
     Run *run = l->run;
     run->place = calloc(run->table.n + 1, sizeof *run->place);
     if (!run->place)
-        return no_memory(l, run->table.n, "evaluations", err);
+        return fail_memory(err, run->table.n, "evaluations");
     for (size_t i = 0, m = 0; i < run->table.n; i++) {
         Evaluation *e = &run->table.row[i];
         RunPlace *place = &run->place[i];
@@ -241,7 +236,7 @@ static Status load_rows(Loading *l, Err *err)
     const size_t n = run->table.n;
     run->F = s->is_noisy ? calloc(n * s->n_obj + 1, sizeof *run->F) : run->table.f;
     if (n > 0 && !run->F)
-        return no_memory(l, n, "evaluations", err);
+        return fail_memory(err, n, "evaluations");
     if (n > 0 && run->F != run->table.f)
         memcpy(run->F, run->table.f, n * s->n_obj * sizeof *run->F);
     TRY(make_places(l, err));

@@ -28,8 +28,8 @@ Status improvement_expected(const Run *run, double *gain, Err *err)
         on_front[i] = is_answer && run->place[i].entered != NEVER && run->place[i].left == NEVER;
     }
     const GrowingFront designs = {n, m, run->F, NULL, sense, counts, on_front};
-    const Status status = counts && sense ? convergence_shares(&designs, 3, cuts, h, err)
-                                          : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    const Status status =
+        counts && sense ? convergence_shares(&designs, 3, cuts, h, err) : fail_memory(err, n, "designs");
     if (status == STATUS_OK)
         *gain = convergence_expected(h);
     free(counts);

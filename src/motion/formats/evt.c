@@ -89,12 +89,12 @@ static Status add_channels(Record *r, const Lines *l, const unsigned char *heade
 }
 
 /* Samples of one frame: scan after scan, in each every channel. */
-static Status add_samples(Record *r, const Lines *l, const unsigned char *b, size_t n, unsigned bytes, Err *err)
+static Status add_samples(Record *r, const unsigned char *b, size_t n, unsigned bytes, Err *err)
 {
     for (size_t i = 0; i < n; i += bytes) {
         const uint32_t top = bytes == 4 ? u32(b + i) : (uint32_t)(u16(b + i) << 8 | b[i + 2]) << 8;
         const double value = bytes == 4 ? (double)(int32_t)top : (double)((int32_t)top / 256);
-        TRY(record_add(r, l, (Row){.a = value, .line = 1}, err));
+        TRY(record_add(r, (Row){.a = value, .line = 1}, err));
     }
     return STATUS_OK;
 }
@@ -118,7 +118,7 @@ static Status read_frames(Record *r, const char *path, const unsigned char *b, s
         first = frames == 0 ? form : first;
         if (memcmp(&form, &first, sizeof form) != 0)
             return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: channels or rate change at byte %zu", path, at);
-        TRY(add_samples(r, &l, frame + FRAME, samples, form.bytes, err));
+        TRY(add_samples(r, frame + FRAME, samples, form.bytes, err));
         frames++;
         at += TAG + FRAME + samples;
     }

@@ -40,7 +40,7 @@ static Status take_trace(Record *r, const Lines *l, const MSTrace *t, Err *err)
     c->dt = 1 / t->samprate;
     c->n = (size_t)t->numsamples;
     for (int64_t i = 0; i < t->numsamples; i++)
-        TRY(record_add(r, l, (Row){.a = sample_of(t, i), .line = 1}, err));
+        TRY(record_add(r, (Row){.a = sample_of(t, i), .line = 1}, err));
     return STATUS_OK;
 }
 

@@ -9,13 +9,13 @@
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
-Status record_add(Record *r, const Lines *l, Row row, Err *err)
+Status record_add(Record *r, Row row, Err *err)
 {
     if (r->n == r->capacity) {
         const size_t capacity = r->capacity ? 2 * r->capacity : 1024;
         Row *wider = realloc(r->row, capacity * sizeof *wider);
         if (!wider)
-            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", l->path, capacity);
+            return fail_memory(err, capacity, "samples");
         r->row = wider;
         r->capacity = capacity;
     }
@@ -60,7 +60,7 @@ Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err
             TRY(lines_note_mark(l, c, err));
         if (*n > CHANNELS_MAX)
             return fail_at(err, l, "more than %d channels", CHANNELS_MAX);
-        TRY(record_add(r, l, row, err));
+        TRY(record_add(r, row, err));
     }
     return STATUS_OK;
 }
@@ -90,7 +90,7 @@ Status record_append(Record *r, const Record *from, const char *path, const char
     const Lines l = {.path = path};
     const size_t offset = r->n;
     for (size_t i = 0; i < from->n; i++)
-        TRY(record_add(r, &l, from->row[i], err));
+        TRY(record_add(r, from->row[i], err));
     for (size_t k = 0; k < from->n_channels; k++) {
         Channel *c = NULL;
         char own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
@@ -210,7 +210,7 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
             return fail_at(err, l, "%zu numbers are not pairs of time and acceleration", n);
         for (size_t i = 0; i < n; i += each)
             TRY(record_add(
-                r, l, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = c->is_timed ? 6 : 3}, err));
+                r, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = c->is_timed ? 6 : 3}, err));
         c->n += n / each;
     }
     if (c->n < wanted)

@@ -83,7 +83,7 @@ Status archive_each(const char *path, const char *bytes, size_t n, ArchiveFn tak
 
 /* ---- rows and channels ------------------------------------------------------------------------------------------- */
 
-Status record_add(Record *r, const Lines *l, Row row, Err *err);
+Status record_add(Record *r, Row row, Err *err);
 void record_free(Record *r);
 
 /* Numbers of a line, one Row each; *n is how many. with_comma: 1,5 is one and a half. */

@@ -112,7 +112,7 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
         const double x = real_at(bytes + HEADER, i, swapped);
         if (!isfinite(x))
             return fail(err, STATUS_BAD_DATA, "%s: sample %zu is %g; only finite numbers are accepted", path, i, x);
-        TRY(record_add(r, &l, (Row){.a = x, .line = 1}, err));
+        TRY(record_add(r, (Row){.a = x, .line = 1}, err));
     }
     check_range(c, r, real_at(bytes, DEPMIN, swapped), real_at(bytes, DEPMAX, swapped));
     return STATUS_OK;

@@ -55,7 +55,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
         if (!json_is_number(x) || !isfinite(json_number_value(x)))
             return fail(err, STATUS_BAD_DATA, "%s: SimCenter: sample %zu of '%s' is no number", place->l->path, i,
                         c->name);
-        TRY(record_add(place->r, place->l, (Row){.a = json_number_value(x), .line = 1}, err));
+        TRY(record_add(place->r, (Row){.a = json_number_value(x), .line = 1}, err));
     }
     return STATUS_OK;
 }

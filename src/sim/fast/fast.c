@@ -94,9 +94,8 @@ static int padded(int n)
 Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
 {
     *out = NULL;
-    FastWork *k = calloc(1, sizeof *k);
-    if (!k)
-        return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
+    FastWork *k;
+    TRY_ROOM(k, 1, "a work space", err);
     k->n = n_floors;
     k->n_pad = padded(n_floors);
     k->m_max = padded(nb) + k->n_pad;
@@ -106,7 +105,7 @@ Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
     k->store = carve_store(&count);
     if (!k->store) {
         free(k);
-        return fail(err, STATUS_NO_MEMORY, "fast: no memory for %zu bytes of work space", count.used);
+        return fail_memory(err, count.used, "bytes of work space");
     }
     layout(k, &(Carve){.base = k->store});
     *out = k;
