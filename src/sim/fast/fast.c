@@ -11,7 +11,7 @@
     do {                                                                                                               \
         vec **const of[] = {__VA_ARGS__};                                                                              \
         for (size_t i_ = 0; i_ < sizeof of / sizeof of[0]; i_++)                                                       \
-            *CARVE(c, of[i_], length);                                                                \
+            *of[i_] = carve(c, length, sizeof(double));                                                                \
     } while (0)
 
 static void layout_state(State *s, Carve *c, size_t modes, size_t channels)
@@ -47,8 +47,8 @@ static void layout_level(Level *l, Carve *c, size_t rows, size_t modes, size_t c
 {
     CARVE_EACH(c, FLOW_ROWS * modes, &l->coef);
     CARVE_EACH(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
-    CARVE(c, l->compliance, COMPLIANCES * rows * channels);
-    CARVE(c, l->compliance_pair, rows * rows);
+    l->compliance = carve(c, COMPLIANCES * rows * channels, sizeof(double));
+    l->compliance_pair = carve(c, rows * rows, sizeof(v4));
 }
 
 static void layout(FastWork *k, Carve *c)
@@ -74,14 +74,14 @@ static void layout(FastWork *k, Carve *c)
         CARVE_EACH(c, modes, &k->record.batch_q[i]);
         CARVE_EACH(c, floors, &k->record.batch_u[i]);
     }
-    CARVE(c, k->R, modes * floors);
-    CARVE(c, k->flex, n * floors);
-    CARVE(c, k->R_abs, modes * floors);
-    CARVE(c, k->D_abs, modes * floors);
-    CARVE(c, k->RT, modes * channels);
+    k->R = carve(c, modes * floors, sizeof(double));
+    k->flex = carve(c, n * floors, sizeof(double));
+    k->R_abs = carve(c, modes * floors, sizeof(double));
+    k->D_abs = carve(c, modes * floors, sizeof(double));
+    k->RT = carve(c, modes * channels, sizeof(double));
     k->E = k->may_yield ? carve(c, modes * channels, sizeof(double)) : k->R;
-    CARVE(c, k->newton_g, rows * rows);
-    CARVE(c, k->newton_LU, rows * rows);
+    k->newton_g = carve(c, rows * rows, sizeof(m22));
+    k->newton_LU = carve(c, rows * rows, sizeof(m22));
     for (int i = 0; i <= LEVEL_MAX; i++)
         layout_level(&k->level[i], c, rows, modes, channels);
 }
@@ -94,8 +94,9 @@ static int padded(int n)
 Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
 {
     *out = NULL;
-    FastWork *k;
-    TRY_ROOM(k, 1, "a work space", err);
+    FastWork *k = calloc(1, sizeof *k);
+    if (!k)
+        return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
     k->n = n_floors;
     k->n_pad = padded(n_floors);
     k->m_max = padded(nb) + k->n_pad;
@@ -105,7 +106,7 @@ Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
     k->store = carve_store(&count);
     if (!k->store) {
         free(k);
-        return fail_memory(err, count.used, "bytes of work space");
+        return fail(err, STATUS_NO_MEMORY, "fast: no memory for %zu bytes of work space", count.used);
     }
     layout(k, &(Carve){.base = k->store});
     *out = k;
