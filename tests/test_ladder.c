@@ -32,12 +32,17 @@ static void design_with(double gap, double x[N + 2])
     x[N + 1] = 0.0216;
 }
 
-static Ladder *found(const Settings *s, const double x[], double strong_s)
+static Ladder *find(const Settings *s, const double x[], double strong_s, int is_brief)
 {
     Ladder *l = malloc(sizeof *l);
     Err err = {0};
-    CHECK_OK(ladder_find(s, x, strong_s, l, &err), &err);
+    CHECK_OK(ladder_find(s, x, strong_s, is_brief, l, &err), &err);
     return l;
+}
+
+static Ladder *found(const Settings *s, const double x[], double strong_s)
+{
+    return find(s, x, strong_s, 0);
 }
 
 static const LadderEffect *effect(const Ladder *l, const char *key)
@@ -48,15 +53,20 @@ static const LadderEffect *effect(const Ladder *l, const char *key)
     return NULL;
 }
 
-static SimResult simulated(const Settings *s, const double x[])
+static SimResult simulated_as(SceneKind kind, const Settings *s, const double x[])
 {
     Problem p;
     SimResult r;
     Err err = {0};
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
-    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
     problem_close(&p);
     return r;
+}
+
+static SimResult simulated(const Settings *s, const double x[])
+{
+    return simulated_as(SCENE_IMPACT, s, x);
 }
 
 /* The settings with the value that each effect has with it (with[i]) or without. */
@@ -110,7 +120,32 @@ TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
     assert_at_most(fabs(r.j1_m / with.j1_m - 1), l->tolerance[0]);
     assert_at_most(fabs(r.drift_ratio_max / with.drift_ratio_max - 1), l->tolerance[1]);
     assert_at_most(fabs(r.j3_g / with.j3_g - 1), l->tolerance[2]);
+    for (int i = 0; i < LADDER_SCENES; i++) {
+        const SimResult scene = simulated_as(LADDER_SCENE[i], &set, x);
+        assert_close(l->set[i][0], scene.j1_m, 1e-9);
+        assert_close(l->set[i][1], scene.drift_ratio_max, 1e-9);
+        assert_close(l->set[i][2], scene.j3_g, 1e-9);
+    }
     free(l);
+}
+
+TEST(a_brief_ladder_has_the_same_changes_and_verdicts_without_steps_and_costs)
+{
+    double x[N + 2];
+    const Settings s = scene_of((const char *const[]){NULL});
+    design_with(0.008, x);
+    Ladder *whole = found(&s, x, 12), *brief = find(&s, x, 12, 1);
+    assert_int_equal(brief->n, whole->n - 1);
+    assert_true(isnan(brief->all_s) && isnan(brief->set_s));
+    for (size_t i = 0; i < brief->n; i++) {
+        assert_string_equal(brief->effect[i].key, whole->effect[i].key);
+        assert_int_equal(brief->effect[i].is_needed, whole->effect[i].is_needed);
+        assert_true(isnan(brief->effect[i].cost_s) && whole->effect[i].cost_s != 0);
+        for (int k = 0; k < LADDER_MEASURES; k++)
+            assert_close(1 + brief->effect[i].change[k], 1 + whole->effect[i].change[k], 1e-9);
+    }
+    free(whole);
+    free(brief);
 }
 
 /* Gaps that never close: nothing of the core or its contacts matters, and what is left is the building alone. */
@@ -176,6 +211,7 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     assert_true(json_array_size(json_object_get(ladder, "effects")) >= 6);
     const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));
     assert_true(strcmp(theory, "timoshenko") == 0 || strcmp(theory, "euler_bernoulli") == 0);
+    assert_less(0, number(json_object_get(json_object_get(ladder, "by_the_set"), "rigid"), "j1_m"));
     json_decref(o);
     char *sound = output_of("check configs/engineer.ini");
     assert_non_null(strstr(sound, "everything is in order"));

@@ -32,6 +32,7 @@ typedef struct {
     Settings all;
     const double *x;
     double strong_s;
+    int is_brief;
     int kind[LADDER_MAX]; /* of an effect: its line above */
     Ladder *out;
     Measured first[REPLICATES],
@@ -77,6 +78,8 @@ static int is_there(const Job *job, int kind)
         return !neighbour_is_given(&s->core);
     case END:
         return s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
+    case STEPS:
+        return !job->is_brief;
     default:
         return 1;
     }
@@ -115,12 +118,12 @@ static int is_within(const double changes[], const double tolerance[])
     return all;
 }
 
-/* Of the simulations that were made: other processes disturb. */
-static double least_seconds(const Measured parts[REPLICATES])
+/* Of the simulations that were made: other processes disturb. NAN: one alone tells nothing. */
+static double least_seconds(const Job *job, const Measured parts[REPLICATES])
 {
-    double least = parts[0].seconds;
+    double least = job->is_brief ? NAN : parts[0].seconds;
     for (int i = 1; i < REPLICATES; i++)
-        if (parts[i].seconds > 0)
+        if (parts[i].seconds > 0 && !job->is_brief)
             least = fmin(least, parts[i].seconds);
     return least;
 }
@@ -128,7 +131,7 @@ static double least_seconds(const Measured parts[REPLICATES])
 static void conclude(Job *job, const ReplicateSummary *as_built)
 {
     Ladder *l = job->out;
-    l->all_s = least_seconds(job->first);
+    l->all_s = least_seconds(job, job->first);
     for (int k = 0; k < LADDER_MEASURES; k++) {
         const double scatter = as_built->sd[LADDER_MEASURE[k]] / as_built->mean[LADDER_MEASURE[k]];
         l->value[k] = job->first[0].value[LADDER_MEASURE[k]];
@@ -140,7 +143,7 @@ static void conclude(Job *job, const ReplicateSummary *as_built)
         const Measured *with = is_finer ? job->other[i] : job->first, *without = is_finer ? job->first : job->other[i];
         for (int k = 0; k < LADDER_MEASURES; k++)
             e->change[k] = change(without, with, k);
-        e->cost_s = least_seconds(with) - least_seconds(without);
+        e->cost_s = least_seconds(job, with) - least_seconds(job, without);
         e->is_needed = e->is_kept = !is_within(e->change, l->tolerance);
     }
 }
@@ -163,8 +166,10 @@ static Status leave_out_each(Job *job, Err *err)
     TRY(tower_open_scenes(&p, &s, 1, &record, 1 + l->n, scene, err));
     task[0] = (SimTask){.x = job->x, .n_parts = REPLICATES, .parts = job->first, .summary = &as_built};
     for (size_t i = 0; i < l->n; i++)
-        task[1 + i] = (SimTask){
-            .x = job->x, .scene = 1 + i, .n_parts = job->kind[i] == STEPS ? 1 : REPLICATES, .parts = job->other[i]};
+        task[1 + i] = (SimTask){.x = job->x,
+                                .scene = 1 + i,
+                                .n_parts = job->kind[i] == STEPS || job->is_brief ? 1 : REPLICATES,
+                                .parts = job->other[i]};
     const Status status = tower_run(&p, 1 + l->n, task, NULL, NULL, err);
     problem_close(&p);
     if (status == STATUS_OK && job->first[0].outcome != RUN_OK)
@@ -176,16 +181,19 @@ static Status leave_out_each(Job *job, Err *err)
 
 /* -- the set ------------------------------------------------------------------------------------------------------- */
 
-static Status simulate_set(const Job *job, Measured *out, Err *err)
+static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err)
 {
     const Ladder *l = job->out;
     Settings s = *job->s;
     Problem p;
+    SimTask task[LADDER_SCENES];
     s.sim.replicates = 1;
     for (size_t i = 0; i < l->n; i++)
         TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without, err));
-    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
-    const Status status = tower_run(&p, 1, &(SimTask){.x = job->x, .parts = out}, NULL, NULL, err);
+    for (int i = 0; i < LADDER_SCENES; i++)
+        task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
+    TRY(tower_open(&p, &s, TOWER_SINGLE, LADDER_SCENES, err));
+    const Status status = tower_run(&p, LADDER_SCENES, task, NULL, NULL, err);
     problem_close(&p);
     return status;
 }
@@ -210,12 +218,15 @@ static Status shorten(Job *job, Err *err)
 {
     Ladder *l = job->out;
     for (LadderEffect *back = NULL;;) {
-        Measured set;
+        Measured set[LADDER_SCENES];
         const int is_fine = job->kind[l->n - 1] == STEPS && l->effect[l->n - 1].is_kept;
-        TRY(simulate_set(job, &set, err));
-        for (int k = 0; k < LADDER_MEASURES; k++)
-            l->off[k] = change(&set, is_fine ? job->other[l->n - 1] : job->first, k);
-        l->set_s = set.seconds;
+        TRY(simulate_set(job, set, err));
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            l->off[k] = change(set, is_fine ? job->other[l->n - 1] : job->first, k);
+            for (int i = 0; i < LADDER_SCENES; i++)
+                l->set[i][k] = set[i].outcome == RUN_OK ? set[i].value[LADDER_MEASURE[k]] : NAN;
+        }
+        l->set_s = job->is_brief ? NAN : set->seconds;
         back = largest_left_out(l);
         if (!back || is_within(l->off, l->tolerance))
             return STATUS_OK;
@@ -223,9 +234,9 @@ static Status shorten(Job *job, Err *err)
     }
 }
 
-Status ladder_find(const Settings *s, const double x[], double strong_s, Ladder *out, Err *err)
+Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err)
 {
-    Job job = {.s = s, .x = x, .strong_s = strong_s, .out = out};
+    Job job = {.s = s, .x = x, .strong_s = strong_s, .is_brief = is_brief, .out = out};
     *out = (Ladder){0};
     TRY(list_effects(&job, err));
     TRY(leave_out_each(&job, err));

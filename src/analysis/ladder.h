@@ -6,7 +6,8 @@
  *              with all, whose gaps differ by sim.gap_tolerance_m (0: GAP_SD_M) and by what sim.uncertain says
  *   needed     a change of J1, of the drift ratio or of J3 exceeds it (or is not known: a simulation failed)
  *   the set    effects that are needed; where the model with these alone is not within the tolerance of the one with
- *              all, the largest change that is left out is put back, until it is
+ *              all, the largest change that is left out is put back, until it is. By it the design, the same core
+ *              rigidly connected and the building alone, for whether the design is still the better one
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
  * core, storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps:
@@ -19,8 +20,10 @@
 
 #include "evaluate/tower.h"
 
-enum { LADDER_MAX = 8, LADDER_MEASURES = 3 };
+enum { LADDER_MAX = 8, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
 static const MeasureId LADDER_MEASURE[LADDER_MEASURES] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
+
+static const SceneKind LADDER_SCENE[LADDER_SCENES] = {SCENE_IMPACT, SCENE_RIGID, SCENE_NO_CORE};
 
 /* Two digits, which is what such results are read with. */
 static const double LADDER_TOLERANCE = 0.02;
@@ -39,10 +42,12 @@ typedef struct {
     LadderEffect effect[LADDER_MAX];
     double value[LADDER_MEASURES], tolerance[LADDER_MEASURES]; /* with all; [-] */
     double off[LADDER_MEASURES];                               /* [-] the set from the model with all */
+    double set[LADDER_SCENES][LADDER_MEASURES];                /* by the set; NAN: a simulation failed */
     double all_s, set_s;                                       /* of a simulation */
 } Ladder;
 
-/* x: the design. strong_s [s]: where the weak end of the record begins. */
-Status ladder_find(const Settings *s, const double x[], double strong_s, Ladder *out, Err *err);
+/* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect
+ * is left out once, so that no costs are known (NAN). */
+Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err);
 
 #endif

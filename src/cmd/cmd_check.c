@@ -14,6 +14,7 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
+#include "report/report_json.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/tables.h"
@@ -341,37 +342,6 @@ static void open_study(Check *c, const Settings *s, const CheckedScene *p)
 
 /* ---- which effects it needs ----------------------------------------------------------------------------------- */
 
-static void put_changes(json_t *row, const double changes[])
-{
-    for (int k = 0; k < LADDER_MEASURES; k++) {
-        char name[40];
-        snprintf(name, sizeof name, "%s_pct", measure(LADDER_MEASURE[k])->name);
-        json_object_set_new(row, name, json_number(100 * changes[k]));
-    }
-}
-
-static json_t *ladder_json(const Ladder *l)
-{
-    json_t *effects = json_array(), *all = json_object(), *tolerance = json_object(), *set = json_object(),
-           *settings = json_object();
-    for (size_t i = 0; i < l->n; i++) {
-        const LadderEffect *e = &l->effect[i];
-        json_t *row = figures_row(effects);
-        json_put(row, "without=%s", e->words);
-        put_changes(row, e->change);
-        json_put(row, "costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s", 1e3 * e->cost_s,
-                 e->is_needed ? "needed" : "not", e->is_set ? "yes" : "no", e->key, e->with, e->without);
-        json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
-    }
-    for (int k = 0; k < LADDER_MEASURES; k++)
-        json_object_set_new(all, measure(LADDER_MEASURE[k])->name, json_number(l->value[k]));
-    json_put(all, "ms=%g", 1e3 * l->all_s);
-    put_changes(tolerance, l->tolerance);
-    put_changes(set, l->off);
-    json_put(set, "ms=%g", 1e3 * l->set_s);
-    return json_of("effects=%p with_all=%p tolerance=%p enough=%p settings=%p", effects, all, tolerance, set, settings);
-}
-
 static void list_ladder(json_t *ladder)
 {
     json_t *rows = json_deep_copy(json_object_get(ladder, "effects")), *row;
@@ -392,7 +362,7 @@ static void climb(Check *c, const CheckedScene *p)
     Err e = {0};
     Ladder *ladder = calloc(1, sizeof *ladder);
     const double period = 2 * M_PI / p->building.omega[0];
-    const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), ladder, &e)
+    const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), 0, ladder, &e)
                                  : fail_memory(&e, 1, "a ladder");
     if (note(c, status, "--ladder", &e))
         json_put(c->out, "ladder=%p", ladder_json(ladder));

@@ -49,7 +49,7 @@ static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
     Records records = {0};
     size_t row;
     long floor;
-    DetailOptions options = {.other = &other, .records = records.path};
+    DetailOptions options = {.other = &other, .records = records.path, .with_ladder = !args_has(args, "--pictures")};
     TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, &records, err));

@@ -184,6 +184,19 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     return status;
 }
 
+/* A design that fails by the model with all effects has none, and the page says why. */
+static Status take_ladder(const Settings *s, const Scenario *w, const double x[], Detail *d, Err *err)
+{
+    if (s->sim.engine != ENGINE_FAST)
+        return STATUS_OK;
+    TRY_ROOM(d->ladder, 1, "a ladder", err);
+    if (ladder_find(s, x, device_strong_part(&w->motion, 1 / d->building_hz[0]), 1, d->ladder, &d->no_ladder)) {
+        free(d->ladder);
+        d->ladder = NULL;
+    }
+    return STATUS_OK;
+}
+
 Status detail_make(const Settings *s, int n_var, const double x[], const DetailOptions *options, Detail *out, Err *err)
 {
     Problem p;
@@ -203,6 +216,8 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
                                 &out->elsewhere[out->n_elsewhere], err);
     if (status == STATUS_OK) /* last, as it takes longest */
         status = take_here(&p, x, options, out, err);
+    if (status == STATUS_OK && options->with_ladder)
+        status = take_ladder(s, tower_record(tower_of(&p), 0), x, out, err);
     problem_close(&p);
     if (status != STATUS_OK)
         detail_free(out);
@@ -216,5 +231,6 @@ void detail_free(Detail *d)
     free(d->spectrum);
     free(d->elsewhere);
     free(d->by_record);
+    free(d->ladder);
     memset(d, 0, sizeof *d);
 }

@@ -7,6 +7,7 @@
 
 #include "report/history.h"
 #include "analysis/baselines.h"
+#include "analysis/ladder.h"
 #include "study/record_paths.h"
 
 typedef struct Settings Settings;
@@ -39,6 +40,8 @@ typedef struct {
     Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
     size_t n_records;               /* of the run */
     SimResult *by_record;           /* (n_records) the design under each of them; NULL: there is one */
+    Ladder *ladder;                 /* of the design; NULL: not asked for, or `no_ladder` says why there is none */
+    Err no_ladder;
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
     Spectrogram *spectrum; /* (2) the same */
@@ -50,6 +53,7 @@ typedef struct {
 typedef struct {
     int floor;           /* from 0; -1: in the middle */
     RecordPaths moved;   /* where the run's own records are now */
+    int with_ladder;     /* of the engine fast: which effects the design needs */
     int without_devices; /* only no core and rigidly connected beside it: no parameters are searched for */
     const Settings *other;
     size_t n_records;

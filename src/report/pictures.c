@@ -242,10 +242,13 @@ static void write_scenes(FILE *out, const Report *r)
         all[s] = &r->detail.result[ORDER[s]];
     write_floors(out, "P", r->detail.n_floors, N_SCENES, all);
     write_modes_of(out, "M", 3, all);
+    if (all[0]->yields)
+        fprintf(out, "set title 'storeys that yield dissipate %.2g %%: shares of modes say little'\n",
+                all[0]->ed_hysteresis_pct);
 }
 
 static const char PEAKS[] =
-    "set multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n" FLOOR_AXIS
+    "unset title\nset multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n" FLOOR_AXIS
     "set key at screen 0.5,0.95 center vertical maxrows 1\n"
     "array WHAT[3] = ['displacement [m]', 'interstorey drift [m]', 'absolute acceleration [g]']\n"
     "do for [k=1:3] {\nset xlabel 'peak '.WHAT[k]\n"
@@ -283,7 +286,8 @@ static void write_energies(FILE *out, const Report *r)
         write_history(out, i + 1, h);
         top = fmax(top, 1e-6 * largest(h->n, h->energy[ENERGY_INPUT]));
     }
-    fprintf(out, "TOP = %.6g\n", top);
+    fprintf(out, "TOP = %.6g; TAKEN = '%s'\n", top,
+            r->detail.result[SCENE_IMPACT].yields ? "impacts, storeys that yield" : "impacts");
 }
 
 #define ENERGY_AREAS                                                                                                   \
@@ -291,7 +295,7 @@ static void write_energies(FILE *out, const Report *r)
     "'' using 1:9 with filledcurves y1=0 lc rgb '#9aa4af' title 'kinetic, building', "                                 \
     "'' using 1:8 with filledcurves y1=0 lc rgb '#56b4e9' title 'strain, building', "                                  \
     "'' using 1:7 with filledcurves y1=0 lc rgb '#cc79a7' title 'kinetic and strain, core', "                          \
-    "'' using 1:6 with filledcurves y1=0 lc rgb '#e69f00' title 'impacts', "                                           \
+    "'' using 1:6 with filledcurves y1=0 lc rgb '#e69f00' title TAKEN, "                                               \
     "'' using 1:5 with filledcurves y1=0 lc rgb '#009e73' title 'damping, core', "                                     \
     "'' using 1:4 with filledcurves y1=0 lc rgb '#0072b2' title 'damping, building', "                                 \
     "'' using 1:3 with lines lw 1.5 lc rgb 'black' title 'input energy'\n"

@@ -40,12 +40,16 @@ json_t *result_json(const SimResult *r, const MeasureOrder *order)
     json_t *closings = json_array();
     for (size_t j = 0; j < n; j++)
         json_array_append_new(closings, json_integer(r->closings[j]));
-    return json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
-                   "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
-                   objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
-                   r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
-                   json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
-                   json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));
+    json_t *o =
+        json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
+                "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
+                objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
+                r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
+                json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
+                json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));
+    return r->yields ? json_put(o, "hysteresis_pct=%g plastic_m=%p residual_m=%p", r->ed_hysteresis_pct,
+                                json_numbers(n, r->plastic_drift_m), json_numbers(n, r->residual_drift_m))
+                     : o;
 }
 
 static json_t *json_of_energies(const History *h, size_t step)
@@ -87,26 +91,66 @@ static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const Mea
     return list;
 }
 
-/* What a building and a core have to bear. */
-static const MeasureId LOADS[] = {MEASURE_DRIFT_RATIO, MEASURE_J3_FILTERED,   MEASURE_CONTACT_FORCE,
-                                  MEASURE_CORE_STRESS, MEASURE_CORE_BUCKLING, MEASURE_BASE_SHEAR};
-enum { N_LOADS = N_OF(LOADS) };
+/* ---- which effects it needs -------------------------------------------------------------------------------------- */
+
+/* By the names of the measures and `end`, times `factor`. */
+static json_t *json_by_measure(const double values[], const char *end, double factor)
+{
+    json_t *o = json_object();
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        char name[40];
+        snprintf(name, sizeof name, "%s%s", measure(LADDER_MEASURE[k])->name, end);
+        json_object_set_new(o, name, json_number(factor * values[k]));
+    }
+    return o;
+}
+
+json_t *ladder_json(const Ladder *l)
+{
+    static const char *const SCENES[LADDER_SCENES] = {"with_core", "rigid", "no_core"};
+    json_t *effects = json_array(), *all = json_by_measure(l->value, "", 1), *settings = json_object(),
+           *set = json_by_measure(l->off, "_pct", 100), *by_set = json_object();
+    for (size_t i = 0; i < l->n; i++) {
+        const LadderEffect *e = &l->effect[i];
+        json_t *row = json_of("without=%s", e->words);
+        json_object_update_new(row, json_by_measure(e->change, "_pct", 100));
+        json_put(row, "costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s", 1e3 * e->cost_s,
+                 e->is_needed ? "needed" : "not", e->is_set ? "yes" : "no", e->key, e->with, e->without);
+        json_array_append_new(effects, row);
+        json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
+    }
+    for (int i = 0; i < LADDER_SCENES; i++)
+        json_object_set_new(by_set, SCENES[i], json_by_measure(l->set[i], "", 1));
+    json_put(all, "ms=%g", 1e3 * l->all_s);
+    json_put(set, "ms=%g", 1e3 * l->set_s);
+    return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
+                   json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);
+}
+
+/* What a building and a core have to bear, the last two also as forces on the ground where that is modelled. */
+static const MeasureId LOADS[] = {
+    MEASURE_DRIFT_RATIO,   MEASURE_J3_FILTERED, MEASURE_CONTACT_FORCE, MEASURE_CORE_STRESS,     MEASURE_CORE_BUCKLING,
+    MEASURE_BASE_SHEAR,    MEASURE_DUCTILITY,   MEASURE_PLASTIC_DRIFT, MEASURE_RESIDUAL_DRIFT,  MEASURE_HYSTERESIS,
+    MEASURE_BASE_ROTATION, MEASURE_UPLIFT,      MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING};
+enum { N_LOADS = N_OF(LOADS), LOADS_OF_GROUND = 2 };
 
 /* Under the first record, for the chosen design and its baselines. */
 static json_t *json_of_loads(const Detail *d)
 {
     static const char *const KEYS[N_SCENES] = {"impacts", "no_core", "rigid", "tmd", "links"};
     json_t *columns = json_array(), *rows = json_array();
-    for (int k = 0; k < N_LOADS; k++) {
+    const int has_ground = isfinite(measure_value(&d->result[SCENE_IMPACT], MEASURE_BASE_ROTATION));
+    const int n = has_ground ? N_LOADS : N_LOADS - LOADS_OF_GROUND;
+    for (int k = 0; k < n; k++) {
         const Words w = words_of_measure(LOADS[k]);
         json_array_append_new(columns, json_of("title=%s unit=%s", w.title, w.unit));
     }
     for (int scene = 0; scene < N_SCENES; scene++) {
         double values[N_LOADS];
-        for (int k = 0; k < N_LOADS; k++)
+        for (int k = 0; k < n; k++)
             values[k] = words_of_measure(LOADS[k]).factor * measure_value(&d->result[scene], LOADS[k]);
         if (d->result[scene].outcome == RUN_OK)
-            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers(N_LOADS, values)));
+            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers((size_t)n, values)));
     }
     return json_of("columns=%p rows=%p", columns, rows);
 }
@@ -173,6 +217,8 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     for (int k = 0; k < order->n_obj; k++)
         json_array_append_new(error, json_number(d->error[order->of[k]]));
     json_put(o, "error=%p band=%p records=%ld", error, json_of_band(d), d->n_records);
+    if (d->ladder || d->no_ladder.text[0])
+        json_put(o, "ladder=%p", d->ladder ? ladder_json(d->ladder) : json_of("reason=%s", d->no_ladder.text));
     if (d->gap_sides != GAPS_BOTH)
         json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)
@@ -256,6 +302,31 @@ json_t *growth_json(const Run *run)
     return json_of("simulated=%p volume=%p error=%p", simulated, volume, error);
 }
 
+/* What the run knows of measure m of a design; NAN: nothing. */
+static double stored(const Run *run, size_t row, int m)
+{
+    const Schema *s = &run->schema;
+    for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
+        if (s->order.of[k] == m)
+            return k < s->n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - s->n_obj];
+    return NAN;
+}
+
+/* The best designs of each objective, by what they have to bear. */
+static json_t *json_of_named(const Report *r)
+{
+    json_t *rows = json_array();
+    for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++) {
+        const size_t row = run_best(r->run, k);
+        double values[N_LOADS];
+        for (int i = 0; i < N_LOADS; i++)
+            values[i] = words_of_measure(LOADS[i]).factor * stored(r->run, row, LOADS[i]);
+        json_array_append_new(rows,
+                              json_of("id=%ld values=%p", r->run->table.row[row].id, json_numbers(N_LOADS, values)));
+    }
+    return rows;
+}
+
 static size_t n_evaluated(const Run *run)
 {
     size_t n = 0;
@@ -279,13 +350,13 @@ json_t *report_json(const Report *r)
     return json_of(
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s tower=%c robust=%c building=%s spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
-        "convergence=%p detail=%p settings=%p provenance=%s",
+        "convergence=%p detail=%p named=%p settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
         slash && slash[1] ? slash + 1 : name, name, r->has_detail, r->is_robust, run->settings->building.model,
         spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), run->table.row[r->knee].id,
         run->table.row[r->chosen].id, json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run),
         run->n_failed, run->n_front, json_of_names(r), json_of_beyond_law(r),
         json_of_importance(&r->importance, &run->schema), growth_json(run),
-        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
+        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(), json_of_named(r),
         json_of_settings(run->settings), run->provenance);
 }

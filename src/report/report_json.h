@@ -19,6 +19,10 @@ json_t *growth_json(const Run *run);
  * failed. */
 json_t *result_json(const SimResult *r, const MeasureOrder *order);
 
+/* What each effect changes [%], costs [ms], whether it is needed; the settings that are enough, and by them the design,
+ * the rigid connection and the building alone. */
+json_t *ladder_json(const Ladder *l);
+
 /* Of the tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
 json_t *detail_json(const Detail *d, const MeasureOrder *order);
 

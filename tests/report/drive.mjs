@@ -1,7 +1,7 @@
 // Opens reports as a person would and tries them: drive.mjs REPORT.html ...       prints what it found, exits 1 on a fault
 //                                                 drive.mjs --bench REPORT.html   prints times of painting and brushing
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -9,6 +9,7 @@ import { openBrowser, tryAll } from "./browser.mjs";
 
 const bench = process.argv[2] === "--bench";
 const downloads = mkdtempSync(join(tmpdir(), "imtet-downloads-"));
+const doctored = join(downloads, "doctored.html");
 const browser = await openBrowser();
 const page = await browser.openPage();
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -30,9 +31,9 @@ function read(path) {
 
 // ---- hands
 
-async function open(hash = "") {
+async function open(hash = "", path = file) {
   await page.call("Page.navigate", { url: "about:blank" });
-  await page.call("Page.navigate", { url: pathToFileURL(file).href + hash });
+  await page.call("Page.navigate", { url: pathToFileURL(path).href + hash });
   await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
 
@@ -275,8 +276,26 @@ const tried = {
       const isWorse = alone[k] && o.sense * (run.chosen_f[k] - alone[k]) > 1e-3 * Math.abs(alone[k]);
       if (isWorse) assert.match(warned, new RegExp(`Worse than without core in [^.]*${o.title}`));
     }
+    assert.match(warned, /Storeys that yield dissipate/);
     assert.equal(/beyond the contact law/.test(warned), run.beyond_law.length > 0);
     assert.equal(/never close/.test(warned), run.detail.with_core.closings.includes(0));
+  },
+  async "where the ranking turns over by the settings that the ladder calls enough, the first screen says so"() {
+    if (!run.tower) return;
+    const by = (name) => run.schema.objectives.findIndex((o) => o.name === name), { with_core: own, ladder } = run.detail;
+    for (const [name, key] of [["j1_m", "rigid"], ["drift_ratio", "no_core"]]) {
+      const isWorse = own.objectives[by(name)] > run.detail[key].objectives[by(name)], set = structuredClone(ladder.by_the_set);
+      for (const turns of [false, true]) { // the other pair as by the run's own model
+        for (const [n, k] of [["j1_m", "rigid"], ["drift_ratio", "no_core"]]) [set.with_core[n], set[k][n]] = [own.objectives[by(n)], run.detail[k].objectives[by(n)]];
+        if (turns) set.with_core[name] = set[key][name] * (isWorse ? 0.9 : 1.1);
+        writeFileSync(doctored, html.replace(/"by_the_set":\{.*?\}\}/, `"by_the_set":${JSON.stringify(set)}`));
+        await open("", doctored);
+        const said = await page.evaluate("document.querySelector('.warnings').textContent");
+        assert.equal(/The ranking turns over/.test(said), turns, `${name}: ${said}`);
+        if (turns) assert.ok(said.includes(name === "j1_m" ? "rigidly connected (by" : "without core (by"), said);
+      }
+    }
+    await open();
   },
   async "no letter of a chart is smaller than 12 px"() {
     const small = await page.evaluate(`Array.from(document.querySelectorAll("svg text, svg tspan")).filter((e) => e.getClientRects().length && parseFloat(getComputedStyle(e).fontSize) < 12).map((e) => e.textContent).slice(0, 5)`);
@@ -324,12 +343,12 @@ const tried = {
     assert.equal(await page.evaluate("document.getElementById('parts').getBoundingClientRect().top"), 0, "contents stay in view");
     if (!run.tower) return;
     const titles = await page.evaluate("Array.from(document.querySelectorAll('#summary h3, #design h3'), (h) => h.textContent).join('|')");
-    for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy dissipated by each mode", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
+    for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy dissipated by each mode", "Plastic drift", "Residual drift", "Which effects it needs", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
       assert.ok(titles.includes(title), `no part ${title} in ${titles}`);
     assert.equal(await page.evaluate("Array.from(document.querySelectorAll('svg')).filter((s) => /NaN/.test(s.innerHTML.replace(/base64,[^\x22]*/g, ''))).length"), 0);
   },
   async "the browser complains of nothing and asks nobody for anything"() {
-    assert.deepEqual(page.complaints((asked) => asked === pathToFileURL(file).href), []);
+    assert.deepEqual(page.complaints((asked) => [file, doctored].some((own) => asked === pathToFileURL(own).href)), []);
   },
   async "the policy lets no other script, style or server in"() {
     const blocked = await page.evaluate(`(async () => {

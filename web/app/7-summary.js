@@ -81,11 +81,29 @@ function boundWarning(d) {
     shut.length ? `Gaps that never close under this motion: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }
 
+const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
+
+// What the ranking is by the settings that the ladder calls enough, where it is another one: of J1 against the rigid connection, of the
+// drift against the building alone.
+function turnovers(d) {
+  const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])) });
+  const lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without);
+  const turned = [["rigid", "j1_m", "J1", "m", 1], ["no_core", "drift_ratio", "drift ratio", "%", 100]].flatMap(([key, name, title, unit, factor]) => {
+    const before = [d.with_core, d[key]], after = [d.ladder?.by_the_set?.with_core, d.ladder?.by_the_set?.[key]];
+    if (![...before, ...after].every((r) => r && !r.reason)) return [];
+    const [a, b, c, e] = [...before.map((r) => peaks(r)[name]), ...after.map((r) => r[name])].map((v) => v * factor);
+    return a > b === c > e ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
+  });
+  return turned.length ? [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `The ranking turns over with ${listed(lacks)}, which this design needs: ${turned.map(([, words]) => words).join(", ")}.`]] : [];
+}
+
 function warnings(d) {
   const worse = overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)]).filter(([, list]) => list.length);
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
+    ...turnovers(d),
     ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
+    d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,
     d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
     beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)} designs of the front are beyond the contact law (\u26a0 in the table).`] : null,
     ...boundWarning(d).filter(Boolean).map((text) => ["note", text]),
@@ -94,9 +112,13 @@ function warnings(d) {
   return all.length ? element("ul", { class: "warnings", "aria-label": "Warnings" }, ...all.map(([kind, text]) => element("li", { class: kind }, element("span", { "aria-hidden": "true" }, kind === "worse" ? "\u2716 " : "\u26a0 "), text))) : "";
 }
 
-// What the design has to bear, beside its baselines.
-const loadTable = (loads) => table("loads", ["has to bear", ...loads.columns],
-  loads.rows.map((r) => line([SCENES[r.key].words, ...r.values.map((v) => (v === null ? "" : digits(v)))])));
+// What the design has to bear, beside its baselines and, as the run stores them, the best designs of every objective; without what
+// this scene has not.
+function loadTable({ columns, rows }) {
+  const kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k] !== null)), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
+  return table("loads", ["has to bear", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words, ...cells(r.values)])),
+    ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id})`, ...cells(values)]))]);
+}
 
 function standoutTable() {
   const knee = rowOf.get(run.knee), valuesOf = (i) => objectives.map((c) => known(c, i));

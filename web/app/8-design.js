@@ -1,7 +1,7 @@
 // The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
 
 const BASELINE_NOTE = {
-  rigid: () => "Rigidly connected: floors and core move together without a gap, a linear building.",
+  rigid: () => "Rigidly connected: floors and core move together without a gap.",
   tmd: (device) => `Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof (${device}).`,
   links: (device) => `Viscous links: a dashpot between every floor and the core (${device}).`,
 };
@@ -88,7 +88,7 @@ function modeFigure(host, scenes, title, caption) {
 function shareFigure(host, scenes) {
   const parts = (r) => {
     const sum = (from, to) => r.modes.slice(from - 1, to).reduce((a, b) => a + b, 0), core = r.core_pct ?? 0;
-    const named = [["mode 1", BLUE, sum(1, 1)], ["modes 2\u20134", SKY, sum(2, 4)], ["modes 5\u201310", GREEN, sum(5, 10)], ["higher modes", PURPLE, sum(11)], ["core", OLIVE, core], ["impacts", ORANGE, r.contact_pct]];
+    const named = [["mode 1", BLUE, sum(1, 1)], ["modes 2\u20134", SKY, sum(2, 4)], ["modes 5\u201310", GREEN, sum(5, 10)], ["higher modes", PURPLE, sum(11)], ["core", OLIVE, core], ["impacts", ORANGE, r.contact_pct], ...(r.plastic_m ? [["storeys that yield", VERMILLION, r.hysteresis_pct]] : [])];
     return [...named, ["other", "#d3d9df", Math.max(0, 100 - named.reduce((a, [, , v]) => a + v, 0))]];
   };
   const rows = scenes.flatMap(([scene, r]) => parts(r).map(([part, colour, v]) => ({ scene: SCENES[scene].words, part, colour, v })));
@@ -97,6 +97,15 @@ function shareFigure(host, scenes) {
     x: { label: "share of the input energy [%]", grid: true }, y: { label: null, domain: scenes.map(([scene]) => SCENES[scene].words) },
     marks: [charts.barX(rows, { x: "v", y: "scene", fill: "colour", title: (r) => `${r.scene}, ${r.part}: ${show(r.v)} %` }), charts.ruleX([0])],
   }), legend(parts(scenes[0][1]).map(([part, colour]) => [part, colour])));
+}
+
+// What storeys that yield keep: plastic drift at the end, and the drift of the state of rest that follows.
+function leftPart(host, scenes, d) {
+  const height = (key) => scenes.map(([scene, r]) => [scene, { left: r[key].map((v, j) => (100 * Math.abs(v)) / d.storey_m[j]) }]);
+  host.append(sceneLegend(scenes.map(([key]) => key)));
+  const grid = host.appendChild(element("div", { class: "grid2" }));
+  peakFigure(grid, height("plastic_m"), "left", "Plastic drift", "plastic drift at the end [% of the height]", 300);
+  peakFigure(grid, height("residual_m"), "left", "Residual drift", "drift at rest [% of the height]", 300);
 }
 
 // ---- over time
@@ -129,7 +138,7 @@ function energyFigure(host, title, h, top) {
 function energyPair(host, d) {
   const all = [["Energies, with core", d.history_with_core], ["Energies, without core", d.history_no_core]].filter(([, h]) => h);
   const top = Math.max(...all.map(([, h]) => h.energies.input.reduce((a, b) => Math.max(a, b), 0))) / 1e6;
-  host.before(legend([...ENERGIES.map(([, label, colour]) => [label, colour]), ["input energy", INK]]));
+  host.before(legend([...ENERGIES.map(([key, label, colour]) => [key === "contacts" && d.with_core.plastic_m ? "impacts, storeys that yield" : label, colour]), ["input energy", INK]]));
   for (const [title, h] of all) energyFigure(host, title, h, top);
 }
 
@@ -201,6 +210,25 @@ function otherPart(host, d) {
   }
 }
 
+// ---- which effects it needs
+
+const signed = (v) => (v === null ? "failed" : `${v > 0 ? "+" : v < 0 ? "\u2212" : ""}${show(Math.abs(v) < 0.005 ? 0 : Math.abs(v))}`);
+
+function ladderPart(host, d) {
+  const l = d.ladder, keys = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]];
+  if (l.reason) return host.append(element("p", { class: "warn" }, `Not found: ${l.reason}`));
+  const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
+  const scene = (key, r) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits(r[name] === null ? null : factor * r[name]))]);
+  host.append(
+    element("p", { class: "note" }, `Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ${keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", ")} %, which is 2 % or the scatter as built. ` +
+      "imtet check --ladder repeats it with the steps, and says what each costs."),
+    table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
+      l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
+    element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
+    element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
+    table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], [scene("impacts", l.by_the_set.with_core), scene("rigid", l.by_the_set.rigid), scene("no_core", l.by_the_set.no_core)]));
+}
+
 // ---- all of it
 
 // Of any design: `d` as report_json.h describes it, into `host`.
@@ -216,12 +244,16 @@ function detailParts(host, d) {
   if (scenes.length) {
     host.append(sceneLegend(scenes.slice(0, 3).map(([key]) => key)));
     const energy = host.appendChild(element("div", { class: "grid2" }));
-    modeFigure(energy, scenes.slice(0, 3), "Energy dissipated by each mode", "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
+    modeFigure(energy, scenes.slice(0, 3), "Energy dissipated by each mode", 
+      r.hysteresis_pct > 0 ? `Storeys that yield dissipate ${show(r.hysteresis_pct)} % of the input: ${DISSIPATED}.` : "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
     shareFigure(energy, scenes);
+    if (r.plastic_m) leftPart(host, scenes, d);
   }
+  if (d.ladder) ladderPart(folded(host, "Which effects it needs", true), d);
   if (d.history_with_core || d.history_no_core) {
     const energies = folded(host, "Energies over time");
-    energies.append(element("p", { class: "note" }, "Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak."));
+    energies.append(element("p", { class: "note" }, "Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak." +
+      (r.plastic_m ? " Strain is that of storeys which do not yield; what it has too much is taken off the part of those that do." : "")));
     energyPair(energies.appendChild(element("div", { class: "grid2" })), d);
     const over = folded(host, "Displacement over time");
     over.append(element("p", { class: "note" }, "Below each history its Morlet wavelet amplitude by frequency, the same colours on both sides; dashed: natural frequencies of the building."));
