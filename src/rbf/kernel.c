@@ -127,6 +127,16 @@ CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], doub
     }
 }
 
+CLONED_V3 void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2[], double phi[], double slope[])
+{
+#pragma omp simd
+    for (size_t i = 0; i < n; i++) {
+        const double a = sqrt(5.0 * r2[i]), e = exp_down(kernel == RBF_GAUSS ? -r2[i] : -a);
+        phi[i] = kernel == RBF_GAUSS ? e : (1.0 + a + 5.0 / 3.0 * r2[i]) * e;
+        slope[i] = kernel == RBF_GAUSS ? -e : -5.0 / 6.0 * (1.0 + a) * e;
+    }
+}
+
 CLONED_V3 double kernel_dot(size_t n, const double a[], const double b[])
 {
     double dot = 0.0;
@@ -202,15 +212,11 @@ CLONED_V3 void kernel_project(size_t n_dim, size_t stride, const double S[], siz
     }
 }
 
-CLONED_V3 void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2,
-                            double v[])
+CLONED_V3 void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[])
 {
 #pragma omp simd
-    for (size_t i = 0; i < n; i++) {
-        const double a = sqrt(5.0 * r2[i]);
-        const double slope = kernel == RBF_GAUSS ? -exp_down(-r2[i]) : -5.0 / 6.0 * (1.0 + a) * exp_down(-a);
-        v[i] = (w[i] * w_j / s2 - v[i]) * slope;
-    }
+    for (size_t i = 0; i < n; i++)
+        v[i] = (w[i] * w_j / s2 - v[i]) * slope[i];
 }
 
 CLONED_V3 void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first,

@@ -34,8 +34,9 @@ void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[]);
 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
                       double r2[RBF_BLOCK][KERNEL_CHUNK]);
 
-/* phi[i] of r2[i]; may be the same array. */
+/* phi[i] of r2[i], and its derivative by it. */
 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[]);
+void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2[], double phi[], double slope[]);
 
 double kernel_dot(size_t n, const double a[], const double b[]);
 
@@ -61,7 +62,7 @@ void kernel_additive_slopes(size_t n_dim, size_t stride, const double U[], const
 
 void kernel_multiply(size_t n, const double factor[], double values[]);
 
-/* v[i] = (w[i] w_j / s2 - v[i]) d phi / d (r^2) at r2[i]: the terms of the likelihood's gradient of one column. */
-void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2, double v[]);
+/* v[i] = (w[i] w_j / s2 - v[i]) slope[i]: the terms of the likelihood's gradient of one column. */
+void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[]);
 
 #endif

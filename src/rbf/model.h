@@ -45,6 +45,7 @@ typedef struct {
     double *by_a, *by_b; /* (n) derivatives by the warp */
     double *A;           /* (n, n) kernel matrix, its factor, its inverse */
     double *K;           /* (n, n) of the tuning set: factors of an additive part, which no scale changes */
+    double *slope;       /* (n, n) of the tuning set: derivatives of the kernel by the squared distance */
     double *P;           /* (n, n_tail + 1) tail basis and data */
     double *M;           /* (n_tail, n_tail) normal matrix of the tail, factored */
     double *b;           /* (n_tail) */
@@ -56,6 +57,7 @@ typedef struct {
     Shape shape, best_shape;
     RbfForm best_form;
     double min_error;
+    size_t n_tail; /* columns of the tail in P */
 } Worker;
 
 struct Rbf {
@@ -81,9 +83,9 @@ void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double
 void model_additive(const Rbf *m, size_t n, const double C[], double reach, double K[]);
 
 /* Lower triangle of the kernel matrix A (n, n) of centres C, scaled S, nugget times noise (n) on the diagonal; K as by
- * model_additive, NULL: computed. */
+ * model_additive, NULL: computed; slope (n, n) of the kernel without its additive part, NULL: not wanted. */
 void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
-                  const double K[], double A[]);
+                  const double K[], double A[], double slope[]);
 
 /* Factors the kernel matrix, with k->noise, into k->A, raising the nugget by tens where centres are too near each other
  * to tell apart; 0 where that does not help. */

@@ -40,6 +40,7 @@ static void layout(void *interpolant, Carve *c)
         CARVE(c, w->by_b, n);
         CARVE(c, w->A, n * n);
         CARVE(c, w->K, tuned * tuned);
+        CARVE(c, w->slope, tuned * tuned);
         CARVE(c, w->P, n * (t + 1));
         CARVE(c, w->M, t * t);
         CARVE(c, w->b, t);
@@ -121,7 +122,7 @@ void model_additive(const Rbf *m, size_t n, const double C[], double reach, doub
 }
 
 void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
-                  const double K[], double A[])
+                  const double K[], double A[], double slope[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX];
     double factor[RBF_BLOCK][KERNEL_CHUNK];
@@ -136,7 +137,10 @@ void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], Rb
             if (!is_made)
                 kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
             for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
-                kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
+                if (slope)
+                    kernel_values_and_slopes(form.kernel, count, r2[p], A + (j + p) * n + i, slope + (j + p) * n + i);
+                else
+                    kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
                 if (form.reach > 0.0)
                     kernel_multiply(count, K ? K + (j + p) * n + i : factor[p], A + (j + p) * n + i);
             }
@@ -167,7 +171,7 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
 int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], const double K[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, n, C, S, *form, k->noise, K, k->A);
+        model_matrix(m, n, C, S, *form, k->noise, K, k->A, NULL);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= 1.0)

@@ -55,26 +55,16 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 
 /* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
  * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
-static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfForm form, double s2)
+static double weigh_pairs(Worker *k, size_t n, double reach, double s2)
 {
-    double trace = 0.0, r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
-    for (size_t j = 0; j < n; j++)
-        trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - k->A[j * n + j]);
-    for (size_t j = 0; j < n; j += RBF_BLOCK) {
-        model_gather(m, k->S, j, n, x);
-        for (size_t i = j; i < n; i += KERNEL_CHUNK) {
-            const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
-            kernel_distances(m->n_dim, m->stride, k->S, x, i, count, r2);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
-                kernel_weigh(form.kernel, count, r2[p], k->w + i, k->w[j + p], s2, k->A + (j + p) * n + i);
-                if (form.reach > 0.0)
-                    kernel_multiply(count, k->K + (j + p) * n + i, k->A + (j + p) * n + i);
-            }
-        }
-    }
+    double trace = 0.0;
     memset(k->q, 0, n * sizeof *k->q);
     for (size_t j = 0; j < n; j++) {
         double *v = k->A + j * n;
+        trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
+        kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
+        if (reach > 0.0)
+            kernel_multiply(n - j, k->K + j * n + j, v + j);
         v[j] = 0.0;
         for (size_t i = j + 1; i < n; i++) {
             k->q[j] += v[i];
@@ -106,63 +96,79 @@ static void pull_back(const Rbf *m, Worker *k, size_t n, const Shape *shape, dou
 
 /* The part of minus the log likelihood that depends on p, variance and tail profiled out:
  *     l = n/2 log(s2) + 1/2 log|A|,    s2 = y'w / n
- * plus the priors. Its gradient needs the inverse only once (Rasmussen and Williams, eq. 5.9):
- *     dl/dp = -1/2 sum_ij (w_i w_j / s2 - inv(A)_ij) dA_ij/dp.
- * INFINITY where the matrix does not factor. */
-static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const double p[], double gradient[])
+ * plus the priors, whose gradient is written. INFINITY where the matrix does not factor; else its factor is in k->A. */
+static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const Shape *shape, const double p[],
+                         double *s2, double gradient[])
 {
-    Shape shape = {.theta = k->theta};
-    read_parameters(m, p, &shape, &form.nugget);
-    model_scale(m, n, k->C, &shape, k->S);
-    model_matrix(m, n, k->C, k->S, form, k->noise, k->K, k->A);
+    model_scale(m, n, k->C, shape, k->S);
+    model_matrix(m, n, k->C, k->S, form, k->noise, k->K, k->A, k->slope);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
-    model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
-    const double s2 = fmax(cblas_ddot((int)n, k->y, 1, k->w, 1) / (double)n, 1e-300);
-    double l = 0.5 * (double)n * log(s2) + prior(m, n, p, gradient);
+    k->n_tail = model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
+    *s2 = fmax(cblas_ddot((int)n, k->y, 1, k->w, 1) / (double)n, 1e-300);
+    double l = 0.5 * (double)n * log(*s2) + prior(m, n, p, gradient);
     for (size_t i = 0; i < n; i++)
         l += log(k->A[i * n + i]);
-    model_invert((int)n, k->A, (int)n);
-    LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
-    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(m, k, n, form, s2);
-    pull_back(m, k, n, &shape, gradient);
     return l;
 }
 
+/* The rest of its gradient, from that factor, which is spoilt. It needs the inverse only once (Rasmussen and Williams,
+ * eq. 5.9):
+ *     dl/dp = -1/2 sum_ij (w_i w_j / s2 - inv(A)_ij) dA_ij/dp. */
+static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, const Shape *shape, double s2,
+                             double gradient[])
+{
+    model_invert((int)n, k->A, (int)n);
+    LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
+    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(k, n, form.reach, s2);
+    pull_back(m, k, n, shape, gradient);
+}
+
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
- * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. */
-static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
+ * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns whether
+ * the last point was the best one: then its factor and weights are at hand. */
+static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
 {
     const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
-    double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY;
+    double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY, s2;
+    Shape at = {.theta = k->theta};
+    int is_best = 0;
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
         k->step[i] = TUNE_STEP;
         last[i] = 0.0;
     }
-    for (int step = 0; step < steps; step++) {
-        const double l = likelihood(m, k, n, *form, p, g);
-        if (l < best) {
+    for (int step = 1; step <= steps; step++) {
+        read_parameters(m, p, &at, &form->nugget);
+        const double l = likelihood(m, k, n, *form, &at, p, &s2, g);
+        is_best = l < best;
+        if (is_best) {
             best = l;
             memcpy(k->best_p, p, n_p * sizeof *p);
         } else if (!(l < INFINITY)) {
             p[i_nugget] = fmin(p[i_nugget] + log(10.0), 0.0);
             continue;
         }
-        for (size_t i = 0; i < n_p; i++)
+        if (step < steps)
+            likelihood_slope(m, k, n, *form, &at, s2, g);
+        for (size_t i = 0; i < n_p && step < steps; i++)
             p[i] = fmin(fmax(p[i] + rprop_move(g[i], &last[i], &k->step[i]), min_parameter(m, i)), max_parameter(m, i));
     }
     read_parameters(m, k->best_p, shape, &form->nugget);
+    return is_best;
 }
 
-/* Mean square leave-one-out error of a form and scales on the tuning set. */
-static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape)
+/* Mean square leave-one-out error of a form and scales on the tuning set, whose factor and weights may be at hand. */
+static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape, int is_at_hand)
 {
-    model_scale(m, n, k->C, shape, k->S);
-    if (!model_factor(m, k, n, k->C, k->S, k->K, form))
-        return INFINITY;
-    model_leave_one_out(k, n, model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim)));
+    if (!is_at_hand) {
+        model_scale(m, n, k->C, shape, k->S);
+        if (!model_factor(m, k, n, k->C, k->S, k->K, form))
+            return INFINITY;
+        k->n_tail = model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim));
+    }
+    model_leave_one_out(k, n, k->n_tail);
     return cblas_ddot((int)n, k->q, 1, k->q, 1) / (double)n;
 }
 
@@ -186,8 +192,8 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
     model_copy_shape(m, &k->shape, &o->shape);
     if (form.reach > 0.0)
         model_additive(m, n, k->C, form.reach, k->K);
-    climb(m, k, n, &form, &k->shape, steps);
-    const double e = trial_error(m, k, n, &form, &k->shape);
+    const int is_at_hand = climb(m, k, n, &form, &k->shape, steps);
+    const double e = trial_error(m, k, n, &form, &k->shape, is_at_hand);
     if (e < k->min_error) {
         k->min_error = e;
         k->best_form = form;
@@ -206,7 +212,7 @@ static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, dou
     form.nugget = fmax(form.nugget, NUGGET_START);
     RbfForm untuned = form;
     model_additive(m, n, k->C, reach, k->K);
-    if (m->n_tuned > 0 && !(trial_error(m, k, n, &untuned, &k->best_shape) < best))
+    if (m->n_tuned > 0 && !(trial_error(m, k, n, &untuned, &k->best_shape, 0) < best))
         return;
     k->min_error = wanted;
     try_form(m, k, n, o, form, steps);
