@@ -198,15 +198,18 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     q->violation = violation;
     q->uncertainty = uncertainty;
     q->chance = chance;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
         values_of(q, F + i * q->n_obj, q->value + i * q->n_dir);
+        q->gain[i] = INFINITY;
+    }
 }
 
 static double gain_left(const Infill *q, size_t i)
 {
     double gain = 0.0;
     for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->best_value[r] - q->value[i * q->n_dir + r], 0.0);
+        if (q->value[i * q->n_dir + r] < q->best_value[r])
+            gain += q->best_value[r] - q->value[i * q->n_dir + r];
     return gain * (q->chance ? q->chance[i] : 1.0);
 }
 
@@ -222,11 +225,12 @@ static int is_better(const Infill *q, size_t a, size_t b)
     return q->uncertainty[a] > q->uncertainty[b];
 }
 
+/* Gains only fall while designs are taken: one that was not enough before is not measured again. */
 size_t infill_pick(Infill *q, unsigned char allowed[])
 {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < q->n; i++) {
-        if (!allowed[i])
+        if (!allowed[i] || (best != SIZE_MAX && !is_better(q, i, best)))
             continue;
         q->gain[i] = gain_left(q, i);
         if (best == SIZE_MAX || is_better(q, i, best))

@@ -39,7 +39,7 @@ static inline double exp_down(double x)
     return sum * power;
 }
 
-CLONED_V3 void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+CLONED void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
                            double s[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
@@ -48,7 +48,7 @@ CLONED_V3 void kernel_warp(size_t n, const double log_u[], const double log_v[],
         s[i] = half * (exp_down(a * log_u[i]) + 1.0 - exp_down(b * log_v[i]));
 }
 
-CLONED_V3 void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta,
+CLONED void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta,
                                   const double warp[2], double by_a[], double by_b[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
@@ -68,7 +68,7 @@ CLONED_V3 void kernel_warp_by_u(size_t n, const double log_u[], const double log
         by_u[i] = half * (a * exp_down((a - 1.0) * log_u[i]) + b * exp_down((b - 1.0) * log_v[i]));
 }
 
-CLONED_V3 void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[])
+CLONED void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[])
 {
     double *square = S + n_dim * stride;
     memset(square, 0, n * sizeof *square);
@@ -112,7 +112,7 @@ CLONED_V3 void kernel_distances(size_t n_dim, size_t stride, const double S[], c
             r2[p][i] = r2[p][i] < 0.0 ? 0.0 : r2[p][i];
 }
 
-CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
+CLONED void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
 {
     if (kernel == RBF_GAUSS) {
 #pragma omp simd
@@ -127,7 +127,7 @@ CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], doub
     }
 }
 
-CLONED_V3 void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2[], double phi[], double slope[])
+CLONED void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2[], double phi[], double slope[])
 {
 #pragma omp simd
     for (size_t i = 0; i < n; i++) {
@@ -212,14 +212,14 @@ CLONED_V3 void kernel_project(size_t n_dim, size_t stride, const double S[], siz
     }
 }
 
-CLONED_V3 void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[])
+CLONED void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[])
 {
 #pragma omp simd
     for (size_t i = 0; i < n; i++)
         v[i] = (w[i] * w_j / s2 - v[i]) * slope[i];
 }
 
-CLONED_V3 void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first,
+CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first,
                                size_t count, double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK])
 {
     const double each = share / (double)n_dim, by_reach = 1.0 / reach;
@@ -258,7 +258,7 @@ CLONED_V3 void kernel_additive_slopes(size_t n_dim, size_t stride, const double 
     }
 }
 
-CLONED_V3 void kernel_multiply(size_t n, const double factor[], double values[])
+CLONED void kernel_multiply(size_t n, const double factor[], double values[])
 {
 #pragma omp simd
     for (size_t i = 0; i < n; i++)

@@ -467,8 +467,10 @@ static void slope_additive(const Rbf *m, const Output *o, size_t p, size_t first
 
 static void slope_chunk(const Rbf *m, const Output *o, size_t n, size_t first, size_t count, Slopes *s)
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK] = {{0}}, factor[RBF_BLOCK][KERNEL_CHUNK],
-                                        weighted[KERNEL_CHUNK];
+    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], factor[RBF_BLOCK][KERNEL_CHUNK],
+        weighted[KERNEL_CHUNK];
+    if (n < RBF_BLOCK || count < KERNEL_CHUNK)
+        memset(q, 0, sizeof q);
     kernel_distances(m->n_dim, m->stride, o->S, s->x, first, count, r2);
     if (o->form.reach > 0.0)
         kernel_additive(m->n_dim, m->stride, m->C, s->u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
