@@ -80,7 +80,7 @@ int lines_next(Lines *l)
 {
     if (l->next >= l->end)
         return 0;
-    const char *stop = memchr(l->next, l->mark, (size_t)(l->end - l->next));
+    const char *stop = memchr(l->next, l->mark, l->end - l->next);
     l->raw = l->from = l->next;
     l->to = stop ? stop : l->end;
     l->next = stop ? stop + 1 : l->end;
@@ -127,7 +127,7 @@ CellKind cell_number(Cell c, int with_comma, double *x)
 {
     enum { LONGEST = 400 }; /* printf's longest double has some 325 characters */
     char text[LONGEST + 1], *stop;
-    const size_t n = (size_t)(c.to - c.from);
+    const size_t n = c.to - c.from;
     if (n == 0 || n > LONGEST || memchr(c.from, 'x', n) || memchr(c.from, 'X', n))
         return NO_NUMBER;
     for (size_t i = 0; i < n; i++) { /* Fortran's exponent letter D is E */
@@ -141,7 +141,7 @@ CellKind cell_number(Cell c, int with_comma, double *x)
 
 Status lines_note_mark(Lines *l, Cell c, Err *err)
 {
-    const size_t n = (size_t)(c.to - c.from);
+    const size_t n = c.to - c.from;
     if (!l->point_line && memchr(c.from, '.', n))
         l->point_line = l->number;
     if (!l->comma_line && memchr(c.from, ',', n))
@@ -186,7 +186,7 @@ static int next_row(Reading *r, const char **from, const char **to)
 {
     Lines *l = &r->l;
     while (lines_next(l)) {
-        const size_t n = (size_t)(l->to - l->from);
+        const size_t n = l->to - l->from;
         if (n == 0 || (*l->from == '#' && !csv_is_error(l->from, l->to)))
             continue;
         if (!*r->separator && n == 5 && strncmp(l->from, "sep=", 4) == 0) { /* for Excel */
@@ -217,7 +217,7 @@ static Status read_names(Reading *r, const char *from, const char *to, Err *err)
         const Cell c = cell_next(&p, to, r->separator);
         if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
             return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu has no usable name", t->path, r->l.number, n + 1);
-        memcpy(t->names[n], c.from, (size_t)(c.to - c.from));
+        memcpy(t->names[n], c.from, c.to - c.from);
     }
     return STATUS_OK;
 }
@@ -256,7 +256,7 @@ static Status fail_number(const Table *t, int line, size_t column, Cell c, CellK
 static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
 {
     Table *t = r->t;
-    const size_t at = t->n_rows * t->n_cols + column, length = (size_t)(c.to - c.from);
+    const size_t at = t->n_rows * t->n_cols + column, length = c.to - c.from;
     double x = 0;
     const int is_empty = !r->of_words && r->has_header && length == 0;
     const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
@@ -265,7 +265,7 @@ static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
     if (kind == NUMBER)
         TRY(lines_note_mark(&r->l, c, err));
     if (!r->of_words) {
-        t->values[at] = is_empty ? (double)NAN : x;
+        t->values[at] = is_empty ? NAN : x;
         return STATUS_OK;
     }
     memcpy(t->text + r->used, c.from, length);
@@ -357,7 +357,7 @@ int table_column(const Table *t, const char *name)
 const char *sheet_text(const Table *s, size_t row, const char *column)
 {
     const int j = table_column(s, column);
-    return j < 0 ? "" : s->text + s->cell[row * s->n_cols + (size_t)j];
+    return j < 0 ? "" : s->text + s->cell[row * s->n_cols + j];
 }
 
 Status sheet_number(const Table *s, size_t row, const char *column, double otherwise, double *value, Err *err)
@@ -368,6 +368,5 @@ Status sheet_number(const Table *s, size_t row, const char *column, double other
     if (!*text && !isnan(otherwise))
         return STATUS_OK;
     const CellKind kind = cell_number(c, 1, value);
-    return kind == NUMBER ? STATUS_OK
-                          : fail_number(s, s->line[row], (size_t)table_column(s, column), c, kind, *value, err);
+    return kind == NUMBER ? STATUS_OK : fail_number(s, s->line[row], table_column(s, column), c, kind, *value, err);
 }

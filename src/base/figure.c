@@ -31,14 +31,14 @@ static void write_figure(double value, double uncertain, const char *word, int p
     const int exponent = size > 0 && (size >= MOST || size < LEAST) ? first_place(size, DIGITS_MOST) : 0;
     const double scale = pow(10, exponent);
     const int is_bracketed = exponent && uncertain > 0;
-    size_t n = (size_t)snprintf(text, FIGURE_MAX, "%s", is_bracketed ? "(" : "");
-    n += (size_t)write_decimal(text + n, FIGURE_MAX - n, value / scale, place - exponent);
+    size_t n = snprintf(text, FIGURE_MAX, "%s", is_bracketed ? "(" : "");
+    n += write_decimal(text + n, FIGURE_MAX - n, value / scale, place - exponent);
     if (uncertain > 0) {
-        n += (size_t)snprintf(text + n, FIGURE_MAX - n, " \u00b1 ");
-        n += (size_t)write_decimal(text + n, FIGURE_MAX - n, uncertain / scale, place - exponent);
+        n += snprintf(text + n, FIGURE_MAX - n, " \u00b1 ");
+        n += write_decimal(text + n, FIGURE_MAX - n, uncertain / scale, place - exponent);
     }
     if (exponent)
-        n += (size_t)snprintf(text + n, FIGURE_MAX - n, "%se%+03d", is_bracketed ? ")" : "", exponent);
+        n += snprintf(text + n, FIGURE_MAX - n, "%se%+03d", is_bracketed ? ")" : "", exponent);
     snprintf(text + n, FIGURE_MAX - n, "%s", uncertain > 0 ? word : "");
 }
 

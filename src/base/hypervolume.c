@@ -86,8 +86,7 @@ static void draw_together(Hypervolume *h)
     size_t n = 0;
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = h->left[w]; rest; rest &= rest - 1, n++)
-            memmove(h->sample + n * m, h->sample + (w * WORD + (size_t)__builtin_ctzll(rest)) * m,
-                    m * sizeof *h->sample);
+            memmove(h->sample + n * m, h->sample + (w * WORD + __builtin_ctzll(rest)) * m, m * sizeof *h->sample);
     memset(h->left, 0, sizeof h->left);
     memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
     for (size_t i = 0; i < n; i++)
@@ -168,10 +167,10 @@ static size_t find_dominated(const Hypervolume *h, const double f[], uint64_t ne
     find_near(h, f, near);
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
-            const size_t bit = (size_t)__builtin_ctzll(rest);
+            const size_t bit = __builtin_ctzll(rest);
             const int is_dominated = reaches(m, f, h->sample + (w * WORD + bit) * m);
             near[w] ^= (uint64_t)!is_dominated << bit;
-            n += (size_t)is_dominated;
+            n += is_dominated;
         }
     return n;
 }

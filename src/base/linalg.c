@@ -90,7 +90,7 @@ Status linalg_room(size_t n_threads, Err *err)
             err, STATUS_NO_MEMORY,
             "the address space is limited to %zu MiB (ulimit -v), in which there is no room for the linear algebra "
             "of %zu more thread%s, %zu MiB; raise the limit%s",
-            (size_t)(limit.rlim_cur >> 20), more, more > 1 ? "s" : "", size >> 20,
+            limit.rlim_cur >> 20, more, more > 1 ? "s" : "", size >> 20,
             n_threads > 1 ? ", or take fewer --threads" : "");
     munmap(room, size);
     make_buffers(n_threads);
@@ -113,7 +113,7 @@ static int eigen(int n, double A[], double B[], double values[])
 
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
 {
-    const size_t nn = (size_t)n * (size_t)n;
+    const size_t nn = n * (size_t)n;
     double *A;
     TRY_ROOM(A, 2 * nn, "numbers of two matrices", err);
     double *B = A + nn;
@@ -166,7 +166,7 @@ Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err)
 
 int linalg_indefinite_at(int n, const double A[])
 {
-    const size_t nn = (size_t)n * (size_t)n;
+    const size_t nn = n * (size_t)n;
     double *copy = malloc(nn * sizeof *copy);
     if (!copy)
         return -1;
@@ -190,8 +190,8 @@ void linalg_solve_band(int n, int band, const double A[], int m, int stride, dou
 /* Plain sums, so that the core has the same bits with any BLAS. */
 void linalg_congruent(int n, int m, const double A[], const double T[], double work[], double out[])
 {
-    memset(work, 0, (size_t)(n * m) * sizeof *work);
-    memset(out, 0, (size_t)(m * m) * sizeof *out);
+    memset(work, 0, n * m * sizeof *work);
+    memset(out, 0, m * m * sizeof *out);
     for (int i = 0; i < n; i++)
         for (int k = 0; k < n; k++)
             for (int j = 0; j < m && A[i * n + k] != 0; j++)
@@ -220,7 +220,7 @@ void linalg_product(int r, int k, int c, const double A[], const double B[], dou
 
 void linalg_exponential(int n, double A[], double out[], double work[])
 {
-    const size_t nn = (size_t)n * (size_t)n;
+    const size_t nn = n * (size_t)n;
     double *term = work, *next = work + nn, norm = 0;
     int halvings = 0;
     for (int j = 0; j < n; j++) {

@@ -34,7 +34,7 @@ void list_change(char list[LIST_MAX], ListItemFn change, void *user)
         if (!list_item(list, i, item, sizeof item))
             return;
         change(item, user);
-        n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? "," : "", item);
+        n += snprintf(all + n, sizeof all - n, "%s%s", i ? "," : "", item);
         if (n >= sizeof all)
             return;
     }

@@ -43,7 +43,7 @@ void pack_size(Pack *p, size_t *value, size_t most)
     pack(p, &wide, sizeof wide);
     p->faulty = p->faulty || wide > most;
     if (!p->faulty)
-        *value = (size_t)wide;
+        *value = wide;
 }
 
 void pack_expect(Pack *p, uint64_t value)

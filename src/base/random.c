@@ -10,7 +10,7 @@
 
 Random random_stream(uint32_t seed, RandomPurpose purpose, uint32_t generation, uint32_t individual)
 {
-    return (Random){.key = {seed, (uint32_t)purpose}, .counter = {0, individual, generation, 0}};
+    return (Random){.key = {seed, purpose}, .counter = {0, individual, generation, 0}};
 }
 
 static void next_block(Random *r)
@@ -51,7 +51,7 @@ size_t random_below(Random *r, size_t n)
     do
         bits = bits64(r);
     while (bits < skip);
-    return (size_t)(bits % span);
+    return bits % span;
 }
 
 /* Box and Muller; 1 - u lies in (0, 1], so the logarithm is finite. */

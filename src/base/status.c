@@ -126,6 +126,6 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
         return fail(err, code, "%s: %.60s is no %s; did you mean %s?", where, word, noun, near);
     size_t end = 0;
     for (int i = 0; i < n && end + strlen(list[i]) + 3 < sizeof all; i++)
-        end += (size_t)snprintf(all + end, sizeof all - end, "%s%s", i ? ", " : "", list[i]);
+        end += snprintf(all + end, sizeof all - end, "%s%s", i ? ", " : "", list[i]);
     return fail(err, code, "%s: %.40s is no %s; there are %s", where, word, noun, all);
 }

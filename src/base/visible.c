@@ -29,7 +29,7 @@ static size_t decode(const char *text, uint32_t *code)
         unsigned char mask, lead;
         uint32_t least;
     } FORM[] = {{0x80, 0x00, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
-    const unsigned char first = (unsigned char)text[0];
+    const unsigned char first = text[0];
     for (size_t n = 1; n <= 4; n++) {
         if ((first & FORM[n - 1].mask) != FORM[n - 1].lead)
             continue;
@@ -37,7 +37,7 @@ static size_t decode(const char *text, uint32_t *code)
         for (size_t i = 1; i < n; i++) {
             if (((unsigned char)text[i] & 0xc0) != 0x80)
                 return 0;
-            *code = *code << 6 | ((unsigned char)text[i] & 0x3f);
+            *code = *code << 6 | (text[i] & 0x3f);
         }
         return *code >= FORM[n - 1].least && *code <= 0x10ffff && (*code < 0xd800 || *code > 0xdfff) ? n : 0;
     }
@@ -50,13 +50,13 @@ static size_t show_one(const char *text, char shown[16])
     static const char ESCAPES[] = "\a\b\t\n\v\f\r", LETTERS[] = "abtnvfr";
     uint32_t code = 0;
     const size_t n = decode(text, &code);
-    const char *escape = code < 0x80 && n ? strchr(ESCAPES, (int)code) : NULL;
+    const char *escape = code < 0x80 && n ? strchr(ESCAPES, code) : NULL;
     if (escape)
         snprintf(shown, 16, "\\%c", LETTERS[escape - ESCAPES]);
     else if (n == 0 || code < ' ' || code == 0x7f)
-        snprintf(shown, 16, "\\x%02X", (unsigned)(unsigned char)text[0]);
+        snprintf(shown, 16, "\\x%02X", (unsigned char)text[0]);
     else if (is_invisible(code))
-        snprintf(shown, 16, "<U+%04X>", (unsigned)code);
+        snprintf(shown, 16, "<U+%04X>", code);
     else
         snprintf(shown, 16, "%.*s", (int)n, text);
     return n ? n : 1;
@@ -93,7 +93,7 @@ int visible_text(char out[], size_t size, const char *text)
 static int is_formula_sign(uint32_t code)
 {
     const uint32_t narrow = code > 0xff00 && code < 0xff5f ? code - 0xfee0 : code;
-    return narrow > 0 && narrow < 0x80 && strchr("=+-@", (int)narrow) != NULL;
+    return narrow > 0 && narrow < 0x80 && strchr("=+-@", narrow) != NULL;
 }
 
 void cell_text(char cell[], size_t size, const char *text)

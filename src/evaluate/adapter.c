@@ -67,7 +67,7 @@ static Status open_simulator(Adapter *a, const Settings *s, Err *err)
         return tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err);
     if (s->problem.kind != PROBLEM_EXTERNAL)
         return textbook_open(&a->problem, &s->problem, (uint32_t)s->search.seed, err);
-    TRY(external_open(&a->problem, &s->problem, (size_t)a->threads, err));
+    TRY(external_open(&a->problem, &s->problem, a->threads, err));
     a->recipe.settings = *s;
     a->problem.recipe = &a->recipe;
     a->problem.recipe_size = sizeof a->recipe;

@@ -101,7 +101,7 @@ static Status split_command(External *e, const char *command, Err *err)
 
 static size_t slot_of(const External *e, const Worker *w)
 {
-    return (size_t)(w - e->worker);
+    return w - e->worker;
 }
 
 /* Where the system has no pidfd, the end of its output tells. */
@@ -199,7 +199,7 @@ static void write_request(const External *e, Worker *w, const Task *task)
         else
             to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
     to += sprintf(to, "]}\n");
-    w->n_request = (size_t)(to - w->request);
+    w->n_request = to - w->request;
     w->n_sent = 0;
 }
 
@@ -222,7 +222,7 @@ static void send_more(Worker *w)
 {
     const ssize_t n = write_quietly(w->in, w->request + w->n_sent, w->n_request - w->n_sent);
     if (n > 0)
-        w->n_sent += (size_t)n;
+        w->n_sent += n;
     else if (n < 0 && errno != EAGAIN && errno != EINTR)
         w->n_sent = w->n_request; /* nobody reads: the end of its output tells */
 }
@@ -279,7 +279,7 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
         settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers: one is too large for a double", e->n_obj);
     else if (!json_is_object(o) || !json_is_number(id))
         settle(e, w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
-    else if (json_number_value(id) != (double)w->id)
+    else if (json_number_value(id) != w->id)
         settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
     else if (why && !json_is_null(why))
         settle(e, w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
@@ -299,7 +299,7 @@ static void look_for_answer(External *e, Worker *w)
     size_t used = 0;
     for (char *end; w->answer && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
         char *line = w->line + used;
-        const size_t length = (size_t)(end - line);
+        const size_t length = end - line;
         *end = 0;
         used += length + 1;
         if (strspn(line, " \t\r") < length)
@@ -328,7 +328,7 @@ static void read_more(External *e, Worker *w)
     const size_t room = LINE_MAX_BYTES - w->n_line;
     const ssize_t n = read(w->out, w->line + w->n_line, room < READ_BYTES ? room : READ_BYTES);
     if (n > 0) {
-        w->n_line += (size_t)n;
+        w->n_line += n;
         look_for_answer(e, w);
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
         take_end(e, w);
@@ -505,8 +505,8 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
 {
     External *e;
     TRY_ROOM(e, 1, "a set of workers", err);
-    e->n_var = (size_t)o->variables;
-    e->n_obj = (size_t)o->objectives;
+    e->n_var = o->variables;
+    e->n_obj = o->objectives;
     e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);
     e->timeout_s = o->timeout_s;
     const Status status = create(e, o, n_workers, err);

@@ -60,7 +60,7 @@ static Status read_choice(const char *item, double *upper, Err *err)
     for (const char *c = item; *c; c++)
         bars += *c == '|';
     for (; word_at(item, n, word); n++)
-        if (kinds_number(item, 0, word, &first) && first < (double)n)
+        if (kinds_number(item, 0, word, &first) && first < n)
             return fail(err, STATUS_BAD_DATA, "problem.kinds: %s names %s twice", item, word);
     if (n != bars + 1)
         return fail(err, STATUS_BAD_DATA,

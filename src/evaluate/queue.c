@@ -515,7 +515,7 @@ void queue_give(Queue *q, const Task *task, Status status, const Err *why)
 
 size_t threads_wanted(long setting)
 {
-    return setting > 0 ? (size_t)setting : (size_t)omp_get_num_procs();
+    return setting > 0 ? setting : omp_get_num_procs();
 }
 
 void executor_choose(Problem *p)

@@ -28,7 +28,7 @@ void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps
 
 void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d)
 {
-    const size_t n = (size_t)s->n_floors;
+    const size_t n = s->n_floors;
     replicate_design(seed, k, tolerance_m, n, d->gap[0]);
     if (s->gap_sides == GAPS_BOTH)
         memcpy(d->gap[1], d->gap[0], n * sizeof *d->gap[0]);

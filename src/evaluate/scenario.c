@@ -20,7 +20,7 @@ Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *r
     *out = *read;
     TRY_ROOM(out->accel, read->n, "samples of a motion", err);
     memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
-    const size_t rows = read->force_rows ? read->n_force_rows * (size_t)(read->n_force + 1) : 0;
+    const size_t rows = read->force_rows ? read->n_force_rows * (read->n_force + 1) : 0;
     out->force_rows = rows ? malloc(rows * sizeof *out->force_rows) : NULL;
     if (rows && !out->force_rows) {
         motion_free(out);

@@ -21,10 +21,10 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
     DesignSpace design;
     TRY(design_space_make(&design, &s->design, core_section(&s->core), n_floors, err));
     TRY(measures_order(&order, s->search.objectives, n_floors, err));
-    *schema = (Schema){.n_var = (size_t)design.n_var,
+    *schema = (Schema){.n_var = design.n_var,
                        .design = design,
-                       .n_obj = (size_t)order.n_obj,
-                       .n_extra = (size_t)(N_MEASURES - order.n_obj),
+                       .n_obj = order.n_obj,
+                       .n_extra = N_MEASURES - order.n_obj,
                        .order = order};
     TRY(allocate(schema, err));
     for (int j = 0; j < design.n_var; j++)
@@ -37,7 +37,7 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
     const MeasureSet limited = measures_limited(s->search.limits);
     for (int k = order.n_obj; k < N_MEASURES; k++)
         if (limited >> order.of[k] & 1)
-            schema->limited[schema->n_limited++] = (size_t)(k - order.n_obj);
+            schema->limited[schema->n_limited++] = k - order.n_obj;
     return STATUS_OK;
 }
 
@@ -101,8 +101,8 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
         schema->has_spread = s->sim.replicates > 1 || schema->is_noisy;
         return STATUS_OK;
     }
-    *schema = (Schema){.n_var = (size_t)s->problem.variables,
-                       .n_obj = (size_t)s->problem.objectives,
+    *schema = (Schema){.n_var = s->problem.variables,
+                       .n_obj = s->problem.objectives,
                        .replicates = s->sim.replicates,
                        .is_noisy = schema_is_noisy(s),
                        .has_spread = schema_is_noisy(s)};

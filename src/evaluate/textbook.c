@@ -156,9 +156,9 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
                     "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
     Exercise *e;
     TRY_ROOM(e, 1, "a problem", err);
-    e->function = textbook((size_t)(o->kind - PROBLEM_TEXTBOOK));
-    e->n_var = (size_t)n_var;
-    e->n_obj = (size_t)m;
+    e->function = textbook(o->kind - PROBLEM_TEXTBOOK);
+    e->n_var = n_var;
+    e->n_obj = m;
     e->noise = o->noise;
     e->seed = seed;
     const Status status = set_variables(e, o->kinds, err);

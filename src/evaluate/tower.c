@@ -347,9 +347,9 @@ static void swap_if_top_heavy(double x[], const void *self)
 
 static Problem problem_on(Tower *t)
 {
-    return (Problem){.n_var = (size_t)t->design.n_var,
-                     .n_obj = (size_t)t->order.n_obj,
-                     .n_extra = (size_t)(N_MEASURES - t->order.n_obj),
+    return (Problem){.n_var = t->design.n_var,
+                     .n_obj = t->order.n_obj,
+                     .n_extra = N_MEASURES - t->order.n_obj,
                      .lower = t->lower,
                      .upper = t->upper,
                      .repair = swap_if_top_heavy,
@@ -366,7 +366,7 @@ static Status prepare(Tower *t, Err *err)
     const Settings *s = &t->recipe->settings;
     TRY(make_room(t, err));
     TRY(t->recipe->is_sweep ? tower_space(&t->recipe->settings, &t->design, err) : open_all(t, err));
-    t->n_floors = (size_t)t->design.n_floors;
+    t->n_floors = t->design.n_floors;
     TRY(measures_order(&t->order, s->search.objectives, (int)t->n_floors, err));
     t->judged |= t->order.objectives;
     design_bounds(&t->design, &s->design, t->lower, t->upper);
@@ -396,7 +396,7 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->recipe = recipe;
     t->n_workers = workers < n_tasks ? workers : n_tasks;
     t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
-                              .n_replicates = (size_t)s->sim.replicates,
+                              .n_replicates = s->sim.replicates,
                               .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
                               .quantile = s->sim.quantile,
                               .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};

@@ -65,7 +65,7 @@ static uint64_t hash(size_t n_var, const double x[])
 /* Where x is, or where it would go: slots hold a row plus one, 0 is free; at most half of them are taken. */
 static size_t slot_of(const Archive *a, const double x[])
 {
-    size_t i = (size_t)hash(a->n_var, x) & (a->n_slots - 1);
+    size_t i = hash(a->n_var, x) & (a->n_slots - 1);
     while (a->slot[i] && memcmp(a->X + (a->slot[i] - 1) * a->n_var, x, a->n_var * sizeof *x) != 0)
         i = (i + 1) & (a->n_slots - 1);
     return i;

@@ -30,7 +30,7 @@ size_t batch_add(Batch *b, const Common *c, size_t n, const double x[], Evaluati
         return n;
     memcpy(b->X + n * n_var, x, n_var * sizeof *x);
     b->repeat[n] = 0;
-    b->kind[n] = (unsigned char)kind;
+    b->kind[n] = kind;
     return n + 1;
 }
 

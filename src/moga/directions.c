@@ -91,7 +91,7 @@ static void candidate(size_t n_obj, size_t j, double w[])
     Random random = random_stream(0, RANDOM_DIRECTIONS, 0, (uint32_t)j);
     double square = 0.0;
     for (size_t k = 0; k < n_obj; k++) {
-        w[k] = j < n_obj ? (double)(j == k) : fabs(random_normal(&random));
+        w[k] = j < n_obj ? j == k : fabs(random_normal(&random));
         square += w[k] * w[k];
     }
     for (size_t k = 0; k < n_obj; k++)

@@ -63,8 +63,8 @@ static Status take_results(Search *s, size_t pending, Err *err)
         TRY(screening_take(&s->screening, c, &done, err));
         const Evaluation *e = done.evaluation;
         const unsigned char ok = e->outcome == OUTCOME_OK;
-        TRY(pareto_archive_insert(&c->archive, 1, e->x, done.f, c->problem->n_con > 0 ? done.g : NULL, &ok,
-                                  (unsigned char)e->kind, c->generation, err));
+        TRY(pareto_archive_insert(&c->archive, 1, e->x, done.f, c->problem->n_con > 0 ? done.g : NULL, &ok, e->kind,
+                                  c->generation, err));
     }
     pareto_archive_update_noise(&c->archive);
     return screening_update(&s->screening, &c->archive, err);

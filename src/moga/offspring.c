@@ -72,7 +72,7 @@ static void breed_real(Offspring *o, const Problem *p, Random *r, double eta, co
     double *child = o->children;
     crossover_sbx(r, n, p->lower, p->upper, SBX_ETA, mother, father, child, child + n);
     for (int i = 0; i < 2; i++)
-        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, eta, child + (size_t)i * n);
+        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, eta, child + i * n);
 }
 
 /* Appends a population of children of the present members; a share of the pairs is mutated over the whole box. Pair j

@@ -45,7 +45,7 @@ static size_t replicates_due(const Common *c, size_t n)
                  due = floor(c->config->replicate_share * fmax(late, 0.0));
     const size_t made = a->n_replicates + n_pending_replicates(c);
     const int is_noticeable = a->n_replicates < NOISE_SAMPLE || noise_exceeds(a, NOISE_NEGLIGIBLE);
-    if (!c->problem->is_noisy || c->config->replicates_max < 2 || due <= (double)made || !is_noticeable)
+    if (!c->problem->is_noisy || c->config->replicates_max < 2 || due <= made || !is_noticeable)
         return 0;
     return (size_t)due - made;
 }

@@ -29,7 +29,7 @@ static StopReason reason_to_stop(const Search *s)
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
     if (s->common.generation >= c->generations && !screening_is_due(&s->screening, &s->common))
         return STOP_GENERATIONS;
-    if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)
+    if (c->nondominated_share < 1.0 && a->n_front >= c->nondominated_share * (double)a->n)
         return STOP_SHARE;
     return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
@@ -173,8 +173,8 @@ static Status open_queue(Search *s, const SearchStart *start, Err *err)
 {
     const int asynchronous = s->common.config->asynchronous;
     const size_t n_before = start ? start->n + (asynchronous ? start->n_later : 0) : 0;
-    TRY(queue_open(&s->common.queue, s->common.problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
-                   (long)n_before, err));
+    TRY(queue_open(&s->common.queue, s->common.problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED, n_before,
+                   err));
     if (start)
         queue_know(s->common.queue, start->n_later, start->row + (start->each ? 0 : start->n));
     return STATUS_OK;

@@ -199,14 +199,14 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
     Search *s = r->s;
     const Problem *p = s->common.problem;
     const size_t i = r->n++;
-    const unsigned char ok = e->outcome == OUTCOME_OK, kind = (unsigned char)e->kind;
+    const unsigned char ok = e->outcome == OUTCOME_OK, kind = e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
     TRY(screening_take(&s->screening, &s->common, &(Finished){.evaluation = e, .f = f, .g = g}, err));
     if (r->start->on_front && !p->is_noisy)
-        return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, (size_t)e->generation,
-                                      r->start->on_front[i], err);
-    return pareto_archive_insert(&s->common.archive, 1, e->x, f, g, &ok, kind, (size_t)e->generation, err);
+        return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, e->generation, r->start->on_front[i],
+                                      err);
+    return pareto_archive_insert(&s->common.archive, 1, e->x, f, g, &ok, kind, e->generation, err);
 }
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)

@@ -59,7 +59,7 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
         if (c > 0)
             TRY(floor_of(t, c, &floor, err));
         for (size_t i = 0; i < t->n_rows; i++)
-            m->force_rows[i * width + (size_t)floor] += t->values[i * t->n_cols + c];
+            m->force_rows[i * width + floor] += t->values[i * t->n_cols + c];
     }
     m->file_hash = hash_fnv1a(m->force_rows, t->n_rows * width * sizeof *m->force_rows, m->file_hash);
     return STATUS_OK;
@@ -129,7 +129,7 @@ Status forces_place(Motion *m, Err *err)
     if (!(end < SAMPLES_MAX))
         return fail(err, STATUS_BAD_DATA, "motion.forces: %.3g samples of %g s; give rows that lie less near", end,
                     step);
-    const size_t n = (size_t)end + 1, width = (size_t)m->n_force;
+    const size_t n = (size_t)end + 1, width = m->n_force;
     double *accel = calloc(n, sizeof *accel);
     m->force = calloc(n * width, sizeof *m->force);
     if (!accel || !m->force) {
@@ -159,6 +159,6 @@ double motion_force(const Motion *m, int j, double t)
     const size_t k = at > 0 ? (size_t)at : 0;
     if (j >= m->n_force || k + 1 > m->n)
         return 0;
-    const double *f = m->force + k * (size_t)m->n_force + j;
+    const double *f = m->force + k * m->n_force + j;
     return k + 1 == m->n ? *f : *f + (f[m->n_force] - *f) * (at - (double)k);
 }

@@ -102,12 +102,12 @@ static void list_channels(const Record *r, char list[LIST_MAX])
     const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 24 ? (int)each - 8 : 16;
     size_t used = 0;
     list[0] = 0;
-    for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
+    for (size_t i = 0; i < n && used + shown + 24 < LIST_MAX; i++) {
         char name[CHANNEL_NAME_MAX + 1];
-        name_shorten(name, (size_t)shown, r->channel[i].name);
-        used += (size_t)snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)",
-                                 i ? ", " : "", i + 1, name);
-        if (i + 1 < n && used + (size_t)shown + 24 >= LIST_MAX)
+        name_shorten(name, shown, r->channel[i].name);
+        used += snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)", i ? ", " : "", i + 1,
+                         name);
+        if (i + 1 < n && used + shown + 24 >= LIST_MAX)
             snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
     }
 }
@@ -396,7 +396,7 @@ static int binary_line(const char *text, size_t length)
 {
     int line = 1;
     for (size_t i = 0; i < length; i++) {
-        const unsigned char c = (unsigned char)text[i];
+        const unsigned char c = text[i];
         if (c < ' ' && !isspace(c))
             return line;
         line += c == '\n';

@@ -106,7 +106,7 @@ static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_
 Status motion_process(Motion *m, const MotionOptions *o, Err *err)
 {
     if (o->baseline != BASELINE_NONE)
-        TRY(subtract_baseline(m, (int)o->baseline - (int)BASELINE_MEAN, err));
+        TRY(subtract_baseline(m, o->baseline - BASELINE_MEAN, err));
     if (o->highpass_hz > 0)
         TRY(filter(m, FILTER_HIGH_PASS, "highpass_hz", o->highpass_hz, err));
     if (o->lowpass_hz > 0)

@@ -55,7 +55,7 @@ static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VER
 {
     Hello mine = {.arguments = HASH_SEED};
     int verdict = STATUS_OK;
-    Hello *all = calloc((size_t)n_ranks(), sizeof *all);
+    Hello *all = calloc(n_ranks(), sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     host_name(mine.host);
@@ -64,7 +64,7 @@ static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VER
         mine.arguments = hash_fnv1a(argv[i], strlen(argv[i]) + 1, mine.arguments);
     MPI_Gather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, 0, MPI_COMM_WORLD);
     if (rank_of_this() == 0)
-        verdict = (int)compare(all, err);
+        verdict = compare(all, err);
     MPI_Bcast(&verdict, 1, MPI_INT, 0, MPI_COMM_WORLD);
     free(all);
     return (Status)verdict;

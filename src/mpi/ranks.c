@@ -66,7 +66,7 @@ static void give(Ranks *r, Ticket *t, Status status, const Err *why)
     rank->n_under_way--;
     r->n_under_way--;
     queue_give(r->queue, &t->task, status, why);
-    r->idle[r->n_idle++] = (size_t)(t - r->ticket);
+    r->idle[r->n_idle++] = t - r->ticket;
 }
 
 /* Tasks of that rank, 0: of all, count as never begun where the status is STATUS_STOPPED. */
@@ -112,7 +112,7 @@ static int receive(Ranks *r, int *from, size_t *n)
     if (!there)
         return 0;
     MPI_Get_count(&about, MPI_BYTE, &count);
-    *n = (size_t)count;
+    *n = count;
     void *wider = *n > r->in_max ? realloc(r->in, *n) : r->in;
     if (!wider && *n > 0)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));

@@ -192,7 +192,7 @@ static Status answer_open(Service *s, const OpenMessage *m, Err *err)
     pthread_mutex_unlock(&s->talking);
     s->epoch = m->epoch;
     OpenedMessage answer = {.epoch = m->epoch};
-    answer.status = (int32_t)open_problem(s, recipe, m, &why);
+    answer.status = open_problem(s, recipe, m, &why);
     s->stopped = 0;
     answer.inputs = s->problem.inputs;
     answer.n_workers = s->n_workers;
@@ -217,13 +217,13 @@ static Status receive(Service *s, Job **out, int *tag, Err *err)
     MPI_Improbe(0, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &about);
     if (there) {
         MPI_Get_count(&about, MPI_BYTE, &n);
-        *out = malloc(sizeof(Job) + (size_t)n);
+        *out = malloc(sizeof(Job) + n);
         if (*out)
             MPI_Mrecv(&(*out)->message, n, MPI_BYTE, &message, &about);
         *tag = about.MPI_TAG;
     }
     pthread_mutex_unlock(&s->talking);
-    return there && !*out ? no_memory(err, (size_t)n) : STATUS_OK;
+    return there && !*out ? no_memory(err, n) : STATUS_OK;
 }
 
 static void line_up(Service *s, Job *job)

@@ -212,7 +212,7 @@ void model_invert(int n, double L[], int ld)
         return;
     }
     const int a = n / 2, c = n - a;
-    double *B = L + a, *C = L + a + (size_t)a * (size_t)ld;
+    double *B = L + a, *C = L + a + a * (size_t)ld;
     model_invert(a, L, ld);
     model_invert(c, C, ld);
     cblas_dtrmm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasNonUnit, c, a, -1.0, L, ld, B, ld);
@@ -297,7 +297,7 @@ static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], con
 
 void model_fit(Rbf *m)
 {
-#pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
         fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);
 }
@@ -536,7 +536,7 @@ double rbf_explained(const Rbf *m, size_t output)
 
 static int form_is_known(RbfForm f)
 {
-    return (unsigned)f.kernel < RBF_N_KERNELS && (unsigned)f.tail < RBF_N_TAILS;
+    return f.kernel < RBF_N_KERNELS && f.tail < RBF_N_TAILS;
 }
 
 void rbf_pack(Rbf *m, Pack *p)

@@ -253,7 +253,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
 Status rbf_tune(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
 {
     TRY(model_take(m, n, X, F, noise, err));
-#pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
         tune_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);
     m->n_tuned++;

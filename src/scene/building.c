@@ -158,7 +158,7 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 static void layout(void *model, Carve *c)
 {
     BuildingModel *m = model;
-    const size_t n = (size_t)m->n;
+    const size_t n = m->n;
     CARVE(c, m->K, n * n);
     CARVE(c, m->M, n * n);
     CARVE(c, m->phi, n * n);
@@ -170,7 +170,7 @@ static void layout(void *model, Carve *c)
 
 static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *from, Err *err)
 {
-    const size_t bytes = (size_t)(from->n * from->n) * sizeof(double);
+    const size_t bytes = from->n * from->n * sizeof(double);
     m->n = from->n;
     *store = carve_all(layout, m);
     if (!*store)
@@ -249,7 +249,7 @@ static Status make_model(Building *b, const FrameFull *full, const BuildingOptio
 
 static uint64_t hash_matrices(const FrameFull *f, uint64_t hash)
 {
-    const size_t bytes = (size_t)(f->n * f->n) * sizeof *f->K;
+    const size_t bytes = f->n * f->n * sizeof *f->K;
     return hash_fnv1a(f->M, bytes, hash_fnv1a(f->K, bytes, hash));
 }
 
@@ -258,7 +258,7 @@ static Status take(Building *b, const BuildingFiles *files, const BuildingOption
     memcpy(b->note, files->note, sizeof b->note);
     b->hash = hash_matrices(&files->full, hash_matrices(&files->floors, HASH_SEED));
     if (files->storey_m)
-        b->hash = hash_fnv1a(files->storey_m, (size_t)files->floors.n * sizeof *files->storey_m, b->hash);
+        b->hash = hash_fnv1a(files->storey_m, files->floors.n * sizeof *files->storey_m, b->hash);
     for (int j = 0; files->yield_drift && j < files->floors.n; j++)
         if (files->yield_drift[j] > 0)
             b->hash = hash_fnv1a((double[]){j, files->yield_drift[j]}, 2 * sizeof(double), b->hash);
@@ -303,8 +303,8 @@ double building_floor_mass(const Building *b, int floor)
 void building_join_core(const CoreBeam *c, const BuildingModel *building, double K[], double M[])
 {
     const int m = building->n;
-    memcpy(K, building->K, (size_t)(m * m) * sizeof *K);
-    memcpy(M, building->M, (size_t)(m * m) * sizeof *M);
+    memcpy(K, building->K, m * m * sizeof *K);
+    memcpy(M, building->M, m * m * sizeof *M);
     for (int i = 0; i < c->n; i++)
         for (int j = 0; j < c->n; j++) {
             K[i * m + j] += c->K[i * c->n + j];
@@ -316,7 +316,7 @@ Status building_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err
 {
     const int m = b->model.n, mm = m * m;
     double *K;
-    TRY_ROOM(K, 3 * (size_t)mm + (size_t)m, "numbers of modes", err);
+    TRY_ROOM(K, 3 * (size_t)mm + m, "numbers of modes", err);
     double *M = K + mm, *phi = M + mm, *omega = phi + mm;
     building_join_core(c, &b->model, K, M);
     const Status status = linalg_modes(m, K, M, omega, phi, err);

@@ -244,7 +244,7 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
         TRY(beam_cantilever(n, beam, NULL, b->floors.K, b->floors.M, err));
     else
         shear_building(n, all.storey, b->floors.K);
-    memset(b->floors.M, 0, (size_t)(n * n) * sizeof *b->floors.M);
+    memset(b->floors.M, 0, n * n * sizeof *b->floors.M);
     for (int j = 0; j < n; j++) {
         b->floors.M[j * n + j] = all.storey[j].mass;
         b->storey_m[j] = all.storey[j].height;
@@ -260,11 +260,11 @@ static Status condense_frame(BuildingFiles *b, const Frame *f, Err *err)
 {
     const int n = f->n_floors;
     TRY(allocate(b, n, err));
-    memcpy(b->storey_m, f->storey_m, (size_t)n * sizeof *b->storey_m);
+    memcpy(b->storey_m, f->storey_m, n * sizeof *b->storey_m);
     TRY(frame_reduce(f, FRAME_FLOORS, &b->full, err));
     for (int j = 0; j < n; j++) {
-        memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, (size_t)n * sizeof *b->floors.K);
-        memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, (size_t)n * sizeof *b->floors.M);
+        memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, n * sizeof *b->floors.K);
+        memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, n * sizeof *b->floors.M);
     }
     if (b->full.n == n)
         frame_full_free(&b->full);

@@ -78,18 +78,17 @@ static void assemble(int n, const Beam beam[], const Foundation *base, int size,
 Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err)
 {
     const int slaves = n + (base && base->rotation > 0) + (base && base->translation > 0);
-    const size_t size = (size_t)(n + slaves), nn = (size_t)n * (size_t)n, rn = (size_t)slaves * (size_t)n;
+    const size_t size = n + slaves, nn = n * (size_t)n, rn = slaves * (size_t)n;
     double *whole_K;
-    TRY_ROOM(whole_K, 2 * size * size + (size_t)(slaves * slaves) + nn + rn + size * (size_t)n, "numbers of a core",
-             err);
+    TRY_ROOM(whole_K, 2 * size * size + slaves * slaves + nn + rn + size * n, "numbers of a core", err);
     double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + slaves * slaves, *R = T + nn,
            *work = R + rn;
     assemble(n, beam, base, (int)size, whole_K, whole_M);
     for (int i = 0; i < n; i++)
         T[i * n + i] = 1;
     for (int i = 0; i < slaves; i++) {
-        const double *row = whole_K + (size_t)(n + i) * size;
-        memcpy(Krr + i * slaves, row + n, (size_t)slaves * sizeof *row);
+        const double *row = whole_K + (n + i) * size;
+        memcpy(Krr + i * slaves, row + n, slaves * sizeof *row);
         for (int j = 0; j < n; j++)
             R[i * n + j] = -row[j];
     }

@@ -174,7 +174,7 @@ double design_thickness(const DesignSpace *s, const Design *d, int j)
 static Status check_names(const Table *t, const char *path, const DesignSpace *s, Err *err)
 {
     char name[TABLE_NAME_MAX], first[TABLE_NAME_MAX], last[TABLE_NAME_MAX];
-    const size_t n_var = (size_t)s->n_var;
+    const size_t n_var = s->n_var;
     for (size_t j = 0; j < n_var && j < t->n_cols; j++) {
         design_variable_name(s, (int)j, name);
         if (strcmp(t->names[j], name) != 0)
@@ -200,7 +200,7 @@ static Status check_values(const Designs *d, const char *path, Err *err)
         [BUMPER] = "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m",
         [SIDE] = "it must be above 0",
     };
-    const size_t n_var = (size_t)d->space.n_var;
+    const size_t n_var = d->space.n_var;
     for (size_t i = 0; i < d->n * n_var; i++) {
         char name[TABLE_NAME_MAX];
         const double value = d->x[i];

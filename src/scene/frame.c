@@ -49,7 +49,7 @@ static Status add_name(Frame *f, FrameKind kind, const char *name, Err *err)
 /* A part, which begins with its name, behind those of the list, whose room doubles. */
 static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, size_t size, Err *err)
 {
-    const size_t n = (size_t)f->n[kind];
+    const size_t n = f->n[kind];
     char *parts;
     memcpy(&parts, list, sizeof parts);
     if ((n & (n - 1)) == 0) {
@@ -164,7 +164,7 @@ static void find_levels(const Frame *f, double tolerance, double z[], int *n)
         if (fabs(a->z - b->z) <= tolerance && !a->fixed[FRAME_X] && !b->fixed[FRAME_X])
             z[found++] = a->z;
     }
-    sort_values((size_t)found, z);
+    sort_values(found, z);
     for (int i = 0; i < found; i++)
         if (*n == 0 || z[i] - z[*n - 1] > tolerance)
             z[(*n)++] = z[i];

@@ -89,7 +89,7 @@ static Status number_unknowns(Numbering *u, Err *err)
     TRY_ROOM(place, n, "nodes of a frame", err);
     for (int i = 0; i < n; i++)
         place[i] = (Place){f->node[i].z, f->node[i].x, i};
-    qsort(place, (size_t)n, sizeof *place, by_height);
+    qsort(place, n, sizeof *place, by_height);
     u->n_slaves = number_kind(u, place, SLAVE, 0);
     for (int floor = 1; floor <= f->n_floors; floor++)
         u->unknown[root_of(f, frame_floor_node(f, floor) * FRAME_DOFS + FRAME_X)] = u->n_slaves + floor - 1;
@@ -127,7 +127,7 @@ static void find_band(Numbering *u)
 static void transform(int n, double a[], const double T[])
 {
     double copy[LOCAL * LOCAL], work[LOCAL * LOCAL];
-    memcpy(copy, a, (size_t)(n * n) * sizeof *a);
+    memcpy(copy, a, n * n * sizeof *a);
     linalg_congruent(n, n, copy, T, work, a);
 }
 
@@ -210,7 +210,7 @@ static Status find_kept(Numbering *u, Err *err)
     const Frame *f = u->frame;
     const int n = n_displacements(f);
     int named = 0;
-    double largest = 0, *mass = calloc((size_t)n, sizeof *mass);
+    double largest = 0, *mass = calloc(n, sizeof *mass);
     if (!mass)
         return fail_memory(err, n, "masses");
     add_up_mass(f, mass);
@@ -229,7 +229,7 @@ static Status find_kept(Numbering *u, Err *err)
 static Status numbering_make(Numbering *u, const Frame *f, int full, Err *err)
 {
     const int n = n_displacements(f);
-    *u = (Numbering){.frame = f, .unknown = malloc((size_t)n * sizeof *u->unknown)};
+    *u = (Numbering){.frame = f, .unknown = malloc(n * sizeof *u->unknown)};
     if (!u->unknown)
         return fail_memory(err, n, "unknowns");
     for (int i = 0; i < n; i++)
@@ -284,9 +284,9 @@ static void assemble_slaves(const Numbering *u, const Shapes *s)
             s->diag[at[i]] += k[i][i];
             for (int j = 0; j < LOCAL && at[i] < n; j++) {
                 if (at[j] >= n && at[j] < u->n)
-                    s->T[(size_t)(at[j] - n) * s->rows + (size_t)at[i]] -= k[i][j];
+                    s->T[(at[j] - n) * s->rows + at[i]] -= k[i][j];
                 else if (at[i] >= at[j])
-                    s->Kss[(size_t)at[j] * (size_t)height + (size_t)(at[i] - at[j])] += k[i][j];
+                    s->Kss[at[j] * (size_t)height + (at[i] - at[j])] += k[i][j];
             }
         }
     }
@@ -314,40 +314,40 @@ static Status solve_slaves(const Numbering *u, const Shapes *s, Err *err)
     if (n > 0)
         linalg_solve_band(n, u->band, s->Kss, n_masters(u), (int)s->rows, s->T);
     for (int m = 0; m < n_masters(u); m++)
-        s->T[(size_t)m * s->rows + (size_t)(n + m)] = 1;
+        s->T[m * s->rows + (n + m)] = 1;
     return STATUS_OK;
 }
 
 /* The shape behind the masters': r, 1 of every slave along x, less what all masters together move of it. */
 static void find_missed(const Numbering *u, const Shapes *s)
 {
-    double *missed = s->T + (size_t)n_masters(u) * s->rows;
+    double *missed = s->T + n_masters(u) * s->rows;
     for (int i = FRAME_X; i < n_displacements(u->frame); i += FRAME_DOFS)
         if (u->unknown[i] < u->n_slaves)
             missed[u->unknown[i]] = 1;
     for (int m = 0; m < n_masters(u); m++)
         for (int i = 0; i < u->n_slaves; i++)
-            missed[i] -= s->T[(size_t)m * s->rows + (size_t)i];
+            missed[i] -= s->T[m * s->rows + i];
 }
 
 /* A = T' K T, or T' M T with the masses of the nodes. */
 static void sum_up(const Numbering *u, const Shapes *s, int is_mass, double A[])
 {
     const Frame *f = u->frame;
-    memset(s->F, 0, (size_t)u->n_shapes * s->rows * sizeof *s->F);
+    memset(s->F, 0, u->n_shapes * s->rows * sizeof *s->F);
     for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++) {
         int at[LOCAL];
         double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
         element_unknowns(u, &f->element[e], at);
         element_matrices(f, &f->element[e], k, m);
-        for (size_t row = 0; row < (size_t)u->n_shapes * s->rows; row += s->rows)
+        for (size_t row = 0; row < u->n_shapes * s->rows; row += s->rows)
             for (int i = 0; i < LOCAL; i++)
                 for (int j = 0; j < LOCAL; j++)
-                    s->F[row + (size_t)at[i]] += (is_mass ? m : k)[i][j] * s->T[row + (size_t)at[j]];
+                    s->F[row + at[i]] += (is_mass ? m : k)[i][j] * s->T[row + at[j]];
     }
     for (int i = 0; i < n_displacements(f) && is_mass; i++)
         for (int p = 0; p < u->n_shapes; p++) {
-            const size_t at = (size_t)p * s->rows + (size_t)u->unknown[i];
+            const size_t at = p * s->rows + u->unknown[i];
             s->F[at] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS] * s->T[at];
         }
     linalg_product_of_rows(u->n_shapes, (int)s->rows, s->T, s->F, A);
@@ -408,7 +408,7 @@ static Status condense(Numbering *u, const Shapes *s, FrameFull *out, Err *err)
 
 static Status reduce(Numbering *u, FrameFull *out, Err *err)
 {
-    const size_t n = (size_t)u->n_slaves, shapes = (size_t)u->n_shapes, band = (size_t)u->band + 1;
+    const size_t n = u->n_slaves, shapes = u->n_shapes, band = (size_t)u->band + 1;
     TRY(frame_full_make(out, u->n_shapes, err));
     for (int i = FRAME_X; i < n_displacements(u->frame); i += FRAME_DOFS) /* what moves along x follows the ground */
         if (u->unknown[i] >= u->n_slaves && u->unknown[i] < u->n)
@@ -440,7 +440,7 @@ Status frame_reduce(const Frame *f, FrameKept kept, FrameFull *out, Err *err)
 
 Status frame_full_make(FrameFull *full, int n, Err *err)
 {
-    const size_t size = (size_t)n, nn = size * size;
+    const size_t size = n, nn = size * size;
     *full = (FrameFull){.n = n, .K = calloc(2 * nn + size, sizeof *full->K)};
     if (!full->K)
         return fail_memory(err, n, "degrees of freedom");

@@ -520,7 +520,7 @@ static Status run_model(Reader *r, Err *err)
     add_commands(r->tcl);
     Tcl_LimitSetCommands(r->tcl, COMMANDS_MAX);
     Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_COMMANDS);
-    Tcl_LimitSetTime(r->tcl, &(Tcl_Time){.sec = (long)time(NULL) + SECONDS_MAX});
+    Tcl_LimitSetTime(r->tcl, &(Tcl_Time){.sec = time(NULL) + SECONDS_MAX});
     Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_TIME);
     run_file(r, r->path);
     if (Tcl_LimitExceeded(r->tcl))

@@ -23,7 +23,7 @@ typedef struct {
 static void layout(void *reduction, Carve *c)
 {
     Reduction *r = reduction;
-    const size_t n = (size_t)r->n, i = (size_t)r->i;
+    const size_t n = r->n, i = r->i;
     double **const square[] = {&r->Kii, &r->Mii, &r->factor, &r->phi};
     for (int k = 0; k < 4; k++)
         CARVE(c, *square[k], i * i);
@@ -41,9 +41,9 @@ static Status constraint_modes(Reduction *r, const FrameFull *full, Err *err)
         const double *K = full->K + (r->f + a) * r->n, *M = full->M + (r->f + a) * r->n;
         for (int b = 0; b < r->f; b++)
             r->Psi[a * r->f + b] = -K[b];
-        memcpy(r->Kii + a * r->i, K + r->f, (size_t)r->i * sizeof *K);
-        memcpy(r->factor + a * r->i, K + r->f, (size_t)r->i * sizeof *K);
-        memcpy(r->Mii + a * r->i, M + r->f, (size_t)r->i * sizeof *M);
+        memcpy(r->Kii + a * r->i, K + r->f, r->i * sizeof *K);
+        memcpy(r->factor + a * r->i, K + r->f, r->i * sizeof *K);
+        memcpy(r->Mii + a * r->i, M + r->f, r->i * sizeof *M);
     }
     TRY(linalg_solve_spd(r->i, r->f, r->factor, r->Psi, err));
     return linalg_modes(r->i, r->Kii, r->Mii, r->mu, r->phi, err);
@@ -69,7 +69,7 @@ static const double MISSED_MIN = 1e-12;
  * nothing is). */
 static double missed_shape(Reduction *r, const FrameFull *full, double influence[])
 {
-    memcpy(influence, full->influence, (size_t)r->f * sizeof *influence);
+    memcpy(influence, full->influence, r->f * sizeof *influence);
     for (int a = 0; a < r->i; a++) {
         r->missed[a] = full->influence[r->f + a];
         for (int b = 0; b < r->f; b++)
@@ -98,8 +98,8 @@ static void set_columns(Reduction *r, int with_missed)
         r->T[b * columns + b] = 1;
     for (int a = 0; a < r->i; a++) {
         double *row = r->T + (r->f + a) * columns;
-        memcpy(row, r->Psi + a * r->f, (size_t)r->f * sizeof *row);
-        memcpy(row + r->f, r->phi + a * r->i, (size_t)r->modes * sizeof *row);
+        memcpy(row, r->Psi + a * r->f, r->f * sizeof *row);
+        memcpy(row + r->f, r->phi + a * r->i, r->modes * sizeof *row);
         if (with_missed)
             row[columns - 1] = r->missed[a];
     }

@@ -64,8 +64,7 @@ Status model_table(Table *t, const char *model, const char *file, TableForm form
     char path[PATH_SIZE];
     const BuiltIn *own = built_in(model, file);
     path_of(path, model, file);
-    return own ? table_parse(t, path, own->start, (size_t)(own->end - own->start), form, err)
-               : table_read(t, path, form, err);
+    return own ? table_parse(t, path, own->start, own->end - own->start, form, err) : table_read(t, path, form, err);
 }
 
 /* ---- columns -------------------------------------------------------------------------------------------------- */

@@ -32,7 +32,7 @@ static Status storey_stiffness(int n, const double K[], const double phi[], int 
 static Status largest_share(int n, const double k[], const double K[], double work[], double *lambda, Err *err)
 {
     double *yields = work, *phi = work + n * n, *omega = phi + n * n;
-    memset(yields, 0, sizeof *yields * (size_t)(n * n));
+    memset(yields, 0, sizeof *yields * n * n);
     for (int j = 0; j < n; j++) {
         yields[j * n + j] += k[j];
         if (j > 0) {
@@ -48,8 +48,8 @@ static Status largest_share(int n, const double k[], const double K[], double wo
 Status yielding_parts(int n, const double K_elastic[], const double M[], const double K[], const double yield_m[],
                       double *hardening, double k[], Err *err)
 {
-    const size_t nn = (size_t)(n * n);
-    double *work = malloc((2 * nn + (size_t)n) * sizeof *work), lambda;
+    const size_t nn = n * n;
+    double *work = malloc((2 * nn + n) * sizeof *work), lambda;
     if (!work)
         return fail(err, STATUS_NO_MEMORY, "building: no memory for its yielding storeys");
     Status status = linalg_modes(n, K_elastic, M, work + 2 * nn, work, err);

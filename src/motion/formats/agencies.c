@@ -255,12 +255,12 @@ static void take_named_peak(const Format *f, const Header *h, Channel *c, const 
 {
     char word[CHANNEL_NAME_MAX + 32];
     snprintf(word, sizeof word, f->peak_of, c->name);
-    const char *at = find_word(h->first.from, end, word), *stop = at ? memchr(at, '\n', (size_t)(end - at)) : NULL;
+    const char *at = find_word(h->first.from, end, word), *stop = at ? memchr(at, '\n', end - at) : NULL;
     if (!at)
         return;
     stop = stop ? stop : end;
     take_peak(c, at, at + strlen(word), stop);
-    const char *wave = memchr(at, '~', (size_t)(stop - at));
+    const char *wave = memchr(at, '~', stop - at);
     if (wave)
         take_peak(c, at, wave + 1, stop);
 }
@@ -269,7 +269,7 @@ static Status column_channel(const Format *f, Record *r, const Lines *l, Header 
                              Err *err)
 {
     Channel *c;
-    const char *sign = memchr(name.from, '(', (size_t)(name.to - name.from));
+    const char *sign = memchr(name.from, '(', name.to - name.from);
     TRY(record_channel(r, l, &c, err));
     *c = shape;
     channel_name(c, name.from, sign ? sign : name.to);
@@ -281,11 +281,11 @@ static Status column_channel(const Format *f, Record *r, const Lines *l, Header 
         take_named_peak(f, h, c, h->last.to);
     if (h->at[DURATION].from && h->count > 1 && fabs(h->count - (double)c->n) * h->dt > 1) /* stated in whole seconds */
         return fail_at(err, l, "%zu rows, but its header announces %g s every %g s", c->n, h->count * h->dt, h->dt);
-    if (h->at[COUNT].from && h->count < (double)c->n && (double)c->n <= h->count + 16 && h->count >= 2 &&
+    if (h->at[COUNT].from && h->count < c->n && c->n <= h->count + 16 && h->count >= 2 &&
         memchr(h->at[COUNT].from, '/', 4)) { /* as UNAM's files have them */
         c->n = (size_t)h->count;
         c->warning = "it has some rows more than its header announces; they are left out";
-    } else if (h->at[COUNT].from && h->count != (double)c->n) {
+    } else if (h->at[COUNT].from && h->count != c->n) {
         return fail_at(err, l, "%zu rows, but its header announces %g for channel %d", c->n, h->count, k + 1);
     }
     return STATUS_OK;
@@ -439,7 +439,7 @@ static Status check_code(const Lines *unit, Err *err)
 {
     static const MotionUnit CODES[] = {[2] = UNIT_G, [4] = UNIT_CM_S2, [10] = UNIT_CM_S2};
     double code;
-    const char *open = unit->from ? memchr(unit->from, '(', (size_t)(unit->to - unit->from)) : NULL;
+    const char *open = unit->from ? memchr(unit->from, '(', unit->to - unit->from) : NULL;
     if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))
         return STATUS_OK;
     const MotionUnit said = unit_of(unit->from, open);
@@ -556,7 +556,7 @@ static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
     static const char DIRECTIONS[][4] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
     const Lines *factor = &h->at[FACTOR];
     double gal = NAN, counts = NAN;
-    const char *slash = factor->from ? memchr(factor->from, '/', (size_t)(factor->to - factor->from)) : NULL;
+    const char *slash = factor->from ? memchr(factor->from, '/', factor->to - factor->from) : NULL;
     if (!slash || !find_word(factor->from, slash, "gal") || !number_behind(factor->from, slash, "", &gal) ||
         !number_behind(slash, factor->to, "/", &counts) || !(gal / counts > 0) || isinf(gal / counts))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable Scale Factor, as 3920(gal)/6182761", l->path,
@@ -617,8 +617,8 @@ static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
         return STATUS_OK;
     Lines whole = *npts;
     whole.from = whole.raw;
-    if (!memchr(whole.from, '=', (size_t)(whole.to - whole.from)) &&
-        line_numbers(&whole, 0, 2, x, &n, &(Err){0}) == STATUS_OK && n == 2) {
+    if (!memchr(whole.from, '=', whole.to - whole.from) && line_numbers(&whole, 0, 2, x, &n, &(Err){0}) == STATUS_OK &&
+        n == 2) {
         h->count = x[0];
         h->dt = x[1];
     } else if (quantity_behind(whole.from, whole.to, "DT", 0, &h->dt) <= 0) {

@@ -48,8 +48,8 @@ static Status read_member(struct archive *a, const char *path, char **out, size_
                         archive_error_string(a) ? archive_error_string(a) : "unreadable");
         if (got == 0)
             break;
-        *n += (size_t)got;
-        *total += (size_t)got;
+        *n += got;
+        *total += got;
         if (*total > ARCHIVE_BYTES_MAX)
             return fail(err, STATUS_BAD_DATA, "%s: unpacks to more than %zu MiB", path, ARCHIVE_BYTES_MAX >> 20);
     }

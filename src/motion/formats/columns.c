@@ -112,7 +112,7 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
     if (kind == UNIT) {
         Channel c = {.scale = 1};
         take_unit(&c, mark, l->to);
-        const char *next = memchr(mark, ',', (size_t)(l->to - mark)); /* "units: s, g" */
+        const char *next = memchr(mark, ',', l->to - mark); /* "units: s, g" */
         if (next && names_seconds((Cell){.from = c.stated, .to = c.stated + strlen(c.stated)}))
             take_unit(&c, next + 1, l->to);
         if (c.unit && t->all.unit && c.unit != t->all.unit)
@@ -181,7 +181,7 @@ static int has_marks(const Lines *l)
  * them. */
 static Cell next_name(const Lines *l, const char **p)
 {
-    const size_t n = (size_t)(l->to - l->from);
+    const size_t n = l->to - l->from;
     if (has_marks(l))
         return cell_next(p, l->to, memchr(l->from, ';', n) ? ";" : ",\t");
     Cell c = {.from = *p, .to = *p};
@@ -309,7 +309,7 @@ static void count_row(Plain *t, size_t n, int line)
 static int has_decimal_commas(const Plain *t)
 {
     const Lines *l = t->l;
-    const size_t n = (size_t)(l->to - l->from);
+    const size_t n = l->to - l->from;
     return memchr(l->from, ';', n) || ((t->is_one || memchr(l->from, ' ', n) || memchr(l->from, '\t', n)) &&
                                        csv_has_decimal_commas(l->from, l->to));
 }
@@ -348,7 +348,7 @@ static Status read_rows(Plain *t, Err *err)
             p++;
         if (p == l->to)
             continue;
-        if (is_comment(l) || (t->n_rows == 0 && is_words(l) && memchr(l->from, '=', (size_t)(l->to - l->from)))) {
+        if (is_comment(l) || (t->n_rows == 0 && is_words(l) && memchr(l->from, '=', l->to - l->from))) {
             take_pairs(t, l);
             if (t->n_rows == 0)
                 take_heading(t, l);
@@ -576,7 +576,7 @@ static Status read_columns(Plain *t, Err *err)
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
                     t->l->path, r->row[0].line);
-    if (t->width > 1 && !is_named(t) && t->dt > 0 && (t->count == (double)r->n || is_wrapped(t))) {
+    if (t->width > 1 && !is_named(t) && t->dt > 0 && (t->count == r->n || is_wrapped(t))) {
         t->width = 1;
         t->n_rows = r->n;
         return name_channels(t, 1, 0, 0, err);
@@ -587,7 +587,7 @@ static Status read_columns(Plain *t, Err *err)
             return fail_unnamed(t, err);
     }
     TRY(check_rows(t, err));
-    if (t->count > 1 && t->count != (double)t->n_rows && t->count != (double)r->n)
+    if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
         return fail(err, STATUS_BAD_DATA, "%s: announces %g samples, but has %zu rows", t->l->path, t->count,
                     t->n_rows);
     t->is_counted = counts_samples(t);

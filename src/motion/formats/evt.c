@@ -24,7 +24,7 @@ static unsigned u16(const unsigned char *b)
 
 static uint32_t u32(const unsigned char *b)
 {
-    return (uint32_t)u16(b) << 16 | u16(b + 2);
+    return u16(b) << 16 | u16(b + 2);
 }
 
 static double f32(const unsigned char *b)
@@ -32,7 +32,7 @@ static double f32(const unsigned char *b)
     const uint32_t bits = u32(b);
     float x;
     memcpy(&x, &bits, sizeof x);
-    return (double)x;
+    return x;
 }
 
 static int recognise(const unsigned char b[], size_t n)
@@ -57,7 +57,7 @@ static Status check_form(const char *path, size_t at, const Form *f, const unsig
                     "%s: Kinemetrics EVT: the frame at byte %zu is of type %d with samples of %u bytes, channels %#x, "
                     "%u Hz; type 3 with 3 or 4 bytes is read",
                     path, at, frame[0], f->bytes, f->channels, f->rate);
-    const size_t wanted = (size_t)f->rate / 10 * f->bytes * (size_t)__builtin_popcount(f->channels);
+    const size_t wanted = (size_t)f->rate / 10 * f->bytes * __builtin_popcount(f->channels);
     return samples == wanted
                ? STATUS_OK
                : fail(err, STATUS_BAD_DATA,
@@ -67,7 +67,7 @@ static Status check_form(const char *path, size_t at, const Form *f, const unsig
 
 static Status add_channels(Record *r, const Lines *l, const unsigned char *header, const Form *f, Err *err)
 {
-    size_t stride = (size_t)__builtin_popcount(f->channels), place = 0;
+    size_t stride = __builtin_popcount(f->channels), place = 0;
     for (int k = 0; k < CHANNELS; k++) {
         const unsigned char *about = header + 0x2c8 + 76 * k;
         const double full_scale = f32(about + 32), sensitivity = f32(about + 36);
@@ -92,8 +92,8 @@ static Status add_channels(Record *r, const Lines *l, const unsigned char *heade
 static Status add_samples(Record *r, const unsigned char *b, size_t n, unsigned bytes, Err *err)
 {
     for (size_t i = 0; i < n; i += bytes) {
-        const uint32_t top = bytes == 4 ? u32(b + i) : (uint32_t)(u16(b + i) << 8 | b[i + 2]) << 8;
-        const double value = bytes == 4 ? (double)(int32_t)top : (double)((int32_t)top / 256);
+        const uint32_t top = bytes == 4 ? u32(b + i) : (u16(b + i) << 8 | b[i + 2]) << 8;
+        const double value = bytes == 4 ? (int32_t)top : ((int32_t)top / 256);
         TRY(record_add(r, (Row){.a = value, .line = 1}, err));
     }
     return STATUS_OK;

@@ -21,7 +21,7 @@ static double sample_of(const MSTrace *t, int64_t i)
     case 'i':
         return ((const int32_t *)t->datasamples)[i];
     case 'f':
-        return (double)((const float *)t->datasamples)[i];
+        return ((const float *)t->datasamples)[i];
     default:
         return ((const double *)t->datasamples)[i];
     }
@@ -38,7 +38,7 @@ static Status take_trace(Record *r, const Lines *l, const MSTrace *t, Err *err)
     channel_named(c, "%s.%s.%s.%s", t->network, t->station, t->location, t->channel);
     c->counts = 1;
     c->dt = 1 / t->samprate;
-    c->n = (size_t)t->numsamples;
+    c->n = t->numsamples;
     for (int64_t i = 0; i < t->numsamples; i++)
         TRY(record_add(r, (Row){.a = sample_of(t, i), .line = 1}, err));
     return STATUS_OK;
@@ -90,7 +90,7 @@ static Status collect(MSTraceGroup *group, const char *path, const char *bytes, 
             status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: more than %d channels", path, CHANNELS_MAX);
         else if (!mst_addmsrtogroup(group, record, 0, -1, -1))
             status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: the record at byte %zu fits no trace", path, at);
-        at += (size_t)record->reclen;
+        at += record->reclen;
     }
     msr_free(&record);
     return status;

@@ -56,7 +56,7 @@ Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err
         const Cell c = cell_next(&p, l->to, with_comma ? " ;" : " ,;");
         Row row = {.line = l->number, .decimals = count_decimals(c)};
         TRY(line_number(l, c, with_comma || c.is_quoted, &row.a, err));
-        if (with_comma || !memchr(c.from, ',', (size_t)(c.to - c.from)))
+        if (with_comma || !memchr(c.from, ',', c.to - c.from))
             TRY(lines_note_mark(l, c, err));
         if (*n > CHANNELS_MAX)
             return fail_at(err, l, "more than %d channels", CHANNELS_MAX);
@@ -151,7 +151,7 @@ void channel_unit(Channel *c, const char *from, const char *to)
     const char *word = from, *all;
     while (word < to && !strchr(" \t,;([", *word))
         word++;
-    for (all = from; all < to && !strchr(",;([", *all) && strncmp(all, "  ", (size_t)(to - all < 2 ? 1 : 2)) != 0;)
+    for (all = from; all < to && !strchr(",;([", *all) && strncmp(all, "  ", to - all < 2 ? 1 : 2) != 0;)
         all++;
     for (int i = 0; i < 2; i++) {
         const char **end = i ? &all : &word;

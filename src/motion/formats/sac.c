@@ -43,12 +43,12 @@ static double real_at(const char *bytes, size_t k, int swapped)
     const uint32_t w = word_at(bytes, k, swapped);
     float x;
     memcpy(&x, &w, sizeof x);
-    return (double)x;
+    return x;
 }
 
 static int32_t integer_at(const char *bytes, int k, int swapped)
 {
-    return (int32_t)word_at(bytes, (size_t)(N_REALS + k), swapped);
+    return word_at(bytes, N_REALS + k, swapped);
 }
 
 static int is_version(int32_t v)
@@ -104,7 +104,7 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, not the %d that its header announces", path,
                     (n - HEADER) / 4, npts);
     TRY(record_channel(r, &l, &c, err));
-    *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = (size_t)npts};
+    *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = npts};
     c->dt = round(delta * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
     if (strnlen(bytes + COMPONENT_AT, 8) > 0 && strncmp(bytes + COMPONENT_AT, "-12345", 6) != 0)
         channel_name(c, bytes + COMPONENT_AT, bytes + COMPONENT_AT + strnlen(bytes + COMPONENT_AT, 8));

@@ -38,7 +38,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     const size_t n = json_array_size(list);
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
-    if (place->count > 0 && place->count != (double)n && place->count + 1 != (double)n)
+    if (place->count > 0 && place->count != n && place->count + 1 != n)
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
                     place->l->path, place->name, n, place->count);
     TRY(record_channel(place->r, place->l, &c, err));
@@ -48,7 +48,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     c->dt = dt;
     c->n = n;
     channel_named(c, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
-    if (place->count + 1 == (double)n && !c->warning)
+    if (place->count + 1 == n && !c->warning)
         c->warning = "its numSteps is one less than its samples";
     for (size_t i = 0; i < n; i++) {
         const json_t *x = json_array_get(list, i);

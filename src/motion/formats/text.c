@@ -97,7 +97,7 @@ static int is_time(Cell c, double *x)
     char text[NUMBER_MAX] = "";
     struct tm day = {0};
     double second;
-    const size_t n = (size_t)(c.to - c.from);
+    const size_t n = c.to - c.from;
     if (n < 19 || n >= sizeof text || c.from[10] != 'T')
         return 0;
     memcpy(text, c.from, n);
@@ -113,7 +113,7 @@ static int is_time(Cell c, double *x)
 
 Status line_number(const Lines *l, Cell c, int with_comma, double *x, Err *err)
 {
-    const size_t n = (size_t)(c.to - c.from);
+    const size_t n = c.to - c.from;
     const int shown = n < 40 ? (int)n : 40;
     const CellKind kind = is_time(c, x) ? NUMBER : cell_number(c, with_comma, x);
     if (with_comma && memchr(c.from, '.', n) && memchr(c.from, ',', n))
@@ -158,7 +158,7 @@ int number_behind(const char *from, const char *to, const char *word, double *x)
 {
     const char *p = behind(from, to, word);
     const Cell c = {.from = p, .to = p ? number_end(p, to) : p};
-    return c.to > c.from && cell_number(c, memchr(c.from, ',', (size_t)(c.to - c.from)) != NULL, x) == NUMBER;
+    return c.to > c.from && cell_number(c, memchr(c.from, ',', c.to - c.from) != NULL, x) == NUMBER;
 }
 
 int quantity_behind(const char *from, const char *to, const char *word, int is_rate, double *x)
@@ -198,7 +198,7 @@ static Status parted_numbers(const Lines *l, int width, size_t max, double x[], 
     for (const char *p = l->from; p < l->to && *n < max; ++*n) {
         const Cell c = cell_next(&p, l->to, " ,;");
         const long length = c.to - c.from;
-        if (width && length > width && !memchr(c.from, '.', (size_t)length))
+        if (width && length > width && !memchr(c.from, '.', length))
             return fail_at(err, l, "'%.*s' is wider than %d characters", (int)(length < 40 ? length : 40), c.from,
                            width);
         TRY(line_number(l, c, 0, &x[*n], err));
@@ -290,5 +290,5 @@ int is_quantity(const char *from, const char *to)
         p += p == word;
     }
     const int is_direction = n_words > 1 && n_letters == n_words; /* N-S */
-    return (n_words && !is_direction) || memchr(from, '%', (size_t)(to - from)) || text_is(EQUALS, from, to, "-");
+    return (n_words && !is_direction) || memchr(from, '%', to - from) || text_is(EQUALS, from, to, "-");
 }
