@@ -56,7 +56,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
 SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
-MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv)
+MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv) src/motion/builtin.csv
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
 LIB      := $(BUILD)/libprogram.a
 # What stands alone: no SQLite, no server, nothing printed. `make lib-alone` links it so.
@@ -125,7 +125,7 @@ $(BUILD)/src/sim/fast/kernel_%.o: src/sim/fast/kernel.c
 	@echo '  CC  $@'
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(WARNINGS) $(FLAGS.kernel) $(FLAGS.$*) -DFAST_KERNEL=fast_kernel_$* -c $< -o $@
 
-# The two 20-floor buildings are part of the program: a file becomes the symbols _binary_PATH_start and _end.
+# The two 20-floor buildings and the built-in motions are part of the program: a file becomes the symbols _binary_PATH_start and _end.
 $(BUILD)/%.csv.o: %.csv
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
