@@ -1,6 +1,5 @@
 #include "evaluate/adapter.h"
 
-#include <stdint.h>
 #include <stdlib.h>
 
 #include "evaluate/external.h"

@@ -3,8 +3,6 @@
 #include <omp.h>
 #include <pthread.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/carve.h"
 #include "evaluate/cluster.h"

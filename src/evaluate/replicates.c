@@ -1,6 +1,5 @@
 #include "evaluate/replicates.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,5 @@
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
-#include "motion/motion.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/visible.h"
-#include "scene/design.h"
 #include "settings/options.h"
 #include "scene/neighbour.h"
 

@@ -1,8 +1,6 @@
 #include "evaluate/tower.h"
 
 #include <pthread.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

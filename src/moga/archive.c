@@ -1,6 +1,5 @@
 #include "moga/archive.h"
 
-#include <math.h>
 
 #include "base/carve.h"
 #include "base/hash.h"

@@ -1,7 +1,6 @@
 #include "moga/convergence.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 
 #include "base/hypervolume.h"

@@ -1,5 +1,4 @@
 #include "moga/search.h"
-#include "moga/replication.h"
 #include "moga/state.h"
 
 #include <math.h>

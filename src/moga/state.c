@@ -1,7 +1,6 @@
 #include "moga/state.h"
 
 #include <float.h>
-#include <stdlib.h>
 
 #include "base/carve.h"
 

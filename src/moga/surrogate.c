@@ -1,9 +1,7 @@
 #include "moga/surrogate.h"
 
 #include <float.h>
-#include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
 #include "base/carve.h"
 #include "base/rprop.h"

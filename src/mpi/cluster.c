@@ -1,9 +1,7 @@
-#include "evaluate/cluster.h"
 
 #include <mpi.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"

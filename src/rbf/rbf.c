@@ -10,7 +10,6 @@
 #include "base/carve.h"
 #include "base/linalg.h"
 #include "rbf/constants.h"
-#include "rbf/kernel.h"
 #include "rbf/model.h"
 
 static void layout(void *interpolant, Carve *c)

@@ -6,7 +6,6 @@
 
 #include "base/rprop.h"
 #include "rbf/constants.h"
-#include "rbf/kernel.h"
 #include "rbf/model.h"
 #include "rbf/rbf.h"
 

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/csv.h"
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "scene/sheets.h"

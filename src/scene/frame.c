@@ -1,6 +1,5 @@
 #include "scene/frame.h"
 
-#include <math.h>
 #include <search.h>
 #include <stdio.h>
 #include <stdlib.h>

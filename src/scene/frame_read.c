@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/frame.h"
 #include "scene/opensees.h"
 #include "scene/sheets.h"
 #include "scene/building_read.h"

@@ -1,8 +1,6 @@
 #include "scene/reduction.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/carve.h"
 #include "base/linalg.h"
