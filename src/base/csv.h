@@ -12,8 +12,6 @@
 #ifndef IMTET_BASE_CSV_H
 #define IMTET_BASE_CSV_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 /* A whole file as a NUL-terminated string, to be freed by the caller. `largest` [bytes]: where a device or a wrong file

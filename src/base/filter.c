@@ -1,7 +1,5 @@
 #include "base/filter.h"
 
-#include <math.h>
-
 #include "base/clones.h"
 
 enum { VECTORS = 3 /* together: each waits for its own last row */ };

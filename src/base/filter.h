@@ -13,8 +13,6 @@
 #ifndef IMTET_BASE_FILTER_H
 #define IMTET_BASE_FILTER_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 enum { FILTER_ORDER = 4, FILTER_SECTIONS = FILTER_ORDER / 2 };

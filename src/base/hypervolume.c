@@ -1,9 +1,5 @@
 #include "base/hypervolume.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/clones.h"
 #include "base/random.h"
 

@@ -10,9 +10,6 @@
 #ifndef IMTET_BASE_HYPERVOLUME_H
 #define IMTET_BASE_HYPERVOLUME_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "base/status.h"
 
 enum { HYPERVOLUME_SAMPLES = 20000 };

@@ -1,9 +1,5 @@
 #include "base/keyed.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/option.h"
 
 static char last_letter(const KeyedNumber *k)

@@ -6,8 +6,6 @@
 #ifndef IMTET_BASE_KEYED_H
 #define IMTET_BASE_KEYED_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 typedef struct {

@@ -5,8 +5,6 @@
 #ifndef IMTET_BASE_LINALG_H
 #define IMTET_BASE_LINALG_H
 
-#include <stddef.h>
-
 #include "base/option.h"
 #include "base/status.h"
 

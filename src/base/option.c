@@ -1,7 +1,5 @@
 #include "base/option.h"
 
-#include <stdio.h>
-
 Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err)
 {
     return snprintf(option, OPTION_TEXT_MAX, "%s", path) < OPTION_TEXT_MAX

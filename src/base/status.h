@@ -7,7 +7,13 @@
 #ifndef IMTET_BASE_STATUS_H
 #define IMTET_BASE_STATUS_H
 
+/* What nearly every file takes of the C library, for all that include this. */
+#include <math.h>
 #include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /*    name           exit  words                                                  (exit codes as in sysexits.h) */
 #define STATUS_LIST(X)                                                                                                 \
@@ -78,7 +84,7 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
 #define N_OF(array) (sizeof(array) / sizeof *(array)) /* elements */
 
 /* Zeroed memory for n of what the pointer points to; where it is refused the function returns, as by TRY. what: of the
- * many, "designs", or with n = 1 of one, "a run". For users of stdlib.h. */
+ * many, "designs", or with n = 1 of one, "a run". */
 #define TRY_ROOM(pointer, n, what, err)                                                                                \
     do {                                                                                                               \
         (pointer) = calloc((size_t)(n), sizeof *(pointer));                                                            \

@@ -1,7 +1,5 @@
 #include "evaluate/adapter.h"
 
-#include <stdlib.h>
-
 #include "evaluate/external.h"
 #include "evaluate/textbook.h"
 #include "evaluate/tasks.h"

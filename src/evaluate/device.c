@@ -1,8 +1,6 @@
 #include "evaluate/device.h"
 
-#include <math.h>
 #include <nlopt.h>
-#include <string.h>
 
 enum { MODES = 8, GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, SIMPLEX_EVALS = 40 };
 static const double STEP = 8e-3, ARIAS = 0.995, PERIODS = 3;

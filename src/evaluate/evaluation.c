@@ -1,10 +1,5 @@
 #include "evaluate/evaluation.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/visible.h"
 
 static const char *const OUTCOME_WORDS[] = {

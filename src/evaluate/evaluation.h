@@ -18,8 +18,6 @@
 #ifndef IMTET_EVALUATE_EVALUATION_H
 #define IMTET_EVALUATE_EVALUATION_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 /*    name            word in files */

@@ -1,7 +1,5 @@
 #include "evaluate/kinds.h"
 
-#include <string.h>
-
 #include "base/list.h"
 
 static const char CHOICE[] = "choice:";

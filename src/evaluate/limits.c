@@ -1,10 +1,6 @@
 #include "evaluate/limits.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
 static const char *take_name(const char *text, char name[])

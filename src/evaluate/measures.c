@@ -1,9 +1,5 @@
 #include "evaluate/measures.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "base/list.h"
 #include "scene/foundation.h"
 #include "scene/neighbour.h"

@@ -13,8 +13,6 @@
 #ifndef IMTET_EVALUATE_MEASURES_H
 #define IMTET_EVALUATE_MEASURES_H
 
-#include <stdint.h>
-
 #include "evaluate/evaluation.h"
 #include "sim/sim.h"
 

@@ -21,9 +21,6 @@
 #ifndef IMTET_EVALUATE_PROBLEM_H
 #define IMTET_EVALUATE_PROBLEM_H
 
-#include <math.h>
-#include <stdint.h>
-
 #include "evaluate/evaluation.h"
 
 typedef struct Queue Queue;

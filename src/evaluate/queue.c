@@ -2,7 +2,6 @@
 
 #include <omp.h>
 #include <pthread.h>
-#include <stdint.h>
 
 #include "base/carve.h"
 #include "evaluate/cluster.h"

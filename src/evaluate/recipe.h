@@ -5,8 +5,6 @@
 #ifndef IMTET_EVALUATE_RECIPE_H
 #define IMTET_EVALUATE_RECIPE_H
 
-#include <stddef.h>
-
 #include "settings/options.h"
 
 /* A scene of a tower: which record, and what it has otherwise than the settings say. */

@@ -1,8 +1,5 @@
 #include "evaluate/replicates.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "base/stat.h"
 #include "sim/as_built.h"

@@ -20,8 +20,6 @@
 #ifndef IMTET_EVALUATE_REPLICATES_H
 #define IMTET_EVALUATE_REPLICATES_H
 
-#include <stdint.h>
-
 #include "evaluate/measures.h"
 
 enum { TOWER_RECORDS_MAX = 16 }; /* of one design */

@@ -1,9 +1,6 @@
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "sim/fast/fast.h"
 
 static Status build(Scenario *w, Err *err)

@@ -1,9 +1,5 @@
 #include "evaluate/schema.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/visible.h"
 #include "settings/options.h"
 #include "scene/neighbour.h"

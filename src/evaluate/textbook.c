@@ -1,9 +1,5 @@
 #include "evaluate/textbook.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "evaluate/kinds.h"
 

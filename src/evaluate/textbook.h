@@ -18,8 +18,6 @@
 #ifndef IMTET_EVALUATE_TEXTBOOK_H
 #define IMTET_EVALUATE_TEXTBOOK_H
 
-#include <stdint.h>
-
 #include "evaluate/problem.h"
 #include "settings/options.h"
 

@@ -1,8 +1,6 @@
 #include "evaluate/tower.h"
 
 #include <pthread.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/hash.h"
 #include "base/list.h"

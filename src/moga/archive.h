@@ -21,9 +21,6 @@
 #ifndef IMTET_MOGA_ARCHIVE_H
 #define IMTET_MOGA_ARCHIVE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "base/status.h"
 #include "moga/nd_tree.h"
 #include "moga/noise.h"

@@ -1,7 +1,5 @@
 #include "moga/batch.h"
 
-#include <string.h>
-
 size_t batch_size_max(const SearchConfig *c)
 {
     return c->surrogate == SURROGATE_OFF ? c->population / 2 : c->population;

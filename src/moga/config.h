@@ -5,8 +5,6 @@
 #ifndef IMTET_MOGA_CONFIG_H
 #define IMTET_MOGA_CONFIG_H
 
-#include <stdint.h>
-
 #include "evaluate/evaluation.h"
 #include "settings/search_options.h"
 

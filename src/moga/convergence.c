@@ -1,8 +1,5 @@
 #include "moga/convergence.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "base/hypervolume.h"
 
 /* Least width of the box in an objective, as a share of its range over all designs. */

@@ -1,9 +1,5 @@
 #include "moga/directions.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 
 /* (p + m - 1 over m - 1), SIZE_MAX where it does not fit. */

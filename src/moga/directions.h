@@ -10,8 +10,6 @@
 #ifndef IMTET_MOGA_DIRECTIONS_H
 #define IMTET_MOGA_DIRECTIONS_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 typedef struct {

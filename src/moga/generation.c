@@ -1,8 +1,5 @@
 #include "moga/state.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "moga/replication.h"
 #include "moga/variation.h"
 

@@ -1,8 +1,6 @@
 #include "moga/infill.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdint.h>
 
 #include "base/carve.h"
 #include "base/clones.h"

@@ -1,9 +1,5 @@
 #include "moga/nd_tree.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/dominance.h"
 
 /* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as

@@ -14,8 +14,6 @@
 #ifndef IMTET_MOGA_ND_TREE_H
 #define IMTET_MOGA_ND_TREE_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 typedef struct NdTree NdTree;

@@ -1,8 +1,5 @@
 #include "moga/offspring.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/dominance.h"
 #include "moga/variation.h"
 

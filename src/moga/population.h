@@ -7,9 +7,6 @@
 #ifndef IMTET_MOGA_POPULATION_H
 #define IMTET_MOGA_POPULATION_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "base/pack.h"
 #include "base/status.h"
 #include "moga/archive.h"

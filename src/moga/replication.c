@@ -1,8 +1,5 @@
 #include "moga/replication.h"
 
-#include <math.h>
-#include <string.h>
-
 static void range_of_front(const Archive *a, size_t k, double *min, double *max)
 {
     *min = INFINITY;

@@ -16,10 +16,6 @@
  * Threads  one */
 #include "moga/screening.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/hypervolume.h"
 
 void screening_begin(Screening *q, const Common *c)

@@ -1,8 +1,6 @@
 #include "moga/search.h"
 #include "moga/state.h"
 
-#include <math.h>
-
 #include "base/hypervolume.h"
 
 const char *stop_reason_words(StopReason reason)

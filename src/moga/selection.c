@@ -1,8 +1,5 @@
 #include "moga/selection.h"
 
-#include <math.h>
-#include <stdint.h>
-
 #include "base/carve.h"
 #include "base/dominance.h"
 #include "moga/normalisation.h"

@@ -1,7 +1,6 @@
 #include "moga/surrogate.h"
 
 #include <float.h>
-#include <stdint.h>
 
 #include "base/carve.h"
 #include "base/rprop.h"

@@ -1,7 +1,5 @@
 #include "moga/variation.h"
 
-#include <math.h>
-
 static double clamp(double x, double lower, double upper)
 {
     return x < lower ? lower : x > upper ? upper : x;

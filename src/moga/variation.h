@@ -13,8 +13,6 @@
 #ifndef IMTET_MOGA_VARIATION_H
 #define IMTET_MOGA_VARIATION_H
 
-#include <stddef.h>
-
 #include "base/random.h"
 #include "evaluate/problem.h"
 

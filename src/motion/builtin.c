@@ -19,11 +19,6 @@
  * stand-ins in that sense and in no other: seismologically they are none of these earthquakes. */
 #include "motion/builtin.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/csv.h"
 #include "base/hash.h"
 

@@ -1,10 +1,5 @@
 #include "motion/forces.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/csv.h"
 #include "base/hash.h"
 

@@ -1,10 +1,5 @@
 #include "motion/motion.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/units.h"
 
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err)

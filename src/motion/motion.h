@@ -10,9 +10,6 @@
 #ifndef IMTET_MOTION_MOTION_H
 #define IMTET_MOTION_MOTION_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "base/status.h"
 #include "motion/options.h"
 

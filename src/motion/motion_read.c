@@ -1,10 +1,6 @@
 #include "motion/motion_read.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 #include "base/hash.h"

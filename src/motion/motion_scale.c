@@ -1,10 +1,6 @@
 #include "motion/motion_scale.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/filter.h"
 #include "base/keyed.h"

@@ -1,7 +1,5 @@
 #include "motion/spectrum.h"
 
-#include <math.h>
-
 #include "base/units.h"
 
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */

@@ -1,7 +1,5 @@
-
 #include <mpi.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "base/clock.h"

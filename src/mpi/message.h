@@ -18,9 +18,6 @@
 #ifndef IMTET_MPI_MESSAGE_H
 #define IMTET_MPI_MESSAGE_H
 
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 #include <time.h>
 
 #include "evaluate/cluster.h"

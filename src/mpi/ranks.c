@@ -1,10 +1,7 @@
 #include <inttypes.h>
-#include <math.h>
 #include <mpi.h>
 #include <pthread.h>
 #include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/clock.h"
 #include "evaluate/tasks.h"

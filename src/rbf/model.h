@@ -2,8 +2,6 @@
 #ifndef IMTET_RBF_MODEL_H
 #define IMTET_RBF_MODEL_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 #include "rbf/kernel.h"
 

@@ -3,9 +3,7 @@
 #include <cblas.h>
 #include <float.h>
 #include <lapacke.h>
-#include <math.h>
 #include <omp.h>
-#include <stdint.h>
 
 #include "base/carve.h"
 #include "base/linalg.h"

@@ -33,8 +33,6 @@
 #ifndef IMTET_RBF_RBF_H
 #define IMTET_RBF_RBF_H
 
-#include <stddef.h>
-
 #include "base/pack.h"
 #include "base/status.h"
 #include "rbf/kernel.h"

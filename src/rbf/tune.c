@@ -1,8 +1,6 @@
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 #include <omp.h>
-#include <string.h>
 
 #include "base/rprop.h"
 #include "rbf/constants.h"

@@ -1,8 +1,5 @@
 #include "scene/building.h"
 
-#include <math.h>
-#include <stdio.h>
-
 #include "base/carve.h"
 #include "base/hash.h"
 #include "base/linalg.h"

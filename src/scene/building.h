@@ -38,8 +38,6 @@
 #ifndef IMTET_SCENE_BUILDING_H
 #define IMTET_SCENE_BUILDING_H
 
-#include <stdint.h>
-
 #include "base/status.h"
 #include "scene/core_beam.h"
 #include "scene/options.h"

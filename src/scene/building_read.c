@@ -1,9 +1,5 @@
 #include "scene/building_read.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/linalg.h"

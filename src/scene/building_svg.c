@@ -1,8 +1,5 @@
 #include "scene/building_svg.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Sizes in px. */
 static const double TOP = 40, LEFT = 60, HEIGHT = 640, WIDTH_MAX = 520, MODE_WIDTH = 64, LABELS = 95;
 enum { MODES_SHOWN = 10 };

@@ -4,8 +4,6 @@
 #ifndef IMTET_SCENE_BUILDING_SVG_H
 #define IMTET_SCENE_BUILDING_SVG_H
 
-#include <stdio.h>
-
 #include "scene/building.h"
 #include "scene/frame.h"
 

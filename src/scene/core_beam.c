@@ -1,9 +1,5 @@
 #include "scene/core_beam.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 
 /* ---- beams ---------------------------------------------------------------------------------------------------- */

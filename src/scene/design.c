@@ -1,10 +1,5 @@
 #include "scene/design.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/list.h"
 
 /* -- variables ----------------------------------------------------------------------------------------------------- */

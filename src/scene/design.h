@@ -25,8 +25,6 @@
 #ifndef IMTET_SCENE_DESIGN_H
 #define IMTET_SCENE_DESIGN_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 #include "base/csv.h"
 #include "scene/options.h"

@@ -1,8 +1,5 @@
 #include "scene/foundation.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/keyed.h"
 
 enum { SOIL, SHEAR, RADIUS, NU, DENSITY, ROTATION, TRANSLATION, ROTATION_DASHPOT, TRANSLATION_DASHPOT, WEIGHT, N_KEYS };

@@ -1,9 +1,6 @@
 #include "scene/frame.h"
 
 #include <search.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/stat.h"
 

@@ -1,7 +1,3 @@
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "scene/opensees.h"
 #include "scene/sheets.h"
 #include "scene/building_read.h"

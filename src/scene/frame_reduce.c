@@ -1,7 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "scene/frame.h"

@@ -1,8 +1,5 @@
 #include "scene/neighbour.h"
 
-#include <math.h>
-#include <string.h>
-
 int neighbour_is_given(const CoreOptions *o)
 {
     return o->model[0] && strcmp(o->model, "none") != 0;

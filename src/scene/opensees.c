@@ -3,12 +3,8 @@
 #include <errno.h>
 #include <limits.h>
 #include <locale.h>
-#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <tcl.h>
 #include <time.h>
 

@@ -1,7 +1,5 @@
 #include "scene/reduction.h"
 
-#include <math.h>
-
 #include "base/carve.h"
 #include "base/linalg.h"
 #include "scene/options.h"

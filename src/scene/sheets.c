@@ -1,8 +1,5 @@
 #include "scene/sheets.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 /* ---- files ---------------------------------------------------------------------------------------------------- */

@@ -1,10 +1,7 @@
 #include "scene/summary.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/units.h"
 #include "motion/spectrum.h"

@@ -1,9 +1,5 @@
 #include "scene/yielding.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 
 /* Of what may yield without the rest of the building falling: below 1 by this share. */

@@ -2,8 +2,6 @@
 
 #include <archive.h>
 #include <archive_entry.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 int archive_is(const unsigned char bytes[], size_t n)

@@ -10,8 +10,6 @@
  *             14 bytes of a sample less one (2 bits from the top)
  *
  *   a [g] = counts / 2^23 full scale / sensitivity       (samples of 3 or 4 bytes, 24 bits) */
-#include <stdint.h>
-#include <string.h>
 
 #include "motion/formats/record.h"
 

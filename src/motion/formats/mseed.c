@@ -1,7 +1,6 @@
 /* miniSEED 2 by libmseed (FDSN, SEED Reference Manual 2.4): every continuous trace is a channel NET.STA.LOC.CHA; a
  * gap makes two. Samples are counts, or numbers whose unit the file does not say. */
 #include <libmseed.h>
-#include <string.h>
 
 #include "motion/formats/record.h"
 

@@ -1,11 +1,7 @@
 #include "motion/formats/record.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 

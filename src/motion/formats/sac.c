@@ -6,9 +6,6 @@
  *
  * Integer 16, IDEP, may say displacement (6) or velocity (7), which are refused. That it says nm/s2 (8) hardly any file
  * keeps to: the unit is asked for. */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "motion/formats/record.h"
 

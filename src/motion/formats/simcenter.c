@@ -3,8 +3,6 @@
  * "unit" or "units" beside them or above, else it is asked for. A "factor" beside the samples multiplies them, as in
  * SimCenter's IntensityMeasureComputer and in the series that it hands to OpenSees. */
 #include <jansson.h>
-#include <math.h>
-#include <string.h>
 
 #include "motion/formats/record.h"
 
