@@ -28,7 +28,7 @@ static Status read_stream(FILE *f, const char *path, size_t largest, char **text
         if (*length < capacity && *length <= largest)
             return STATUS_OK;
     }
-    return fail(err, STATUS_BAD_DATA, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
+    return bad_data(err, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
 }
 
 Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err)
@@ -55,9 +55,9 @@ Status lines_open(Lines *l, const char *path, const char *text, size_t length, E
 {
     *l = (Lines){.path = path, .next = text, .end = text + length};
     if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as UTF-8", path);
+        return bad_data(err, "%s: is written in UTF-16; save it as UTF-8", path);
     if (memchr(text, 0, length))
-        return fail(err, STATUS_BAD_DATA, "%s: holds a NUL byte; this is not a text file", path);
+        return bad_data(err, "%s: holds a NUL byte; this is not a text file", path);
     if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8 byte order mark */
         l->next += 3;
     l->mark = memchr(text, '\n', length) ? '\n' : '\r';
@@ -144,8 +144,8 @@ Status lines_note_mark(Lines *l, Cell c, Err *err)
         l->comma_line = l->number;
     if (!l->point_line || !l->comma_line)
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA, "%s:%d: decimal points and decimal commas are mixed; line %d has the other",
-                l->path, l->number, l->point_line < l->comma_line ? l->point_line : l->comma_line);
+    return fail_at(err, l, "decimal points and decimal commas are mixed; line %d has the other",
+                   l->point_line < l->comma_line ? l->point_line : l->comma_line);
 }
 
 int csv_is_error(const char *line, const char *end)
@@ -212,7 +212,7 @@ static Status read_names(Reading *r, const char *from, const char *to, Err *err)
     for (const char *p = from; p <= to; n++) {
         const Cell c = cell_next(&p, to, r->separator);
         if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu has no usable name", t->path, r->l.number, n + 1);
+            return fail_at(err, &r->l, "column %zu has no usable name", n + 1);
         memcpy(t->names[n], c.from, c.to - c.from);
     }
     return STATUS_OK;
@@ -241,12 +241,11 @@ static Status room_for_row(Reading *r, Err *err)
 static Status fail_number(const Table *t, int line, size_t column, Cell c, CellKind kind, double x, Err *err)
 {
     if (kind == NOT_FINITE)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is %g; only finite numbers are accepted", t->path, line,
-                    column + 1, x);
+        return bad_data(err, "%s:%d: column %zu is %g; only finite numbers are accepted", t->path, line, column + 1, x);
     if (c.from == c.to)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
-    return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.*s'", t->path, line, column + 1,
-                (int)(c.to - c.from < 20 ? c.to - c.from : 20), c.from);
+        return bad_data(err, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
+    return bad_data(err, "%s:%d: column %zu is not a number: '%.*s'", t->path, line, column + 1,
+                    (int)(c.to - c.from < 20 ? c.to - c.from : 20), c.from);
 }
 
 static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
@@ -279,13 +278,11 @@ static Status read_row(Reading *r, const char *from, const char *to, Err *err)
     TRY(room_for_row(r, err));
     for (size_t n = 0; n < t->n_cols; n++) {
         if (r->of_words && p > to)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: %zu columns; the header has %zu", t->path, r->l.number, n,
-                        t->n_cols);
+            return fail_at(err, &r->l, "%zu columns; the header has %zu", n, t->n_cols);
         TRY(take_cell(r, n, cell_next(&p, to, r->separator), err));
     }
     t->line[t->n_rows++] = r->l.number;
-    return p > to ? STATUS_OK
-                  : fail(err, STATUS_BAD_DATA, "%s:%d: more than %zu columns", t->path, r->l.number, t->n_cols);
+    return p > to ? STATUS_OK : fail_at(err, &r->l, "more than %zu columns", t->n_cols);
 }
 
 static Status read_rows(Reading *r, size_t length, Err *err)
@@ -303,7 +300,7 @@ static Status read_rows(Reading *r, size_t length, Err *err)
     }
     if (t->n_rows > 0 || (t->names && !r->of_words))
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA, "%s: holds no %s", t->path, r->of_words ? "rows" : "numbers");
+    return bad_data(err, "%s: holds no %s", t->path, r->of_words ? "rows" : "numbers");
 }
 
 Status table_parse(Table *t, const char *path, const char *text, size_t length, TableForm form, Err *err)

@@ -8,8 +8,8 @@ Status filter_butterworth(Filter *f, FilterKind kind, double cutoff_hz, double d
 {
     const double W = tan(M_PI * cutoff_hz * dt_s);
     if (!(cutoff_hz > 0 && dt_s > 0 && cutoff_hz * dt_s < 0.5))
-        return fail(err, STATUS_BAD_DATA, "a cutoff of %g Hz is not between 0 and half the sampling rate, %g Hz",
-                    cutoff_hz, 0.5 / dt_s);
+        return bad_data(err, "a cutoff of %g Hz is not between 0 and half the sampling rate, %g Hz", cutoff_hz,
+                        0.5 / dt_s);
     f->cutoff_dt = cutoff_hz * dt_s;
     for (int k = 0; k < FILTER_SECTIONS; k++) {
         const double damping = 2 * cos(M_PI * (2 * k + 1) / (2 * FILTER_ORDER)); /* 1 / Q of this pair of poles */

@@ -17,7 +17,7 @@ static Status unknown(const char *setting, const char *word, unsigned kind, size
             snprintf(all + used, sizeof all - used, " %s=%.*s", keys[k].key, keys[k].letters ? 4 : 0,
                      (const char[]){'A', '.', '.', last_letter(&keys[k])});
         }
-    return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is none of%s", setting, word, all);
+    return bad_data(err, "%s: '%.60s' is none of%s", setting, word, all);
 }
 
 /* One "key=value"; none twice, for the other one would be lost. */
@@ -35,15 +35,15 @@ static Status take(const char *setting, const char *word, unsigned kind, size_t 
         return unknown(setting, word, kind, n, keys, err);
     const KeyedNumber *k = &keys[i];
     if (x[i] != 0)
-        return fail(err, STATUS_BAD_DATA, "%s: %s stands twice; the second is '%.60s'", setting, k->key, word);
+        return bad_data(err, "%s: %s stands twice; the second is '%.60s'", setting, k->key, word);
     x[i] = strtod(value, &end);
     if (k->letters && *value >= 'A' && *value <= last_letter(k)) {
         x[i] = *value - 'A' + 1;
         end++;
     }
     if (end == value || *end || !(x[i] >= k->least && x[i] <= k->most))
-        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is no number from %g to %g%s%.*s", setting, word, k->least,
-                    k->most, k->letters ? " and no letter from A to " : "", k->letters, (char[]){last_letter(k)});
+        return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s", setting, word, k->least, k->most,
+                        k->letters ? " and no letter from A to " : "", k->letters, (char[]){last_letter(k)});
     return STATUS_OK;
 }
 

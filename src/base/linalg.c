@@ -131,11 +131,11 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     if (lacked_memory(info))
         return fail(err, STATUS_NO_MEMORY, "modes: no memory for LAPACK");
     if (info > n)
-        return fail(err, STATUS_BAD_DATA, "modes: the mass matrix is not positive definite (pivot %d)", info - n);
+        return bad_data(err, "modes: the mass matrix is not positive definite (pivot %d)", info - n);
     if (info != 0)
         return fail(err, STATUS_INTERNAL, "modes: LAPACK did not converge (info %d)", info);
     if (omega[0] < 0)
-        return fail(err, STATUS_BAD_DATA, "modes: the stiffness matrix is not positive: lowest w^2 = %g", omega[0]);
+        return bad_data(err, "modes: the stiffness matrix is not positive: lowest w^2 = %g", omega[0]);
     return STATUS_OK;
 }
 
@@ -157,7 +157,7 @@ Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err)
     if (lacked_memory(info))
         return fail(err, STATUS_NO_MEMORY, "no memory to solve %d x %d equations", n, n);
     if (info != 0)
-        return fail(err, STATUS_BAD_DATA, "a symmetric %d x %d matrix is not positive definite (pivot %d)", n, n, info);
+        return bad_data(err, "a symmetric %d x %d matrix is not positive definite (pivot %d)", n, n, info);
     return STATUS_OK;
 }
 

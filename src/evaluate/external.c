@@ -84,12 +84,12 @@ static Status split_command(External *e, const char *command, Err *err)
     for (size_t n = 0;;) {
         command += strspn(command, " \t");
         if (!*command)
-            return n > 0 ? STATUS_OK : fail(err, STATUS_BAD_DATA, "problem.command: is empty; what is to be run?");
+            return n > 0 ? STATUS_OK : bad_data(err, "problem.command: is empty; what is to be run?");
         if (n == WORDS_MAX)
-            return fail(err, STATUS_BAD_DATA, "problem.command: has more than %d words", WORDS_MAX);
+            return bad_data(err, "problem.command: has more than %d words", WORDS_MAX);
         e->words[n++] = to;
         if (!take_word(&command, &to))
-            return fail(err, STATUS_BAD_DATA, "problem.command: a quote is left open");
+            return bad_data(err, "problem.command: a quote is left open");
     }
 }
 
@@ -125,7 +125,7 @@ static Status worker_start(External *e, Worker *w, Err *err)
     if (failed) {
         close(w->in);
         close(w->out);
-        return fail(err, STATUS_BAD_DATA, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
+        return bad_data(err, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
     }
     w->its_end = pidfd_open(w->pid, 0);
     w->n_answered = 0;
@@ -441,13 +441,13 @@ static Status read_bounds(const char *key, const char *list, size_t n, double bo
     const size_t count = list_count(list);
     char word[64], *end;
     if (count != 1 && count != n)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu numbers for %zu variables", key, count, n);
+        return bad_data(err, "%s: %zu numbers for %zu variables", key, count, n);
     for (size_t j = 0; j < n; j++) {
         if (!list_item(list, count == 1 ? 0 : j, word, sizeof word))
-            return fail(err, STATUS_BAD_DATA, "%s: number %zu is missing", key, j + 1);
+            return bad_data(err, "%s: number %zu is missing", key, j + 1);
         bounds[j] = strtod(word, &end);
         if (end == word || *end || !isfinite(bounds[j]))
-            return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number", key, word);
+            return bad_data(err, "%s: '%s' is not a number", key, word);
     }
     return STATUS_OK;
 }
@@ -471,8 +471,8 @@ static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
     TRY(set_kinds(e, o, err)); /* a choice has bounds of its own */
     for (size_t j = 0; j < e->n_var; j++)
         if (e->lower[j] > e->upper[j])
-            return fail(err, STATUS_BAD_DATA, "problem.lower: %g is above problem.upper = %g (variable %zu)",
-                        e->lower[j], e->upper[j], j + 1);
+            return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
+                            e->upper[j], j + 1);
     return STATUS_OK;
 }
 

@@ -59,11 +59,10 @@ static Status read_choice(const char *item, double *upper, Err *err)
         bars += *c == '|';
     for (; word_at(item, n, word); n++)
         if (kinds_number(item, 0, word, &first) && first < n)
-            return fail(err, STATUS_BAD_DATA, "problem.kinds: %s names %s twice", item, word);
+            return bad_data(err, "problem.kinds: %s names %s twice", item, word);
     if (n != bars + 1)
-        return fail(err, STATUS_BAD_DATA,
-                    "problem.kinds: %s: word %zu is empty, longer than %d letters or holds a quote", item, n + 1,
-                    KIND_WORD_MAX - 1);
+        return bad_data(err, "problem.kinds: %s: word %zu is empty, longer than %d letters or holds a quote", item,
+                        n + 1, KIND_WORD_MAX - 1);
     *upper = (double)(n - 1);
     return STATUS_OK;
 }
@@ -80,15 +79,14 @@ static Status read_kind(const char *item, size_t j, VariableKind *kind, double *
     while (k < 3 && strcmp(item, WORDS[k]) != 0)
         k++;
     if (k == 3)
-        return fail(err, STATUS_BAD_DATA, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
+        return bad_data(err, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
     *kind = (VariableKind)k;
     if (*kind == VARIABLE_LOG && !(*lower > 0.0))
-        return fail(err, STATUS_BAD_DATA, "problem.lower: is %g for variable %zu, which is log: set it above 0", *lower,
-                    j + 1);
+        return bad_data(err, "problem.lower: is %g for variable %zu, which is log: set it above 0", *lower, j + 1);
     if (*kind == VARIABLE_WHOLE && (*lower != floor(*lower) || *upper != floor(*upper)))
-        return fail(err, STATUS_BAD_DATA,
-                    "problem.lower, problem.upper: %g and %g of variable %zu, which is int, are no whole numbers",
-                    *lower, *upper, j + 1);
+        return bad_data(err,
+                        "problem.lower, problem.upper: %g and %g of variable %zu, which is int, are no whole numbers",
+                        *lower, *upper, j + 1);
     return STATUS_OK;
 }
 
@@ -97,10 +95,10 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lo
     const size_t n = list_count(list);
     char item[LIST_MAX];
     if (n != 1 && n != n_var)
-        return fail(err, STATUS_BAD_DATA, "problem.kinds: %zu kinds for %zu variables", n, n_var);
+        return bad_data(err, "problem.kinds: %zu kinds for %zu variables", n, n_var);
     for (size_t j = 0; j < n_var; j++) {
         if (!item_of(list, j, item))
-            return fail(err, STATUS_BAD_DATA, "problem.kinds: kind %zu is missing", j + 1);
+            return bad_data(err, "problem.kinds: kind %zu is missing", j + 1);
         TRY(read_kind(item, j, &kind[j], &lower[j], &upper[j], err));
     }
     return STATUS_OK;

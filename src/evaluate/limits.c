@@ -19,13 +19,13 @@ static Status read_limit(Limits *limits, const Schema *schema, const char *text,
     char name[TABLE_NAME_MAX], *end;
     const char *relation = take_name(text, name);
     if (!relation)
-        return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
+        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
     Limit *l = &limits->limit[limits->n++];
     TRY(schema_pick_result(schema, "search.limits", name, STATUS_BAD_DATA, &l->result, err));
     l->sign = *relation == '<' ? 1.0 : -1.0;
     l->bound = strtod(relation + 2, &end);
     if (end == relation + 2 || *end || !isfinite(l->bound))
-        return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s': no number behind %c=", text, *relation);
+        return bad_data(err, "search.limits: '%.60s': no number behind %c=", text, *relation);
     return STATUS_OK;
 }
 
@@ -46,15 +46,15 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
         const Column *c = schema_objective(schema, l->result);
         const char *relation = l->sign > 0 ? "<=" : ">=", *opposite = l->sign > 0 ? ">=" : "<=";
         if (find(limits, i, l->result, l->sign))
-            return fail(err, STATUS_BAD_DATA, "search.limits: %s%s is given twice", c->name, relation);
+            return bad_data(err, "search.limits: %s%s is given twice", c->name, relation);
         if (l->sign > 0 && other && other->bound > l->bound)
-            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
-                        other->bound);
+            return bad_data(err, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
+                            other->bound);
         if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
-            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
+            return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
         if (!other && l->sign * c->sense < 0)
-            return fail(
-                err, STATUS_BAD_DATA,
+            return bad_data(
+                err,
                 "search.limits: %s%s%g excludes what is better: of %s %s is better; write %s, or give a limit on "
                 "both sides",
                 c->name, relation, l->bound, c->name, c->sense > 0 ? "less" : "more", opposite);
@@ -69,10 +69,10 @@ Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *
     if (strcmp(list, "none") == 0)
         return STATUS_OK;
     if (list_count(list) > LIMITS_MAX)
-        return fail(err, STATUS_BAD_DATA, "search.limits: more than %d", LIMITS_MAX);
+        return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
     for (size_t i = 0; i < list_count(list); i++) {
         if (!list_item(list, i, text, sizeof text))
-            return fail(err, STATUS_BAD_DATA, "search.limits: item %zu is empty or too long", i + 1);
+            return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
         TRY(read_limit(limits, schema, text, err));
     }
     return check(limits, schema, err);

@@ -77,8 +77,8 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
     for (int k = 0; k < N_MEASURES; k++)
         for (size_t i = 0; set >> k & 1 && i < sizeof LACKS / sizeof LACKS[0]; i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)
-                return fail(err, STATUS_BAD_DATA, "search.objectives: %s (there or in search.limits): %s",
-                            MEASURES[k].name, LACKS[i].words);
+                return bad_data(err, "search.objectives: %s (there or in search.limits): %s", MEASURES[k].name,
+                                LACKS[i].words);
     return STATUS_OK;
 }
 
@@ -146,7 +146,7 @@ static Status take_objective(MeasureOrder *o, const char *name, Err *err)
     if (k == N_MEASURES)
         return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, N_MEASURES);
     if (o->objectives >> k & 1)
-        return fail(err, STATUS_BAD_DATA, "search.objectives: %s stands there twice", name);
+        return bad_data(err, "search.objectives: %s stands there twice", name);
     add_objective(o, k);
     return STATUS_OK;
 }
@@ -156,7 +156,7 @@ static Status take_list(MeasureOrder *o, const char *list, Err *err)
     char name[64];
     for (size_t i = 0; i < list_count(list); i++) {
         if (!list_item(list, i, name, sizeof name))
-            return fail(err, STATUS_BAD_DATA, "search.objectives: name %zu is empty or too long", i + 1);
+            return bad_data(err, "search.objectives: name %zu is empty or too long", i + 1);
         TRY(take_objective(o, name, err));
     }
     return STATUS_OK;

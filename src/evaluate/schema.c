@@ -41,18 +41,18 @@ static Status take_names(const char *key, const char *list, const char *letter, 
 {
     const int given = strcmp(list, "auto") != 0;
     if (given && list_count(list) != n)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu names for %zu", key, list_count(list), n);
+        return bad_data(err, "%s: %zu names for %zu", key, list_count(list), n);
     for (size_t i = 0; i < n; i++) {
         char *name = columns[i].name, item[TABLE_NAME_MAX - 1];
         if (!given)
             snprintf(name, TABLE_NAME_MAX, "%s%zu", letter, i + 1);
         else if (!list_item(list, i, item, sizeof item) || strpbrk(item, "\"\r\n"))
-            return fail(err, STATUS_BAD_DATA, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
+            return bad_data(err, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
         else
             cell_text(name, TABLE_NAME_MAX, item);
         for (size_t j = 0; given && j < i; j++)
             if (strcmp(columns[j].name, name) == 0)
-                return fail(err, STATUS_BAD_DATA, "%s: %s stands there twice", key, name);
+                return bad_data(err, "%s: %s stands there twice", key, name);
     }
     return STATUS_OK;
 }
@@ -62,11 +62,11 @@ static Status take_senses(const char *list, size_t n, Column columns[], Err *err
     const size_t count = list_count(list);
     char word[16];
     if (count != 1 && count != n)
-        return fail(err, STATUS_BAD_DATA, "problem.senses: %zu words for %zu objectives", count, n);
+        return bad_data(err, "problem.senses: %zu words for %zu objectives", count, n);
     for (size_t k = 0; k < n; k++) {
         const int fits = list_item(list, count == 1 ? 0 : k, word, sizeof word);
         if (!fits || (strcmp(word, "min") != 0 && strcmp(word, "max") != 0))
-            return fail(err, STATUS_BAD_DATA, "problem.senses: item %zu is neither min nor max", k + 1);
+            return bad_data(err, "problem.senses: item %zu is neither min nor max", k + 1);
         columns[k].sense = word[1] == 'i' ? 1.0 : -1.0;
     }
     return STATUS_OK;

@@ -145,11 +145,10 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
 {
     const long n_var = o->variables, m = o->objectives;
     if (n_var > TEXTBOOK_VAR_MAX || m > TEXTBOOK_OBJ_MAX)
-        return fail(err, STATUS_BAD_DATA, "problem.variables: a textbook problem has at most %d, and %d objectives",
-                    TEXTBOOK_VAR_MAX, TEXTBOOK_OBJ_MAX);
+        return bad_data(err, "problem.variables: a textbook problem has at most %d, and %d objectives",
+                        TEXTBOOK_VAR_MAX, TEXTBOOK_OBJ_MAX);
     if (m < 2 || n_var < m)
-        return fail(err, STATUS_BAD_DATA,
-                    "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
+        return bad_data(err, "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
     Exercise *e;
     TRY_ROOM(e, 1, "a problem", err);
     e->function = textbook(o->kind - PROBLEM_TEXTBOOK);

@@ -281,9 +281,9 @@ static Status list_records(const Settings *s, TowerUse use, char (*names)[OPTION
     *n = 1;
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++, ++*n) {
         if (*n == TOWER_RECORDS_MAX)
-            return fail(err, STATUS_BAD_DATA, "more than %d records", TOWER_RECORDS_MAX);
+            return bad_data(err, "more than %d records", TOWER_RECORDS_MAX);
         if (!list_item(list, i, names[*n], sizeof names[0]))
-            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+            return bad_data(err, "motion.records: item %zu is empty or too long", i + 1);
     }
     return STATUS_OK;
 }
@@ -419,7 +419,7 @@ static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes,
 {
     Recipe *r = s->problem.kind == PROBLEM_TOWER ? calloc(1, recipe_size(n_records, n_scenes)) : NULL;
     if (!r && s->problem.kind != PROBLEM_TOWER)
-        fail(err, STATUS_BAD_DATA, "problem.kind: is no tower, which alone has a building, a core and a motion");
+        bad_data(err, "problem.kind: is no tower, which alone has a building, a core and a motion");
     else if (!r)
         fail_memory(err, n_scenes, "scenes");
     else

@@ -153,16 +153,16 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
 static Status check(const Problem *p, const SearchConfig *c, Err *err)
 {
     if (p->n_var < 1 || p->n_obj < 1)
-        return fail(err, STATUS_BAD_DATA, "search: %zu variables and %zu objectives, wanted at least one of each",
-                    p->n_var, p->n_obj);
+        return bad_data(err, "search: %zu variables and %zu objectives, wanted at least one of each", p->n_var,
+                        p->n_obj);
     if (c->population < 4 || (c->initial > 0 && c->initial < 4) || c->max_evals < 1 || c->surrogate_max < 4)
-        return fail(err, STATUS_BAD_DATA,
-                    "search: population %zu, initial %zu and surrogate_max %zu must be 4 at least, max_evals %zu 1",
-                    c->population, c->initial, c->surrogate_max, c->max_evals);
+        return bad_data(err,
+                        "search: population %zu, initial %zu and surrogate_max %zu must be 4 at least, max_evals %zu 1",
+                        c->population, c->initial, c->surrogate_max, c->max_evals);
     for (size_t d = 0; d < p->n_var; d++)
         if (!(p->lower[d] <= p->upper[d]) || !isfinite(p->lower[d]) || !isfinite(p->upper[d]))
-            return fail(err, STATUS_BAD_DATA, "search: variable %zu has bounds %g and %g, lower must not exceed upper",
-                        d + 1, p->lower[d], p->upper[d]);
+            return bad_data(err, "search: variable %zu has bounds %g and %g, lower must not exceed upper", d + 1,
+                            p->lower[d], p->upper[d]);
     return STATUS_OK;
 }
 

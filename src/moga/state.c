@@ -222,9 +222,10 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
     pack_search(s, &state);
     if (!pack_finished(&state))
-        return fail(err, STATUS_BAD_DATA,
-                    "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
-                    "another version, or with other settings",
-                    start->n_state, start->n);
+        return bad_data(
+            err,
+            "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
+            "another version, or with other settings",
+            start->n_state, start->n);
     return screening_update(&s->screening, &s->common.archive, err);
 }

@@ -14,8 +14,8 @@ static Status floor_of(const Table *t, size_t c, int *floor, Err *err)
     if (sscanf(t->names[c], "floor_%d_n%n", floor, &end) == 1 && end > 0 && !t->names[c][end] && *floor >= 1 &&
         *floor <= FORCED_FLOORS_MAX)
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA, "%s: column '%s': time_s and then floor_01_n, floor_02_n, ... are wanted, in N",
-                t->path, t->names[c]);
+    return bad_data(err, "%s: column '%s': time_s and then floor_01_n, floor_02_n, ... are wanted, in N", t->path,
+                    t->names[c]);
 }
 
 static Status check_rows(const Table *t, Err *err)
@@ -24,25 +24,22 @@ static Status check_rows(const Table *t, Err *err)
         const double *row = t->values + i * t->n_cols;
         for (size_t c = 0; c < t->n_cols; c++)
             if (isnan(row[c]))
-                return fail(err, STATUS_BAD_DATA, "%s:%d: column %s is missing", t->path, t->line[i], t->names[c]);
+                return bad_data(err, "%s:%d: column %s is missing", t->path, t->line[i], t->names[c]);
         if (i == 0 ? row[0] != 0 : !(row[0] > row[-(long)t->n_cols]))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: time_s is %g; times begin at 0 and ascend", t->path, t->line[i],
-                        row[0]);
+            return bad_data(err, "%s:%d: time_s is %g; times begin at 0 and ascend", t->path, t->line[i], row[0]);
     }
-    return t->n_rows > 1 ? STATUS_OK
-                         : fail(err, STATUS_BAD_DATA, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
+    return t->n_rows > 1 ? STATUS_OK : bad_data(err, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
 }
 
 static Status take_rows(Motion *m, const Table *t, Err *err)
 {
     int floor;
     if (t->n_cols < 2 || strcmp(t->names[0], "time_s") != 0)
-        return fail(err, STATUS_BAD_DATA, "%s: the header is time_s,floor_01_n,...; its first column is '%s'", t->path,
-                    t->names[0]);
+        return bad_data(err, "%s: the header is time_s,floor_01_n,...; its first column is '%s'", t->path, t->names[0]);
     for (size_t c = 1; c < t->n_cols; c++) {
         TRY(floor_of(t, c, &floor, err));
         if (table_column(t, t->names[c]) != (int)c)
-            return fail(err, STATUS_BAD_DATA, "%s: column '%s' is there twice", t->path, t->names[c]);
+            return bad_data(err, "%s: column '%s' is there twice", t->path, t->names[c]);
         m->n_force = floor > m->n_force ? floor : m->n_force;
     }
     TRY(check_rows(t, err));
@@ -122,8 +119,7 @@ Status forces_place(Motion *m, Err *err)
     const double step = common_step(m, is_still, &parts), last = *row_of(m, m->n_force_rows - 1) / step;
     const double ground = is_still ? 0 : (double)((m->n - 1) * parts), end = fmax(ground, ceil(last * (1 - 1e-9)));
     if (!(end < SAMPLES_MAX))
-        return fail(err, STATUS_BAD_DATA, "motion.forces: %.3g samples of %g s; give rows that lie less near", end,
-                    step);
+        return bad_data(err, "motion.forces: %.3g samples of %g s; give rows that lie less near", end, step);
     const size_t n = (size_t)end + 1, width = m->n_force;
     double *accel = calloc(n, sizeof *accel);
     m->force = calloc(n * width, sizeof *m->force);

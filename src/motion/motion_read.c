@@ -46,24 +46,24 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
     static const double M_S2[] = {0, 1, 0.01, GRAVITY, 1};
     *unit = how->unit ? how->unit : c->unit;
     if (!*unit && c->counts)
-        return fail(
-            err, STATUS_BAD_DATA,
+        return bad_data(
+            err,
             "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
             "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
             path);
     const int is_gain_of_words = how->unit == UNIT_COUNTS && !is_quantity(c->stated, c->stated + strlen(c->stated));
     if (c->stated[0] && !c->counts && !is_gain_of_words) /* "adc" may be counts, kN may not */
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and write that "
-                    "unit in its place",
-                    path, c->stated);
+        return bad_data(
+            err,
+            "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and write that "
+            "unit in its place",
+            path, c->stated);
     if (!*unit)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: does not say the unit of its acceleration; set motion.unit (--unit) to m_s2, cm_s2 or g",
-                    path);
+        return bad_data(
+            err, "%s: does not say the unit of its acceleration; set motion.unit (--unit) to m_s2, cm_s2 or g", path);
     if (c->unit && *unit != c->unit)
-        return fail(err, STATUS_BAD_DATA, "%s: motion.unit is %s, but the file says %s; leave motion.unit at from_file",
-                    path, UNIT_NAMES[*unit], UNIT_NAMES[c->unit]);
+        return bad_data(err, "%s: motion.unit is %s, but the file says %s; leave motion.unit at from_file", path,
+                        UNIT_NAMES[*unit], UNIT_NAMES[c->unit]);
     *to_m_s2 = c->scale * M_S2[*unit] / (*unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1);
     return STATUS_OK;
 }
@@ -155,21 +155,19 @@ static Status choose_channel(const Record *r, const char *path, const char *want
         }
     list_channels(r, list);
     if (automatic && n == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: none of its channels is an acceleration: %s", path, list);
+        return bad_data(err, "%s: none of its channels is an acceleration: %s", path, list);
     if (!automatic || n > 1)
         *out = automatic ? NULL : find_channel(r, wanted);
     if (!*out && automatic)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)", path,
-                    r->n_channels, list);
+        return bad_data(err, "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)",
+                        path, r->n_channels, list);
     if (!*out)
-        return fail(err, STATUS_BAD_DATA, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path,
-                    wanted, list);
+        return bad_data(err, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path, wanted, list);
     if (!is_acceleration(*out))
-        return fail(err, STATUS_BAD_DATA, "%s: its channel '%s' is not an acceleration", path, (*out)->name);
+        return bad_data(err, "%s: its channel '%s' is not an acceleration", path, (*out)->name);
     if ((*out)->n < 2)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", path, (*out)->n,
-                    (*out)->n == 1 ? "" : "s");
+        return bad_data(err, "%s: holds %zu sample%s; at least two are needed", path, (*out)->n,
+                        (*out)->n == 1 ? "" : "s");
     return STATUS_OK;
 }
 
@@ -216,8 +214,8 @@ static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err 
             odd = i;
     const double step = step_before(s, odd), others = fmax((double)s->n - 2, 1);
     const double span = row_at(s, s->n - 1)->t - row_at(s, 0)->t;
-    return fail(
-        err, STATUS_BAD_DATA,
+    return bad_data(
+        err,
         "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
         "is missing, or the file must be resampled: %sset motion.dt_s",
         s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
@@ -229,8 +227,8 @@ static Status times_increase(const Series *s, int digitized, Err *err)
 {
     for (size_t i = 1; i < s->n; i++)
         if (!(step_before(s, i) > 0) && !(digitized && step_before(s, i) == 0))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: time %.10g s does not come after %.10g s", s->path,
-                        row_at(s, i)->line, row_at(s, i)->t, row_at(s, i - 1)->t);
+            return bad_data(err, "%s:%d: time %.10g s does not come after %.10g s", s->path, row_at(s, i)->line,
+                            row_at(s, i)->t, row_at(s, i - 1)->t);
     return STATUS_OK;
 }
 
@@ -246,8 +244,8 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
     const double digit = pow(10.0, -decimals);
     *dt = shortest_near(span / intervals, digit / intervals);
     if (!(*dt > 0) || !isfinite(span))
-        return fail(err, STATUS_BAD_DATA, "%s: %zu samples from %g s to %g s have no usable step", s->path, s->n, begin,
-                    row_at(s, s->n - 1)->t);
+        return bad_data(err, "%s: %zu samples from %g s to %g s have no usable step", s->path, s->n, begin,
+                        row_at(s, s->n - 1)->t);
     for (size_t i = 0; i < s->n; i++) {
         const double t = row_at(s, i)->t, printed = fmax(digit, 1e-5 * fabs(t));
         if (fabs(t - begin - (double)i * *dt) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
@@ -271,11 +269,11 @@ static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, doubl
 {
     for (size_t i = 0; i < s->n; i++)
         if (!isfinite(row_at(s, i)->a))
-            return fail(err, STATUS_BAD_DATA, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
+            return bad_data(err, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
     const Row *peak = peak_from(s, 0);
     if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
-                    peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
+        return bad_data(err, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path, peak->line,
+                        scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
     return STATUS_OK;
 }
 
@@ -298,7 +296,7 @@ static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, do
     snprintf(what, sizeof what, "its samples peak at %.5g %s, its header says %.5g", peak * to_file, UNIT_NAMES[unit],
              c->peak * to_file);
     if (error > PEAK_ERROR_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: %s; more than %g %% apart", s->path, what, 100 * PEAK_ERROR_MAX);
+        return bad_data(err, "%s: %s; more than %g %% apart", s->path, what, 100 * PEAK_ERROR_MAX);
     if (error > 0.2 * PEAK_ERROR_MAX)
         snprintf(m->warning, sizeof m->warning, "%s", what);
     return STATUS_OK;
@@ -319,8 +317,7 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
     const double n = floor(span / dt * (1 + 1e-12)) + 1;
     if (!(n >= 2 && n <= most))
-        return fail(err, STATUS_BAD_DATA, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n,
-                    s->n, span);
+        return bad_data(err, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n, s->n, span);
     TRY(allocate(m, (size_t)n, dt, err));
     snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
              "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
@@ -339,12 +336,12 @@ static Status check_step(const Series *s, const Channel *c, double dt, int even,
 {
     const double intervals = (double)(c->n - 1);
     if (dt > MOTION_STEP_MAX_S)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake",
-                    s->path, row_at(s, 0)->line, dt, MOTION_STEP_MAX_S);
+        return bad_data(err, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", s->path,
+                        row_at(s, 0)->line, dt, MOTION_STEP_MAX_S);
     if (!even || c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
-                c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
+    return bad_data(err, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
+                    c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
 }
 
 /* The samples in m/s2 become the motion's. */
@@ -407,12 +404,12 @@ static Status read_text(Record *r, const char *path, const char *text, size_t le
     while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
         length--;
     if (length == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: is empty", path);
+        return bad_data(err, "%s: is empty", path);
     const int is_wide = length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0);
     const int binary = is_wide ? 0 : binary_line(text, length);
     if (binary)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file of this kind is not read",
-                    path, binary);
+        return bad_data(err, "%s:%d: holds bytes that no text has; a binary file of this kind is not read", path,
+                        binary);
     TRY(lines_open(&l, path, text, length, err));
     return text_read(r, &l, hints, err);
 }
@@ -458,11 +455,11 @@ static Status read_archive(Record *r, const char *path, const char *bytes, size_
 {
     Members members = {.r = r, .path = path, .hints = hints, .deep = deep};
     if (deep == ARCHIVES_DEEP)
-        return fail(err, STATUS_BAD_DATA, "%s: an archive in an archive in an archive", path);
+        return bad_data(err, "%s: an archive in an archive in an archive", path);
     TRY(archive_each(path, bytes, n, take_member, &members, err));
     return r->n_channels > 0 ? STATUS_OK
-                             : fail(err, STATUS_BAD_DATA, "%s: no member of this archive is a record: %.300s", path,
-                                    members.first.text[0] ? members.first.text : "it is empty");
+                             : bad_data(err, "%s: no member of this archive is a record: %.300s", path,
+                                        members.first.text[0] ? members.first.text : "it is empty");
 }
 
 static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,

@@ -42,7 +42,7 @@ static Status subtract_baseline(Motion *m, int degree, Err *err)
     const double n = (double)m->n;
     double p[DEGREE_MAX + 1], sum[DEGREE_MAX + 1] = {0}, square[DEGREE_MAX + 1] = {0}, largest = 0;
     if (m->n < (size_t)degree + 2)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu samples are too few for motion.baseline", m->name, m->n);
+        return bad_data(err, "%s: %zu samples are too few for motion.baseline", m->name, m->n);
     for (size_t i = 0; i < m->n; i++) {
         orthogonal(2 * (double)i / (n - 1) - 1, n, p);
         for (int k = 0; k <= degree; k++) {
@@ -86,8 +86,8 @@ static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_
         return fail(err, status, "%s: motion.%s: %s", m->name, key, why.text);
     const size_t padding = is_high ? (size_t)ceil(HIGHPASS_PAD / cutoff_hz / m->dt_s) : filter_padding(&f);
     if (padding > PADDING_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: motion.%s: %g Hz needs %zu samples of padding; at most %d", m->name, key,
-                    cutoff_hz, padding, PADDING_MAX);
+        return bad_data(err, "%s: motion.%s: %g Hz needs %zu samples of padding; at most %d", m->name, key, cutoff_hz,
+                        padding, PADDING_MAX);
     TRY(pad(m, is_high ? padding : 0, padding, err));
     filter_zero_phase(&f, m->n, 1, m->accel);
     say(m, "%s-pass %g Hz (4th order Butterworth, zero phase)", is_high ? "high" : "low", cutoff_hz);
@@ -151,16 +151,15 @@ static Status settle_target(CodeSpectrum *c, double x[N_KEYS], Err *err)
     *c = is_eurocode ? (CodeSpectrum){c->kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
                      : (CodeSpectrum){c->kind, x[FROM], x[TO], x[SDS], 0.2 * ts, ts, x[TL]};
     if (!(c->plateau_g > 0 && c->tb_s > 0 && c->tc_s > 0 && c->td_s > 0))
-        return fail(err, STATUS_BAD_DATA, "motion.target: %s",
-                    is_eurocode ? "eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place"
-                                : "asce7 needs sds= and sd1= [g]");
+        return bad_data(err, "motion.target: %s",
+                        is_eurocode ? "eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place"
+                                    : "asce7 needs sds= and sd1= [g]");
     if (!(c->from_s < c->to_s))
-        return fail(err, STATUS_BAD_DATA, "motion.target: from=%g must be below to=%g", c->from_s, c->to_s);
+        return bad_data(err, "motion.target: from=%g must be below to=%g", c->from_s, c->to_s);
     return c->tb_s <= c->tc_s && c->tc_s <= c->td_s
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "motion.target: %s=%g, %s=%g and %s=%g must rise",
-                      is_eurocode ? "tb" : "T0", c->tb_s, is_eurocode ? "tc" : "TS", c->tc_s, is_eurocode ? "td" : "tl",
-                      c->td_s);
+               : bad_data(err, "motion.target: %s=%g, %s=%g and %s=%g must rise", is_eurocode ? "tb" : "T0", c->tb_s,
+                          is_eurocode ? "tc" : "TS", c->tc_s, is_eurocode ? "td" : "tl", c->td_s);
 }
 
 Status target_parse(const char *text, CodeSpectrum *out, Err *err)
@@ -174,8 +173,7 @@ Status target_parse(const char *text, CodeSpectrum *out, Err *err)
     while (out->kind <= TARGET_ASCE7 && strcmp(word, KINDS[out->kind]) != 0)
         out->kind++;
     if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
-        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...",
-                    text);
+        return bad_data(err, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...", text);
     if (rest)
         TRY(keyed_numbers("motion.target", rest, 1u << out->kind, N_KEYS, KEYS, x, err));
     return out->kind == TARGET_NONE ? STATUS_OK : settle_target(out, x, err);
@@ -245,8 +243,8 @@ static Status check_scale(const Motion *m, const MotionOptions *o, double peak_g
     if (o->factor != 1 || m->scale <= SCALE_MAX)
         return STATUS_OK;
     motion_scalings(o, scaling);
-    return fail(
-        err, STATUS_BAD_DATA,
+    return bad_data(
+        err,
         "%s: %s would multiply it by %.3g, for it peaks at %.3g g%s%s; beyond %g its unit is wrong, or nothing is "
         "left of it",
         m->name, scaling, m->scale, peak_g, m->processed[0] ? " after this: " : "", m->processed, SCALE_MAX);
@@ -270,8 +268,7 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
     const double factor = factor_of(m, o, &target);
     if (!(factor > 0 && isfinite(factor)))
-        return fail(err, STATUS_BAD_DATA, "%s: cannot be scaled to a response spectrum: it moves no such oscillator",
-                    m->name);
+        return bad_data(err, "%s: cannot be scaled to a response spectrum: it moves no such oscillator", m->name);
     for (size_t i = 0; i < m->n && factor != 1; i++)
         m->accel[i] *= factor;
     m->scale *= factor;
@@ -331,7 +328,7 @@ Status motion_record(const MotionOptions *o, size_t i, char path[OPTION_TEXT_MAX
     if (i == 0)
         memcpy(path, o->record, OPTION_TEXT_MAX);
     else if (!list_item(o->records, i - 1, path, OPTION_TEXT_MAX))
-        return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i);
+        return bad_data(err, "motion.records: item %zu is empty or too long", i);
     return STATUS_OK;
 }
 
@@ -339,7 +336,7 @@ Status motion_record(const MotionOptions *o, size_t i, char path[OPTION_TEXT_MAX
 static Status stand_still(Motion *m, const MotionOptions *o, Err *err)
 {
     if (!list_is_given(o->forces))
-        return fail(err, STATUS_BAD_DATA, "motion.record = none: then nothing moves but by motion.forces");
+        return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");
     *m = (Motion){.accel = calloc(2, sizeof *m->accel), .n = 2, .dt_s = 1, .name = "none", .format = "none"};
     return m->accel ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for two samples");
 }

@@ -36,12 +36,11 @@ static Status compare(const Hello hello[], Err *err)
 {
     for (int i = 1; i < n_ranks(); i++) {
         if (memcmp(hello[i].version, hello[0].version, sizeof hello[i].version) != 0)
-            return fail(err, STATUS_BAD_DATA,
-                        "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
-                        hello[i].host, hello[i].version, hello[0].host, hello[0].version);
+            return bad_data(err, "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
+                            hello[i].host, hello[i].version, hello[0].host, hello[0].version);
         if (hello[i].arguments != hello[0].arguments)
-            return fail(err, STATUS_BAD_DATA, "rank %d on %s has another command line than rank 0: all must have one",
-                        i, hello[i].host);
+            return bad_data(err, "rank %d on %s has another command line than rank 0: all must have one", i,
+                            hello[i].host);
     }
     return STATUS_OK;
 }

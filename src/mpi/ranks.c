@@ -282,10 +282,10 @@ static Status check_opened(Ranks *r, int from, const OpenedMessage *m, Err *err)
     if (m->status != STATUS_OK)
         return fail(err, (Status)m->status, "rank %d on %s: %s", from, m->host, m->why);
     if (m->inputs != r->problem->inputs)
-        return fail(err, STATUS_BAD_DATA,
-                    "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
-                    "): records and building must be the same on every machine",
-                    from, m->host, m->inputs, r->problem->inputs);
+        return bad_data(err,
+                        "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
+                        "): records and building must be the same on every machine",
+                        from, m->host, m->inputs, r->problem->inputs);
     return STATUS_OK;
 }
 

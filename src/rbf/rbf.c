@@ -342,8 +342,7 @@ Status model_take(Rbf *m, size_t n, const double X[], const double F[], const do
     for (size_t k = 0; k < m->n_out; k++) {
         standardise(m, &m->output[k], m->F + k * m->n_max);
         if (!isfinite(m->output[k].mean) || !isfinite(m->output[k].scale))
-            return fail(err, STATUS_BAD_DATA, "interpolant: a value of output %zu of %zu designs is not finite", k + 1,
-                        m->n);
+            return bad_data(err, "interpolant: a value of output %zu of %zu designs is not finite", k + 1, m->n);
     }
     return STATUS_OK;
 }

@@ -18,13 +18,13 @@ static Status find_heights(Building *b, const BuildingFiles *files, const Buildi
 {
     for (int j = 0; j < b->n && model_is_built_in(o->model); j++)
         if (list_at(&o->heights_m, j) != (j == 0 ? BUILT_IN_FIRST_M : BUILT_IN_M))
-            return fail(err, STATUS_BAD_DATA,
-                        "building.heights_m: %s is a tower of storeys of %g and %g m; others would change the core "
-                        "alone. Give another building its matrices in a folder",
-                        o->model, BUILT_IN_FIRST_M, BUILT_IN_M);
+            return bad_data(err,
+                            "building.heights_m: %s is a tower of storeys of %g and %g m; others would change the core "
+                            "alone. Give another building its matrices in a folder",
+                            o->model, BUILT_IN_FIRST_M, BUILT_IN_M);
     if (o->heights_m.n > b->n && o->heights_m.n > 2 && !files->storey_m)
-        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %d heights; the building has %d storey%s",
-                    o->heights_m.n, b->n, b->n == 1 ? "" : "s");
+        return bad_data(err, "building.heights_m: has %d heights; the building has %d storey%s", o->heights_m.n, b->n,
+                        b->n == 1 ? "" : "s");
     for (int j = 0; j < b->n; j++)
         b->storey_m[j] = files->storey_m ? files->storey_m[j] : list_at(&o->heights_m, j);
     return STATUS_OK;
@@ -51,8 +51,7 @@ static Status add_p_delta(const Building *b, const BuildingOptions *o, int m, do
     const int pivot = linalg_indefinite_at(m, K);
     if (pivot < 0)
         return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", m, m);
-    return pivot == 0 ? STATUS_OK
-                      : fail(err, STATUS_BAD_DATA, "%s: buckles under its own weight (building.p_delta)", o->model);
+    return pivot == 0 ? STATUS_OK : bad_data(err, "%s: buckles under its own weight (building.p_delta)", o->model);
 }
 
 /* ---- plausible ------------------------------------------------------------------------------------------------ */
@@ -82,8 +81,7 @@ static Status check_period(const Building *b, const BuildingOptions *o, Err *err
 {
     const double period = 2 * M_PI / b->omega[0];
     return period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN)
-               ? fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model,
-                      period)
+               ? bad_data(err, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model, period)
                : STATUS_OK;
 }
 
@@ -105,15 +103,16 @@ static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
                      WORDS[u], other, unit.mass * mass);
     }
     if (fits[0])
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: %s %.3g %s if stiffness is in N/m and mass in kg%s; set building.units to what the files are "
-                    "in: %s",
-                    o->model, is_right ? "floors of" : "the first period is", is_right ? mass : per_storey,
-                    is_right ? "kg" : "s per storey", is_right ? " (then N_m_kg)" : "", fits);
-    return is_right ? STATUS_OK
-                    : fail(err, STATUS_BAD_DATA,
-                           "%s: the first period is %.3g s per storey; if that is meant set building.units=N_m_kg",
-                           o->model, per_storey);
+        return bad_data(
+            err,
+            "%s: %s %.3g %s if stiffness is in N/m and mass in kg%s; set building.units to what the files are "
+            "in: %s",
+            o->model, is_right ? "floors of" : "the first period is", is_right ? mass : per_storey,
+            is_right ? "kg" : "s per storey", is_right ? " (then N_m_kg)" : "", fits);
+    return is_right
+               ? STATUS_OK
+               : bad_data(err, "%s: the first period is %.3g s per storey; if that is meant set building.units=N_m_kg",
+                          o->model, per_storey);
 }
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */
@@ -124,7 +123,7 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
     const double *mode = o->rayleigh_modes.at;
     for (int i = 0; i < 2; i++)
         if (mode[i] != floor(mode[i]) || mode[i] > b->n)
-            return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
+            return bad_data(err, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
     const double w1 = b->omega[(int)mode[0] - 1], w2 = b->omega[(int)mode[1] - 1];
     const double mass = 2 * o->damping.at[0] * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping.at[0] / (w1 + w2);
     for (int i = 0; i < b->n; i++)
@@ -139,8 +138,8 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
     if (o->damping_model == DAMPING_RAYLEIGH)
         return rayleigh(b, o, err);
     if (o->damping.n > b->n)
-        return fail(err, STATUS_BAD_DATA, "building.damping: has %d ratios; the building has %d mode%s", o->damping.n,
-                    b->n, b->n == 1 ? "" : "s");
+        return bad_data(err, "building.damping: has %d ratios; the building has %d mode%s", o->damping.n, b->n,
+                        b->n == 1 ? "" : "s");
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = list_at(&o->damping, i);
     for (int i = 0; i < b->model.n; i++)

@@ -17,27 +17,25 @@ static Status check_symmetric(int n, double A[], const char *path, Err *err)
         for (int j = 0; j < i; j++) {
             double *lower = &A[i * n + j], *upper = &A[j * n + i];
             if (!(fabs(*lower - *upper) <= 1e-6 * largest))
-                return fail(err, STATUS_BAD_DATA,
-                            "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g", path, i + 1,
-                            j + 1, *lower, j + 1, i + 1, *upper);
+                return bad_data(err, "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g", path,
+                                i + 1, j + 1, *lower, j + 1, i + 1, *upper);
             *lower = *upper = 0.5 * (*lower + *upper);
         }
     const int pivot = linalg_indefinite_at(n, A);
     if (pivot < 0)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", path, n, n);
     if (pivot > 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: not positive definite: the leading block of %d rows is singular or worse", path, pivot);
+        return bad_data(err, "%s: not positive definite: the leading block of %d rows is singular or worse", path,
+                        pivot);
     return STATUS_OK;
 }
 
 static Status check_square(const Table *t, Err *err)
 {
     if (t->n_rows != t->n_cols)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", t->path, t->n_rows,
-                    t->n_cols);
+        return bad_data(err, "%s: %zu rows of %zu columns; a square matrix is needed", t->path, t->n_rows, t->n_cols);
     if (t->n_rows > FLOORS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", t->path, t->n_rows, FLOORS_MAX);
+        return bad_data(err, "%s: %zu floors; at most %d are supported", t->path, t->n_rows, FLOORS_MAX);
     return check_symmetric((int)t->n_rows, t->values, t->path, err);
 }
 
@@ -113,8 +111,7 @@ static Status matrix_factor(const BuildingOptions *o, const char *file, const Un
     *factor = unit ? unit->factor : set;
     return !unit || o->units == BUILDING_AUTO || unit->factor == set
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "%s: says that it is in %s; leave building.units at auto", path,
-                      unit->word);
+               : bad_data(err, "%s: says that it is in %s; leave building.units at auto", path, unit->word);
 }
 
 /* Of K.csv or M.csv. */
@@ -135,7 +132,7 @@ static Status take_matrices(BuildingFiles *b, const BuildingOptions *o, const Ta
     TRY(check_square(K, err));
     TRY(check_square(M, err));
     if (M->n_rows != K->n_rows)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu floors, but K.csv has %zu", M->path, M->n_rows, K->n_rows);
+        return bad_data(err, "%s: %zu floors, but K.csv has %zu", M->path, M->n_rows, K->n_rows);
     TRY(frame_full_make(&b->floors, (int)K->n_rows, err));
     TRY(take_matrix(o, K, "K.csv", STIFFNESS_WORDS, unit.stiffness, b->floors.K, err));
     return take_matrix(o, M, "M.csv", MASS_WORDS, unit.mass, b->floors.M, err);
@@ -176,16 +173,15 @@ typedef struct {
 static Status choose(const SheetRow *r, int plain, const char *names, double *value, Err *err)
 {
     *value = *r->word[plain] ? r->x[plain] : 1e3 * r->x[plain + 1];
-    return *r->word[plain] && *r->word[plain + 1]
-               ? fail(err, STATUS_BAD_DATA, "has both %s; leave one of them out", names)
-               : STATUS_OK;
+    return *r->word[plain] && *r->word[plain + 1] ? bad_data(err, "has both %s; leave one of them out", names)
+                                                  : STATUS_OK;
 }
 
 static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
     if (r->n_rows > FLOORS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%zu storeys; at most %d are supported", r->n_rows, FLOORS_MAX);
+        return bad_data(err, "%zu storeys; at most %d are supported", r->n_rows, FLOORS_MAX);
     Storey *storey = &all->storey[all->n++];
     storey->height = r->x[0];
     TRY(choose(r, 1, "mass_kg and mass_t", &storey->mass, err));
@@ -193,13 +189,13 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
     TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));
     storey->yield_drift = r->x[7];
     if (!(storey->mass > 0))
-        return fail(err, STATUS_BAD_DATA, "has no mass_kg or mass_t");
+        return bad_data(err, "has no mass_kg or mass_t");
     const Storey *first = all->storey;
     if ((storey->shear > 0) != (first->shear > 0) || (storey->bending > 0) != (first->bending > 0))
-        return fail(err, STATUS_BAD_DATA, "stiffness or bending is empty here and not in the row of the first storey");
+        return bad_data(err, "stiffness or bending is empty here and not in the row of the first storey");
     return storey->shear > 0 || storey->bending > 0
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "has no stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2");
+               : bad_data(err, "has no stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2");
 }
 
 static const SheetForm STOREYS = {"storeys.csv",
@@ -306,8 +302,8 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
             found[n++] = FILES[k];
     }
     if (n > 1)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %s and %s, two kinds of model; leave one of them there", folder,
-                    found[0], found[1]);
+        return bad_data(err, "%s: holds %s and %s, two kinds of model; leave one of them there", folder, found[0],
+                        found[1]);
     if (n == 0 && access(folder, F_OK) == 0)
         return fail(
             err, STATUS_MISSING,
@@ -333,9 +329,9 @@ Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
     if (o->modes == 0 || b->full.n)
         return STATUS_OK;
     if (!frame_is(o->model))
-        return fail(err, STATUS_BAD_DATA,
-                    "building.modes: %s has no more than its floors; only a plane frame (nodes.csv) and guyan have",
-                    o->model);
+        return bad_data(err,
+                        "building.modes: %s has no more than its floors; only a plane frame (nodes.csv) and guyan have",
+                        o->model);
     return read_frame(b, o, err);
 }
 

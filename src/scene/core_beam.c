@@ -157,10 +157,10 @@ static Beam storey_beam(const CoreOptions *o, const CoreStorey *a, double length
 static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m, Err *err)
 {
     if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
-        return fail(err, STATUS_BAD_DATA, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
+        return bad_data(err, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
     if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->width_m))
-        return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.width_m = %g m",
-                    fmax(t_base_m, t_top_m), o->width_m);
+        return bad_data(err, "core: twice a thickness of %g m does not fit into core.width_m = %g m",
+                        fmax(t_base_m, t_top_m), o->width_m);
     const struct {
         const char *key;
         const NumberList *list;
@@ -170,12 +170,10 @@ static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m
                  {"core.masses_kg", &o->masses_kg}};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0] && o->section == CORE_EFFECTIVE; i++)
         if (lists[i].list->n > 2 && lists[i].list->n != n)
-            return fail(err, STATUS_BAD_DATA, "%s: has %d values; the building has %d storeys", lists[i].key,
-                        lists[i].list->n, n);
+            return bad_data(err, "%s: has %d values; the building has %d storeys", lists[i].key, lists[i].list->n, n);
     for (int j = 0; j < n && o->section == CORE_EFFECTIVE; j++)
         if ((list_along(&o->shear_areas_m2, j, n) > 0) != (o->shear_areas_m2.at[0] > 0))
-            return fail(err, STATUS_BAD_DATA,
-                        "core.shear_areas_m2: 0 in one storey and not in another; give all or none");
+            return bad_data(err, "core.shear_areas_m2: 0 in one storey and not in another; give all or none");
     return STATUS_OK;
 }
 

@@ -16,29 +16,29 @@ static Status take_words(const char *list, unsigned *set, Err *err)
     for (size_t i = 0; i < list_count(list); i++) {
         int k = 0;
         if (!list_item(list, i, word, sizeof word))
-            return fail(err, STATUS_BAD_DATA, "design.variables: item %zu is empty or too long", i + 1);
+            return bad_data(err, "design.variables: item %zu is empty or too long", i + 1);
         if (strcmp(word, "symmetric") == 0)
-            return fail(err, STATUS_BAD_DATA,
-                        "design.variables: 'symmetric' is no choice: leave the word out; design.gap_sides = both makes "
-                        "every gap the same on both sides");
+            return bad_data(
+                err, "design.variables: 'symmetric' is no choice: leave the word out; design.gap_sides = both makes "
+                     "every gap the same on both sides");
         while (k < N && strcmp(WORDS[k], word) != 0)
             k++;
         if (k == N)
             return fail_no_word(err, STATUS_BAD_DATA, "design.variables", word, "variable", WORDS, N);
         if (*set >> k & 1)
-            return fail(err, STATUS_BAD_DATA, "design.variables: %s stands there twice", word);
+            return bad_data(err, "design.variables: %s stands there twice", word);
         *set |= 1U << k;
     }
     return *set & HAS_GAPS && *set & HAS_THICKNESS
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "design.variables: gaps and thickness are always there; add to them");
+               : bad_data(err, "design.variables: gaps and thickness are always there; add to them");
 }
 
 static Status check_zones(const char *key, long zones, int n_floors, Err *err)
 {
     return n_floors == 0 || zones <= n_floors
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "%s: %ld zones, but only %d floors", key, zones, n_floors);
+               : bad_data(err, "%s: %ld zones, but only %d floors", key, zones, n_floors);
 }
 
 Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection section, int n_floors, Err *err)
@@ -173,15 +173,15 @@ static Status check_names(const Table *t, const char *path, const DesignSpace *s
     for (size_t j = 0; j < n_var && j < t->n_cols; j++) {
         design_variable_name(s, (int)j, name);
         if (strcmp(t->names[j], name) != 0)
-            return fail(err, STATUS_BAD_DATA,
-                        "%s: column %zu of the header is '%s'; a design of %d floors has %s there (design.variables)",
-                        path, j + 1, t->names[j], s->n_floors, name);
+            return bad_data(
+                err, "%s: column %zu of the header is '%s'; a design of %d floors has %s there (design.variables)",
+                path, j + 1, t->names[j], s->n_floors, name);
     }
     design_variable_name(s, 0, first);
     design_variable_name(s, s->n_var - 1, last);
     if (t->n_cols != n_var)
-        return fail(
-            err, STATUS_BAD_DATA,
+        return bad_data(
+            err,
             "%s: the header has %zu columns; a design of %d floors has %zu: %s..%s (design.variables, core.section)",
             path, t->n_cols, s->n_floors, n_var, first, last);
     return STATUS_OK;
@@ -201,13 +201,11 @@ static Status check_values(const Designs *d, const char *path, Err *err)
         const double value = d->x[i];
         int j = (int)(i % n_var);
         if (isnan(value))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: column %d of %zu is missing", path, d->line[i / n_var], j + 1,
-                        n_var);
+            return bad_data(err, "%s:%d: column %d of %zu is missing", path, d->line[i / n_var], j + 1, n_var);
         design_variable_name(&d->space, j, name);
         const Group group = group_of(&d->space, &j);
         if (group == GAP ? value < 0 : !(value > 0 && (group != BUMPER || value < 15)))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s", path, d->line[i / n_var], name, value,
-                        MUST[group]);
+            return bad_data(err, "%s:%d: %s is %g; %s", path, d->line[i / n_var], name, value, MUST[group]);
     }
     return STATUS_OK;
 }
@@ -217,7 +215,7 @@ Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace
     memset(d, 0, sizeof *d);
     TRY(check_names(t, path, space, err));
     if (t->n_rows == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
+        return bad_data(err, "%s: holds no designs", path);
     *d = (Designs){.n = t->n_rows, .space = *space, .x = t->values, .line = t->line};
     t->values = NULL;
     t->line = NULL;

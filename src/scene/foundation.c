@@ -38,13 +38,13 @@ static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *
     const double nu = x[NU] > 0 ? x[NU] : NU_OTHERWISE, rho = x[DENSITY] > 0 ? x[DENSITY] : DENSITY_OTHERWISE;
     double G = x[SHEAR];
     if (G > 0 && x[SOIL] > 0)
-        return fail(err, STATUS_BAD_DATA, "core.foundation: soil= and g= both give a shear modulus; leave one out");
+        return bad_data(err, "core.foundation: soil= and g= both give a shear modulus; leave one out");
     if (x[SOIL] > 0) {
         const int k = (int)x[SOIL] - 1;
         G = rho * SOILS[k].from_m_s * SOILS[k].to_m_s * SOILS[k].reduced;
     }
     if (G > 0 && x[RADIUS] == 0)
-        return fail(err, STATUS_BAD_DATA, "core.foundation: soil= or g= needs radius= of the foundation [m]");
+        return bad_data(err, "core.foundation: soil= or g= needs radius= of the foundation [m]");
     if (G > 0)
         set_disc(f, factor * G, x[RADIUS], nu, rho);
     f->rotation = x[ROTATION] > 0 ? factor * x[ROTATION] : f->rotation;
@@ -58,13 +58,11 @@ static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *
     f->radius_m = x[RADIUS];
     f->weight_n = x[WEIGHT];
     if (f->rotation == 0 && f->translation == 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "core.foundation: nothing gives way: it needs soil=A..D or g= [Pa] with "
-                    "radius= [m], or rotation= [N m/rad] or translation= [N/m]; or fixed");
+        return bad_data(err, "core.foundation: nothing gives way: it needs soil=A..D or g= [Pa] with "
+                             "radius= [m], or rotation= [N m/rad] or translation= [N/m]; or fixed");
     if ((f->rotation == 0 && f->rotation_dashpot > 0) || (f->translation == 0 && f->translation_dashpot > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "core.foundation: a dashpot needs the spring beside it: rotation= [N m/rad], "
-                    "translation= [N/m]");
+        return bad_data(err, "core.foundation: a dashpot needs the spring beside it: rotation= [N m/rad], "
+                             "translation= [N/m]");
     return STATUS_OK;
 }
 

@@ -30,7 +30,7 @@ static Status add_name(Frame *f, FrameKind kind, const char *name, Err *err)
 {
     static const char *const WORDS[FRAME_KINDS] = {"node", "section", "element"};
     if (frame_find(f, kind, name) >= 0)
-        return fail(err, STATUS_BAD_DATA, "%s %s is there twice", WORDS[kind], name);
+        return bad_data(err, "%s %s is there twice", WORDS[kind], name);
     Entry *entry = malloc(sizeof *entry);
     if (entry) {
         *entry = (Entry){.kind = kind, .index = f->n[kind]};
@@ -65,7 +65,7 @@ static Status check_mass(const double mass[FRAME_DOFS], Err *err)
 {
     for (int d = 0; d < FRAME_DOFS; d++)
         if (!(mass[d] >= 0))
-            return fail(err, STATUS_BAD_DATA, "a mass of %g; it must not be negative", mass[d]);
+            return bad_data(err, "a mass of %g; it must not be negative", mass[d]);
     return STATUS_OK;
 }
 
@@ -89,10 +89,10 @@ Status frame_add_node(Frame *f, const FrameNode *node, Err *err)
 Status frame_add_section(Frame *f, const FrameSection *s, Err *err)
 {
     if (!(s->area > 0 && s->inertia > 0 && s->E > 0))
-        return fail(err, STATUS_BAD_DATA, "section %s: area %g, inertia %g and E %g must be above 0", s->name, s->area,
-                    s->inertia, s->E);
+        return bad_data(err, "section %s: area %g, inertia %g and E %g must be above 0", s->name, s->area, s->inertia,
+                        s->E);
     if (!(s->poisson > -1 && s->poisson <= 0.5))
-        return fail(err, STATUS_BAD_DATA, "poisson is %g; it must be above -1 and at most 0.5", s->poisson);
+        return bad_data(err, "poisson is %g; it must be above -1 and at most 0.5", s->poisson);
     return add_part(f, FRAME_SECTIONS, &f->section, s, sizeof *s, err);
 }
 
@@ -100,8 +100,7 @@ Status frame_add_element(Frame *f, const FrameElement *e, Err *err)
 {
     const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
     if (!(hypot(b->x - a->x, b->z - a->z) > 0))
-        return fail(err, STATUS_BAD_DATA, "element %s has no length: nodes %s and %s are at one place", e->name,
-                    a->name, b->name);
+        return bad_data(err, "element %s has no length: nodes %s and %s are at one place", e->name, a->name, b->name);
     return add_part(f, FRAME_ELEMENTS, &f->element, e, sizeof *e, err);
 }
 
@@ -115,12 +114,12 @@ int frame_followed(const Frame *f, int node, int dof)
 Status frame_tie(Frame *f, int node, int same_as, const int dof[FRAME_DOFS], Err *err)
 {
     if (!dof[FRAME_X] && !dof[FRAME_Z] && !dof[FRAME_ROT])
-        return fail(err, STATUS_BAD_DATA, "ties nothing: none of x, z, rot is 1");
+        return bad_data(err, "ties nothing: none of x, z, rot is 1");
     for (int d = 0; d < FRAME_DOFS; d++) {
         const int a = frame_followed(f, node, d), b = frame_followed(f, same_as, d);
         if (dof[d] && a == b)
-            return fail(err, STATUS_BAD_DATA, "node %s and node %s are one, or tied already: a circle of ties",
-                        f->node[node].name, f->node[same_as].name);
+            return bad_data(err, "node %s and node %s are one, or tied already: a circle of ties", f->node[node].name,
+                            f->node[same_as].name);
         if (dof[d])
             f->node[a].follows[d] = b;
     }
@@ -237,12 +236,11 @@ static Status measure_storeys(Frame *f, const char *model, Err *err)
         int count;
         const double z = floor_height(f, k, &count);
         if (count == 0)
-            return fail(err, STATUS_BAD_DATA, "%s: there is no floor %d, but a floor %d", model, k, f->n_floors);
+            return bad_data(err, "%s: there is no floor %d, but a floor %d", model, k, f->n_floors);
         if (k == 1 && !ground_below(f, z, &below))
-            return fail(err, STATUS_BAD_DATA, "%s: no node below the first floor (z %g m) is held along x", model, z);
+            return bad_data(err, "%s: no node below the first floor (z %g m) is held along x", model, z);
         if (!(z > below))
-            return fail(err, STATUS_BAD_DATA, "%s: floor %d at %g m is not above %g m; bottom floor first", model, k, z,
-                        below);
+            return bad_data(err, "%s: floor %d at %g m is not above %g m; bottom floor first", model, k, z, below);
         f->storey_m[k - 1] = z - below;
         below = z;
     }
@@ -259,9 +257,9 @@ Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
     for (int i = 0; i < f->n[FRAME_NODES]; i++)
         f->n_floors = f->node[i].floor > f->n_floors ? f->node[i].floor : f->n_floors;
     if (f->n_floors == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: no floors: no level element has ends that may move sideways", model);
+        return bad_data(err, "%s: no floors: no level element has ends that may move sideways", model);
     if (f->n_floors > FLOORS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
+        return bad_data(err, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
     TRY_ROOM(f->storey_m, f->n_floors, "storeys of a frame", err);
     if (rigid)
         tie_floors(f);

@@ -19,8 +19,8 @@ static Status look_up(const Frame *f, FrameKind kind, const char *column, const 
 {
     *index = frame_find(f, kind, word);
     return *index >= 0 ? STATUS_OK
-                       : fail(err, STATUS_BAD_DATA, "%s '%.40s' is not in %s", column, word,
-                              kind == FRAME_NODES ? "nodes.csv" : "sections.csv");
+                       : bad_data(err, "%s '%.40s' is not in %s", column, word,
+                                  kind == FRAME_NODES ? "nodes.csv" : "sections.csv");
 }
 
 static Status take_node(void *frame, const SheetRow *r, Err *err)
@@ -30,7 +30,7 @@ static Status take_node(void *frame, const SheetRow *r, Err *err)
     set_switches(node.fixed, &r->x[3]);
     set_switches(node.keep, &r->x[7]);
     if (node.floor != r->x[6])
-        return fail(err, STATUS_BAD_DATA, "floor %g is no number of a floor", r->x[6]);
+        return bad_data(err, "floor %g is no number of a floor", r->x[6]);
     return frame_add_node(frame, &node, err);
 }
 
@@ -156,10 +156,11 @@ static Status read_tcl(Frame *f, const BuildingOptions *o, Err *err)
 {
     const BuildingUnit u = building_unit(o->units);
     if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
-        return fail(err, STATUS_BAD_DATA,
-                    "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
-                    "for %s",
-                    o->model);
+        return bad_data(
+            err,
+            "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
+            "for %s",
+            o->model);
     return opensees_read(f, o->model, u.length, u.stiffness * u.length, err);
 }
 

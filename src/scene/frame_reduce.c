@@ -71,7 +71,7 @@ static Status sort_unknowns(Numbering *u, Err *err)
     for (int floor = 1; floor <= f->n_floors; floor++) {
         int *unknown = &u->unknown[root_of(f, frame_floor_node(f, floor) * FRAME_DOFS + FRAME_X)];
         if (*unknown == HELD || *unknown == FLOOR)
-            return fail(err, STATUS_BAD_DATA, "frame: floor %d cannot move by itself: it is held or tied", floor);
+            return bad_data(err, "frame: floor %d cannot move by itself: it is held or tied", floor);
         *unknown = FLOOR;
     }
     return STATUS_OK;
@@ -254,9 +254,8 @@ static Status fail_mechanism(const Numbering *u, int i, Err *err)
 {
     static const char *const WORDS[] = {"moves along x", "moves along z", "turns"};
     const FrameNode *node = &u->frame->node[i / FRAME_DOFS];
-    return fail(err, STATUS_BAD_DATA,
-                "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %s; fix it, or connect it",
-                node->name, node->x, node->z, WORDS[i % FRAME_DOFS]);
+    return bad_data(err, "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %s; fix it, or connect it",
+                    node->name, node->x, node->z, WORDS[i % FRAME_DOFS]);
 }
 
 typedef struct {
@@ -366,9 +365,9 @@ static Status check_mass(const Numbering *u, const double M[], Err *err)
 {
     for (int k = 0; k < u->frame->n_floors; k++)
         if (!(M[k * u->n_shapes + k] > 0))
-            return fail(err, STATUS_BAD_DATA,
-                        "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg", k + 1,
-                        u->frame->node[displacement_of(u, u->n_slaves + k) / FRAME_DOFS].name);
+            return bad_data(err,
+                            "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg",
+                            k + 1, u->frame->node[displacement_of(u, u->n_slaves + k) / FRAME_DOFS].name);
     return STATUS_OK;
 }
 

@@ -19,21 +19,21 @@ static Status check_floors(const Building *n, const Building *b, const char *mod
 {
     double z = 0, own = 0;
     if (n->n > b->n)
-        return fail(err, STATUS_BAD_DATA,
-                    "core.model: %s has %d floors, the building %d: make the taller one building.model and the other "
-                    "core.model",
-                    model, n->n, b->n);
+        return bad_data(
+            err,
+            "core.model: %s has %d floors, the building %d: make the taller one building.model and the other "
+            "core.model",
+            model, n->n, b->n);
     if (n->yields)
-        return fail(err, STATUS_BAD_DATA, "core.model: %s has storeys that yield; only those of building.model may",
-                    model);
+        return bad_data(err, "core.model: %s has storeys that yield; only those of building.model may", model);
     for (int j = 0; j < n->n; j++) {
         z += b->storey_m[j];
         own += n->storey_m[j];
         if (fabs(z - own) > LEVELS_M)
-            return fail(err, STATUS_BAD_DATA,
-                        "core.model: floor %d of %s is at %.3g m, that of the building at %.3g m; floors that meet "
-                        "are at one height within %g m",
-                        j + 1, model, own, z, LEVELS_M);
+            return bad_data(err,
+                            "core.model: floor %d of %s is at %.3g m, that of the building at %.3g m; floors that meet "
+                            "are at one height within %g m",
+                            j + 1, model, own, z, LEVELS_M);
     }
     return STATUS_OK;
 }

@@ -520,12 +520,11 @@ static Status run_model(Reader *r, Err *err)
     Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_TIME);
     run_file(r, r->path);
     if (Tcl_LimitExceeded(r->tcl))
-        return fail(err, STATUS_BAD_DATA, "%s: takes more than %d s or %d commands", r->path, SECONDS_MAX,
-                    COMMANDS_MAX);
+        return bad_data(err, "%s: takes more than %d s or %d commands", r->path, SECONDS_MAX, COMMANDS_MAX);
     if (r->refused.code != STATUS_OK)
         return fail(err, r->refused.code, "%s", r->refused.text);
     if (r->frame->n[FRAME_ELEMENTS] == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: holds no element", r->path);
+        return bad_data(err, "%s: holds no element", r->path);
     lump_masses(r->frame);
     return STATUS_OK;
 }

@@ -84,16 +84,16 @@ static Status check_columns(const SheetForm *form, const Table *s, Err *err)
     for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++) {
         known += table_column(s, c->name) >= 0;
         if (isnan(c->otherwise) && table_column(s, c->name) < 0)
-            return fail(err, STATUS_BAD_DATA, "%s: has no column %s; it needs %s, and may have %s", s->path, c->name,
-                        required, optional);
+            return bad_data(err, "%s: has no column %s; it needs %s, and may have %s", s->path, c->name, required,
+                            optional);
     }
     for (size_t j = 0; j < s->n_cols && known < s->n_cols; j++) {
         const Column *c = form->column;
         while (c < form->column + COLUMNS_MAX && c->name && strcmp(c->name, s->names[j]) != 0)
             c++;
         if (c == form->column + COLUMNS_MAX || !c->name)
-            return fail(err, STATUS_BAD_DATA, "%s: column '%s' is not known; there are %s %s", s->path, s->names[j],
-                        required, optional);
+            return bad_data(err, "%s: column '%s' is not known; there are %s %s", s->path, s->names[j], required,
+                            optional);
     }
     return STATUS_OK;
 }
@@ -104,15 +104,14 @@ static Status take_cell(const Column *c, const Table *s, size_t row, const char 
     if (c->kind == COLUMN_NAME)
         return **word && strlen(*word) < TABLE_NAME_MAX
                    ? STATUS_OK
-                   : fail(err, STATUS_BAD_DATA, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path,
-                          s->line[row], c->name, *word, TABLE_NAME_MAX - 1);
+                   : bad_data(err, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row], c->name,
+                              *word, TABLE_NAME_MAX - 1);
     TRY(sheet_number(s, row, c->name, c->otherwise, x, err));
     const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && **word    ? "it must be above 0"
                        : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
                        : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
                                                                            : NULL;
-    return must ? fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must)
-                : STATUS_OK;
+    return must ? bad_data(err, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must) : STATUS_OK;
 }
 
 static Status take_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)

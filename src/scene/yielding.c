@@ -16,10 +16,11 @@ static Status storey_stiffness(int n, const double K[], const double phi[], int 
         const double drift = phi[j * stride] - (j > 0 ? phi[(j - 1) * stride] : 0);
         k[j] = yield_m[j] > 0 ? shear / drift : 0;
         if (yield_m[j] > 0 && !(k[j] > 0 && isfinite(k[j])))
-            return fail(err, STATUS_BAD_DATA,
-                        "building: storey %d has no stiffness in the first mode (%.3g N/m), so that nothing of it can "
-                        "yield; leave building.yield_drift at 0",
-                        j + 1, k[j]);
+            return bad_data(
+                err,
+                "building: storey %d has no stiffness in the first mode (%.3g N/m), so that nothing of it can "
+                "yield; leave building.yield_drift at 0",
+                j + 1, k[j]);
     }
     return STATUS_OK;
 }

@@ -156,10 +156,9 @@ static Status fail_word(const Format *f, const Lines *l, Field first, Field seco
     const HeaderWord *w = f->words;
     while (w->line && w->field != first && w->field != second)
         w++;
-    return fail(err, STATUS_BAD_DATA,
-                w->line ? "%s:%d: no usable %s above this line (%s%s)" : "%s:%d: no usable %s above this line", l->path,
-                l->number, first == COUNT ? "number of points" : "time step (above 0, at most 1 s)", w->line,
-                w->behind);
+    return bad_data(err, w->line ? "%s:%d: no usable %s above this line (%s%s)" : "%s:%d: no usable %s above this line",
+                    l->path, l->number, first == COUNT ? "number of points" : "time step (above 0, at most 1 s)",
+                    w->line, w->behind);
 }
 
 /* Number and step of channel k; where a length is stated too it must be theirs. */
@@ -177,8 +176,8 @@ static Status settle_steps(const Format *f, const Lines *l, Header *h, int k, Er
         return fail_word(f, l, COUNT, DURATION, err);
     const double rounded = duration == floor(duration); /* "approx   70 secs" */
     if (duration > 0 && fabs(duration - count * dt) > 2 * dt + 0.02 * duration + rounded)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: a length of %g s, but %g samples every %g s are %g s", l->path,
-                    h->at[DURATION].number, duration, count, dt, count * dt);
+        return fail_at(err, &h->at[DURATION], "a length of %g s, but %g samples every %g s are %g s", duration, count,
+                       dt, count * dt);
     h->count = count;
     h->dt = dt;
     return STATUS_OK;
@@ -320,7 +319,7 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
         k++;
     }
     if (k != width)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow", l->path, names->number, k, width);
+        return fail_at(err, names, "names %zu columns, but %zu follow", k, width);
     if (timed)
         record_set_times(r, base, width, 0);
     return STATUS_OK;
@@ -556,16 +555,14 @@ static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
     const char *slash = factor->from ? memchr(factor->from, '/', factor->to - factor->from) : NULL;
     if (!slash || !find_word(factor->from, slash, "gal") || !number_behind(factor->from, slash, "", &gal) ||
         !number_behind(slash, factor->to, "/", &counts) || !(gal / counts > 0) || isinf(gal / counts))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable Scale Factor, as 3920(gal)/6182761", l->path,
-                    factor->from ? factor->number : l->number);
+        return fail_at(err, factor->from ? factor : l, "no usable Scale Factor, as 3920(gal)/6182761");
     c->scale = gal / counts;
     c->subtract_mean = 1;
     if (c->name[0] >= '1' && c->name[0] <= '6' && !c->name[1])
         memcpy(c->name, DIRECTIONS[c->name[0] - '1'], sizeof DIRECTIONS[0]);
     else if (!text_is(EQUALS, c->name, c->name + strlen(c->name), "N-S|E-W|U-D"))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: the direction '%s' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)", l->path,
-                    h->at[NAME].from ? h->at[NAME].number : l->number, c->name);
+        return fail_at(err, h->at[NAME].from ? &h->at[NAME] : l,
+                       "the direction '%s' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)", c->name);
     return STATUS_OK;
 }
 
@@ -772,10 +769,11 @@ static Status find_next(Lines *l, const Format **next, Err *err)
             is_known = *next || text_is(HOLDS, ahead.from, ahead.to, "veloc|displ| vel | dis");
             *next = NULL;
         } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
-            return fail(err, STATUS_BAD_DATA,
-                        "%s:%d: more numbers, below words, than the header announces; is it a second record? Keep one "
-                        "of them",
-                        l->path, ahead.number);
+            return bad_data(
+                err,
+                "%s:%d: more numbers, below words, than the header announces; is it a second record? Keep one "
+                "of them",
+                l->path, ahead.number);
         *l = ahead;
     }
     return STATUS_OK;
@@ -789,7 +787,7 @@ Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     if (!f)
         return columns_read(r, l, hints, err);
     if (f->refused)
-        return fail(err, STATUS_BAD_DATA, "%s: is not read: %s", l->path, f->refused);
+        return bad_data(err, "%s: is not read: %s", l->path, f->refused);
     for (r->is_known = 1; f;) {
         const size_t before = r->n_channels;
         TRY(f->read ? f->read(r, l, err) : read_channel(f, r, l, err));

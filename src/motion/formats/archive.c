@@ -42,14 +42,14 @@ static Status read_member(struct archive *a, const char *path, char **out, size_
         }
         const la_ssize_t got = archive_read_data(a, *out + *n, capacity - *n);
         if (got < 0)
-            return fail(err, STATUS_BAD_DATA, "%s: a damaged archive: %s", path,
-                        archive_error_string(a) ? archive_error_string(a) : "unreadable");
+            return bad_data(err, "%s: a damaged archive: %s", path,
+                            archive_error_string(a) ? archive_error_string(a) : "unreadable");
         if (got == 0)
             break;
         *n += got;
         *total += got;
         if (*total > ARCHIVE_BYTES_MAX)
-            return fail(err, STATUS_BAD_DATA, "%s: unpacks to more than %zu MiB", path, ARCHIVE_BYTES_MAX >> 20);
+            return bad_data(err, "%s: unpacks to more than %zu MiB", path, ARCHIVE_BYTES_MAX >> 20);
     }
     (*out)[*n] = 0;
     return STATUS_OK;
@@ -73,15 +73,15 @@ static Status each_member(struct archive *a, const char *path, ArchiveFn take, v
         TRY(status);
     }
     return code == ARCHIVE_EOF ? STATUS_OK
-                               : fail(err, STATUS_BAD_DATA, "%s: a damaged archive: %s", path,
-                                      archive_error_string(a) ? archive_error_string(a) : "unreadable");
+                               : bad_data(err, "%s: a damaged archive: %s", path,
+                                          archive_error_string(a) ? archive_error_string(a) : "unreadable");
 }
 
 Status archive_each(const char *path, const char *bytes, size_t n, ArchiveFn take, void *user, Err *err)
 {
     struct archive *a = open_memory(bytes, n);
     if (!a)
-        return fail(err, STATUS_BAD_DATA, "%s: a damaged archive", path);
+        return bad_data(err, "%s: a damaged archive", path);
     const Status status = each_member(a, path, take, user, err);
     archive_read_free(a);
     return status;

@@ -274,16 +274,16 @@ static Status check_times(const Plain *t, Cell name, Err *err)
     for (const char *p = name.from; p < name.to; p++)
         is_title |= (unsigned char)*p > 127; /* in another script, perhaps of time */
     if (!t->is_timed && name.from < name.to && !is_title)
-        return fail(
-            err, STATUS_BAD_DATA,
+        return bad_data(
+            err,
             "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
             "step of the samples (--set motion.dt_s=0.01)",
             t->l->path, l->number, (int)(name.to - name.from), name.from);
     for (const char *p = name.from; p <= name.to;) {
         const Cell word = cell_next(&p, name.to, "_ ()[],");
         if (word.from > name.from && text_is(EQUALS, word.from, word.to, "ms|msec|us|min|minutes|h|hours"))
-            return fail(err, STATUS_BAD_DATA, "%s: the column of times is '%.*s'; times must be in seconds", t->l->path,
-                        (int)(name.to - name.from), name.from);
+            return bad_data(err, "%s: the column of times is '%.*s'; times must be in seconds", t->l->path,
+                            (int)(name.to - name.from), name.from);
     }
     return STATUS_OK;
 }
@@ -356,8 +356,8 @@ static Status read_rows(Plain *t, Err *err)
         } else {
             size_t n;
             if (t->restated_line)
-                return fail(
-                    err, STATUS_BAD_DATA,
+                return bad_data(
+                    err,
                     "%s:%d: states a step, a unit or a number of samples below the first sample; is it a second "
                     "record? Keep one of them",
                     l->path, t->restated_line);
@@ -433,8 +433,8 @@ static Status read_table(Plain *t, Err *err)
         return STATUS_BAD_DATA;
     }
     if (t->n_rows < 2 && t->width < 3)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", t->l->path, t->n_rows,
-                    t->n_rows == 1 ? "" : "s");
+        return bad_data(err, "%s: holds %zu sample%s; at least two are needed", t->l->path, t->n_rows,
+                        t->n_rows == 1 ? "" : "s");
     return STATUS_OK;
 }
 
@@ -513,8 +513,8 @@ static Status name_channels(const Plain *t, size_t skipped, int timed, double st
             unit_in_name(name, c);
         }
         if (c->unit && t->all.unit && c->unit != t->all.unit)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: the column '%s' is in %s, but the header above says %s",
-                        t->l->path, t->names.number, c->name, UNITS[c->unit], UNITS[t->all.unit]);
+            return fail_at(err, &t->names, "the column '%s' is in %s, but the header above says %s", c->name,
+                           UNITS[c->unit], UNITS[t->all.unit]);
         if (!c->unit && !c->stated[0] && t->all.unit)
             c->unit = t->all.unit;
         if (!c->unit && !c->stated[0])
@@ -530,23 +530,23 @@ static Status fail_unnamed(const Plain *t, Err *err)
     const int line = t->r->row[0].line;
     TRY(check_rows(t, err));
     if (t->n_names > 1 && 2 * t->n_names == t->width && !t->l->point_line)
-        return fail(
-            err, STATUS_BAD_DATA,
+        return bad_data(
+            err,
             "%s:%d: %zu columns are named, but the rows have %zu numbers: are its commas decimal ones too? Write "
             "decimal points, or semicolons between the columns",
             path, line, t->n_names, t->width);
     if (!(t->dt > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
-                    "motion.dt_s=0.01)",
-                    path, line, t->width);
-    return fail(err, STATUS_BAD_DATA,
-                "%s:%d: has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
-                "if they are one motion written row by row, put '# npts = %zu' above them%s",
-                path, line, t->n_rows, t->width, t->width, t->r->n,
-                t->width == 2 && !t->l->point_line
-                    ? "; if they are one column with decimal commas, put its name above it"
-                    : "");
+        return bad_data(err,
+                        "%s:%d: has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
+                        "motion.dt_s=0.01)",
+                        path, line, t->width);
+    return bad_data(
+        err,
+        "%s:%d: has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
+        "if they are one motion written row by row, put '# npts = %zu' above them%s",
+        path, line, t->n_rows, t->width, t->width, t->r->n,
+        t->width == 2 && !t->l->point_line ? "; if they are one column with decimal commas, put its name above it"
+                                           : "");
 }
 
 /* The column that is named as times, or the first, where none is. */
@@ -566,13 +566,13 @@ static Status read_columns(Plain *t, Err *err)
     t->dt = stated_dt > 0 ? stated_dt : t->hints->dt_s;
     const size_t times = column_of_times(t);
     if (is_named(t) && !t->is_timed && names_frequency(name_at(t, 0)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' heads a spectrum; a motion is a function of time", t->l->path,
-                    t->names.number, line_shown(&t->names), t->names.from);
+        return fail_at(err, &t->names, "'%.*s' heads a spectrum; a motion is a function of time", line_shown(&t->names),
+                       t->names.from);
     int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !t->is_timed);
     if (t->width == 1 && !(t->dt > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
-                    t->l->path, r->row[0].line);
+        return bad_data(err,
+                        "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
+                        t->l->path, r->row[0].line);
     if (t->width > 1 && !is_named(t) && t->dt > 0 && (t->count == r->n || is_wrapped(t))) {
         t->width = 1;
         t->n_rows = r->n;
@@ -585,15 +585,14 @@ static Status read_columns(Plain *t, Err *err)
     }
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
-        return fail(err, STATUS_BAD_DATA, "%s: announces %g samples, but has %zu rows", t->l->path, t->count,
-                    t->n_rows);
+        return bad_data(err, "%s: announces %g samples, but has %zu rows", t->l->path, t->count, t->n_rows);
     t->is_counted = counts_samples(t);
     const int numbered = !t->is_timed && t->is_counted;
     if (numbered && !(t->dt > 0))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
-                    "motion.dt_s=0.01); if they are seconds, name the column time_s",
-                    t->l->path, r->row[0].line, r->row[0].a, r->row[t->width].a);
+        return bad_data(err,
+                        "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
+                        "motion.dt_s=0.01); if they are seconds, name the column time_s",
+                        t->l->path, r->row[0].line, r->row[0].a, r->row[t->width].a);
     timed = timed && !numbered;
     if (timed && is_named(t))
         TRY(check_times(t, name_at(t, times), err));

@@ -51,16 +51,16 @@ static Status check_form(const char *path, size_t at, const Form *f, const unsig
                          Err *err)
 {
     if (frame[0] != FRAME_OF_12 || f->bytes < 3 || f->bytes > 4 || !f->channels || f->rate < 10 || f->rate % 10)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: Kinemetrics EVT: the frame at byte %zu is of type %d with samples of %u bytes, channels %#x, "
-                    "%u Hz; type 3 with 3 or 4 bytes is read",
-                    path, at, frame[0], f->bytes, f->channels, f->rate);
+        return bad_data(
+            err,
+            "%s: Kinemetrics EVT: the frame at byte %zu is of type %d with samples of %u bytes, channels %#x, "
+            "%u Hz; type 3 with 3 or 4 bytes is read",
+            path, at, frame[0], f->bytes, f->channels, f->rate);
     const size_t wanted = (size_t)f->rate / 10 * f->bytes * __builtin_popcount(f->channels);
     return samples == wanted
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA,
-                      "%s: Kinemetrics EVT: %zu bytes of samples in the frame at byte %zu, %zu are expected", path,
-                      samples, at, wanted);
+               : bad_data(err, "%s: Kinemetrics EVT: %zu bytes of samples in the frame at byte %zu, %zu are expected",
+                          path, samples, at, wanted);
 }
 
 static Status add_channels(Record *r, const Lines *l, const unsigned char *header, const Form *f, Err *err)
@@ -115,19 +115,18 @@ static Status read_frames(Record *r, const char *path, const unsigned char *b, s
             TRY(add_channels(r, &l, b + TAG, &form, err));
         first = frames == 0 ? form : first;
         if (memcmp(&form, &first, sizeof form) != 0)
-            return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: channels or rate change at byte %zu", path, at);
+            return bad_data(err, "%s: Kinemetrics EVT: channels or rate change at byte %zu", path, at);
         TRY(add_samples(r, frame + FRAME, samples, form.bytes, err));
         frames++;
         at += TAG + FRAME + samples;
     }
     if (n - at >= TAG + HEADER && b[at] == 'K' && u32(b + at + 4) == TAG_HEADER)
-        return fail(err, STATUS_BAD_DATA, "%s: Kinemetrics EVT: a second record begins at byte %zu; keep one of them",
-                    path, at);
+        return bad_data(err, "%s: Kinemetrics EVT: a second record begins at byte %zu; keep one of them", path, at);
     if (frames == 0 || frames != wanted)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: Kinemetrics EVT: holds %u frames of a tenth of a second, its header "
-                    "announces %u",
-                    path, frames, wanted);
+        return bad_data(err,
+                        "%s: Kinemetrics EVT: holds %u frames of a tenth of a second, its header "
+                        "announces %u",
+                        path, frames, wanted);
     for (size_t k = 0; k < r->n_channels; k++)
         r->channel[k].n = r->n / r->n_channels;
     return STATUS_OK;
@@ -137,10 +136,9 @@ static Status read(Record *r, const char *path, const char *bytes, size_t n, Err
 {
     const unsigned char *b = (const unsigned char *)bytes;
     if (b[1] != 1 || u32(b + 4) != TAG_HEADER || u16(b + 8) != HEADER || n < TAG + HEADER)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: Kinemetrics EVT %s is not read; convert it to miniSEED, SAC or text (K2COSMOS, kw2asc)", path,
-                    b[1] != 1 ? "with the least significant byte first"
-                              : "without a header of 2040 bytes (12 channels)");
+        return bad_data(
+            err, "%s: Kinemetrics EVT %s is not read; convert it to miniSEED, SAC or text (K2COSMOS, kw2asc)", path,
+            b[1] != 1 ? "with the least significant byte first" : "without a header of 2040 bytes (12 channels)");
     return read_frames(r, path, b, n, err);
 }
 

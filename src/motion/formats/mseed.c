@@ -82,13 +82,13 @@ static Status collect(MSTraceGroup *group, const char *path, const char *bytes, 
     for (size_t at = 0; at + 48 < n && status == STATUS_OK;) {
         if (parse_record(bytes + at, n - at, &record) != 0) {
             if (at == 0 || MS_ISVALIDHEADER(bytes + at)) /* else padding behind the records */
-                status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: no usable record at byte %zu", path, at);
+                status = bad_data(err, "%s: miniSEED: no usable record at byte %zu", path, at);
             break;
         }
         if (group->numtraces > TRACES_MAX) /* each record is compared with all of them */
-            status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: more than %d channels", path, CHANNELS_MAX);
+            status = bad_data(err, "%s: miniSEED: more than %d channels", path, CHANNELS_MAX);
         else if (!mst_addmsrtogroup(group, record, 0, -1, -1))
-            status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: the record at byte %zu fits no trace", path, at);
+            status = bad_data(err, "%s: miniSEED: the record at byte %zu fits no trace", path, at);
         at += record->reclen;
     }
     msr_free(&record);
@@ -108,7 +108,7 @@ static Status read_traces(Record *r, const char *path, const char *bytes, size_t
         status = take_trace(r, &l, t, err);
     mst_freegroup(&group);
     if (status == STATUS_OK && r->n_channels == 0)
-        return fail(err, STATUS_BAD_DATA, "%s: miniSEED without samples", path);
+        return bad_data(err, "%s: miniSEED without samples", path);
     return status;
 }
 

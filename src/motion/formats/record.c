@@ -216,8 +216,7 @@ Status record_block(Record *r, Lines *l, double count, double dt, int width, siz
             return fail_at(err, l, "velocities and displacements end before the number of the header");
     ahead = lines_ahead(l);
     if (c->n > wanted || (!c->digitized && ahead.from && !line_is_marker(&ahead) && !line_has_letters(&ahead)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
-                    c->n > wanted ? l->number : ahead.number, wanted);
+        return fail_at(err, c->n > wanted ? l : &ahead, "more samples than the %zu that its header announces", wanted);
     return STATUS_OK;
 }
 

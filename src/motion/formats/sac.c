@@ -79,12 +79,11 @@ static Status check_header(const char *path, double delta, double npts, double t
         return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: IDEP in its SAC header says %s",
                         path, quantity == 6 ? "displacement" : "velocity");
     if (type != 1 || even != 1)
-        return fail(err, STATUS_BAD_DATA, "%s: a SAC file of type %g that is no time series in equal steps", path,
-                    type);
+        return bad_data(err, "%s: a SAC file of type %g that is no time series in equal steps", path, type);
     if (!(delta > 0 && delta <= MOTION_STEP_MAX_S))
-        return fail(err, STATUS_BAD_DATA, "%s: no usable step in its SAC header: DELTA is %g", path, delta);
+        return bad_data(err, "%s: no usable step in its SAC header: DELTA is %g", path, delta);
     if (!(npts >= 2 && npts <= 1e8))
-        return fail(err, STATUS_BAD_DATA, "%s: no usable number of points in its SAC header: NPTS is %g", path, npts);
+        return bad_data(err, "%s: no usable number of points in its SAC header: NPTS is %g", path, npts);
     return STATUS_OK;
 }
 
@@ -98,8 +97,8 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
     TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped),
                      integer_at(bytes, IDEP, swapped), err));
     if ((n - HEADER) / 4 != (size_t)npts && n != HEADER + 4 * (size_t)npts + FOOTER)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, not the %d that its header announces", path,
-                    (n - HEADER) / 4, npts);
+        return bad_data(err, "%s: holds %zu samples, not the %d that its header announces", path, (n - HEADER) / 4,
+                        npts);
     TRY(record_channel(r, &l, &c, err));
     *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = npts};
     c->dt = round(delta * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
@@ -108,7 +107,7 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
     for (size_t i = 0; i < c->n; i++) {
         const double x = real_at(bytes + HEADER, i, swapped);
         if (!isfinite(x))
-            return fail(err, STATUS_BAD_DATA, "%s: sample %zu is %g; only finite numbers are accepted", path, i, x);
+            return bad_data(err, "%s: sample %zu is %g; only finite numbers are accepted", path, i, x);
         TRY(record_add(r, (Row){.a = x, .line = 1}, err));
     }
     check_range(c, r, real_at(bytes, DEPMIN, swapped), real_at(bytes, DEPMAX, swapped));

@@ -35,10 +35,10 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     Channel *c;
     const size_t n = json_array_size(list);
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
-        return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
+        return bad_data(err, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
     if (place->count > 0 && place->count != n && place->count + 1 != n)
-        return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
-                    place->l->path, place->name, n, place->count);
+        return bad_data(err, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g", place->l->path,
+                        place->name, n, place->count);
     TRY(record_channel(place->r, place->l, &c, err));
     const size_t first = c->first;
     *c = place->shape;
@@ -51,8 +51,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     for (size_t i = 0; i < n; i++) {
         const json_t *x = json_array_get(list, i);
         if (!json_is_number(x) || !isfinite(json_number_value(x)))
-            return fail(err, STATUS_BAD_DATA, "%s: SimCenter: sample %zu of '%s' is no number", place->l->path, i,
-                        c->name);
+            return bad_data(err, "%s: SimCenter: sample %zu of '%s' is no number", place->l->path, i, c->name);
         TRY(record_add(place->r, (Row){.a = json_number_value(x), .line = 1}, err));
     }
     return STATUS_OK;
@@ -91,10 +90,10 @@ static Status check_factor(const Lines *l, const json_t *o, Channel *c, Err *err
     for (size_t k = 0; k < sizeof FACTORS / sizeof FACTORS[0]; k++) {
         const json_t *x = json_object_get(o, FACTORS[k]);
         if (x && !(json_is_number(x) && json_number_value(x) == 1) && c->scale == 1)
-            return fail(err, STATUS_BAD_DATA,
-                        "%s: SimCenter: \"%s\" is not 1; multiply the samples by it, or leave it out and set "
-                        "motion.factor",
-                        l->path, FACTORS[k]);
+            return bad_data(err,
+                            "%s: SimCenter: \"%s\" is not 1; multiply the samples by it, or leave it out and set "
+                            "motion.factor",
+                            l->path, FACTORS[k]);
     }
     return STATUS_OK;
 }
@@ -136,11 +135,11 @@ static Status read(Record *r, const char *path, const char *bytes, size_t n, Err
         n--;
     json_t *root = json_loadb(bytes + begin, n - begin, 0, &why);
     if (!root)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no JSON: %s", path, why.line, why.text);
+        return bad_data(err, "%s:%d: no JSON: %s", path, why.line, why.text);
     Status status = search((Place){.r = r, .l = &l, .name = "", .shape = {.scale = 1, .stride = 1}}, root, 0, err);
     json_decref(root);
     if (status == STATUS_OK && r->n_channels == 0)
-        status = fail(err, STATUS_BAD_DATA, "%s: JSON without a step dT and samples data (SimCenter)", path);
+        status = bad_data(err, "%s: JSON without a step dT and samples data (SimCenter)", path);
     return status;
 }
 

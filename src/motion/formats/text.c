@@ -5,16 +5,6 @@
 #include <strings.h>
 #include <time.h>
 
-Status fail_at(Err *err, const Lines *l, const char *what, ...)
-{
-    char text[sizeof err->text];
-    va_list list;
-    va_start(list, what);
-    vsnprintf(text, sizeof text, what, list);
-    va_end(list);
-    return fail(err, STATUS_BAD_DATA, "%s:%d: %s", l->path, l->number, text);
-}
-
 /* ---- lines ---------------------------------------------------------------------------------------------------- */
 
 int lines_skip(Lines *l, int n)

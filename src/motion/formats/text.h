@@ -7,9 +7,6 @@
 #include "base/csv.h"
 #include "motion/options.h"
 
-/* STATUS_BAD_DATA: "PATH:LINE: what". */
-__attribute__((format(printf, 3, 4))) Status fail_at(Err *err, const Lines *l, const char *what, ...);
-
 int lines_skip(Lines *l, int n);                   /* n lines on; 0: the text is too short */
 int lines_next_filled(Lines *l);                   /* the next line that is not blank */
 Lines lines_ahead(const Lines *l);                 /* the next line that is not blank, l stays; from == NULL: none */
