@@ -13,20 +13,35 @@ static void end_with_dots(char text[], size_t size)
     memcpy(text + visible_cut(text, size - sizeof DOTS), DOTS, sizeof DOTS);
 }
 
-Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...)
+static Status say(Err *err, Status code, ErrSub sub, const char *format, va_list args)
 {
     char raw[sizeof err->text]; /* may quote any bytes of a file */
-    va_list args;
     if (!err)
         return code;
-    va_start(args, format);
     const int is_cut = vsnprintf(raw, sizeof raw, format, args) >= (int)sizeof raw;
-    va_end(args);
     err->code = code;
     err->sub = sub;
     const int is_whole = visible_text(err->text, sizeof err->text, raw);
     if (is_cut || !is_whole)
         end_with_dots(err->text, sizeof err->text);
+    return code;
+}
+
+Status fail(Err *err, Status code, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say(err, code, SUB_NONE, format, args);
+    va_end(args);
+    return code;
+}
+
+Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say(err, code, sub, format, args);
+    va_end(args);
     return code;
 }
 

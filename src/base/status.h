@@ -53,7 +53,7 @@ typedef struct {
 
 /* Writes the sentence, without invisible characters (base/visible.h), and returns code, so that
  * `return fail(err, STATUS_IO, "...")` reads as one thought. One that is too long ends in "...". */
-#define fail(err, code, ...) fail_sub(err, code, SUB_NONE, __VA_ARGS__)
+__attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
 __attribute__((format(printf, 4, 5))) Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...);
 
 /* Of a file or a setting that holds something that cannot be used: STATUS_BAD_DATA. */
