@@ -1,4 +1,4 @@
-/* evaluate/kinds.h -- which values the variables of a problem have, by problem.kinds: one item for all, or a comma list.
+/* evaluate/kinds.h -- which values the variables of a problem have, by problem.kinds: one item for all, or a list.
  *
  *   real                           any number between the bounds
  *   log                            the same, above 0, searched on the scale of its logarithm

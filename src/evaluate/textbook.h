@@ -6,9 +6,9 @@
  *          the positive part of the ellipsoid with half axes 2, 4, ..., 2 m; the first n_position variables say where
  *          on the front, the others how far from it
  *
- *   other kinds (problem.kinds): a whole number 0..10 stands for that many tenths of a variable's width; choice j of n words,
- *          counted from 0, for the share (j s mod n) / (n - 1) of it, s = 3 (4 where 3 divides n), so that neighbours among
- *          the words are none; log: 0.001 to 1, its logarithm evenly spread
+ *   other kinds (problem.kinds): a whole number 0..10 stands for that many tenths of a variable's width; choice j of n
+ *          words, counted from 0, for the share (j s mod n) / (n - 1) of it, s = 3 (4 where 3 divides n), so that
+ *          neighbours among the words are none; log: 0.001 to 1, its logarithm evenly spread
  *
  * As a simulator  one part, the objectives f (n_obj), each times 1 + problem.noise z, z standard normal from the stream
  *                 (search.seed, id of the request); one worker, since it takes no time

@@ -1,10 +1,10 @@
 /* moga/surrogate.h -- the surrogate of the search: an RBF interpolant of the archive (rbf/rbf.h).
  *
  * Objectives and constraints are the outputs of one Rbf on the unit cube. A choice of L words has L - 1 coordinates
- * there: the words are the corners of a regular simplex of edge 1, so that any two of them are as far apart as the bounds
- * of a real variable (Hamming's distance), and each corner gets length scales of its own. Whole numbers are rounded
- * before they are predicted. Beyond `surrogate_max` designs three quarters
- * of the centres are those nearest to the front, the rest is spread evenly over the order of evaluation, which begins
+ * there: the words are the corners of a regular simplex of edge 1, so that any two of them are as far apart as the
+ * bounds of a real variable (Hamming's distance), and each corner gets length scales of its own. Whole numbers are
+ * rounded before they are predicted. Beyond `surrogate_max` designs three quarters of the centres are those nearest to
+ * the front, the rest is spread evenly over the order of evaluation, which begins
  * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again
  * when the archive has grown by a tenth.
  *
@@ -57,7 +57,8 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
 
 /* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate,
  * each from the design of the archive that is best for its vector; a point that violates no limit is better than one
- * that does. Choices stay, whole numbers are moved as if they were real and not rounded here. Resilient back-propagation: Riedmiller and Braun, ICNN 1993, 586-591. */
+ * that does. Choices stay, whole numbers are moved as if they were real and not rounded here.
+ * Resilient back-propagation: Riedmiller and Braun, ICNN 1993, 586-591. */
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
                        double X[]);
 

@@ -122,8 +122,8 @@ static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, co
 }
 
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
- * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns whether
- * the last point was the best one: then its factor and weights are at hand. */
+ * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns
+ * whether the last point was the best one: then its factor and weights are at hand. */
 static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
 {
     const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
