@@ -145,13 +145,13 @@ Status lines_note_mark(Lines *l, Cell c, Err *err)
     if (!l->point_line || !l->comma_line)
         return STATUS_OK;
     return fail_at(err, l, "decimal points and decimal commas are mixed; line %d has the other",
-                   l->point_line < l->comma_line ? l->point_line : l->comma_line);
+                   MIN_OF(l->point_line, l->comma_line));
 }
 
 int csv_is_error(const char *line, const char *end)
 {
     static const char *const ERRORS[] = {"#N/A", "#NV", "#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NAME?", "#NULL!"};
-    for (size_t i = 0; i < sizeof ERRORS / sizeof ERRORS[0]; i++) {
+    for (size_t i = 0; i < N_OF(ERRORS); i++) {
         const char *behind = line + strlen(ERRORS[i]);
         if (behind <= end && strncmp(line, ERRORS[i], strlen(ERRORS[i])) == 0)
             return behind == end || strchr(",;\t\r", *behind);
@@ -245,7 +245,7 @@ static Status fail_number(const Table *t, int line, size_t column, Cell c, CellK
     if (c.from == c.to)
         return bad_data(err, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
     return bad_data(err, "%s:%d: column %zu is not a number: '%.*s'", t->path, line, column + 1,
-                    (int)(c.to - c.from < 20 ? c.to - c.from : 20), c.from);
+                    (int)MIN_OF(c.to - c.from, 20), c.from);
 }
 
 static Status take_cell(Reading *r, size_t column, Cell c, Err *err)

@@ -68,7 +68,7 @@ static void make_buffers(size_t n_threads)
 {
     enum { MOST = 64 };
     void *buffer[MOST];
-    const size_t n = !blas_memory_alloc || !blas_memory_free ? 0 : n_threads < MOST ? n_threads : MOST;
+    const size_t n = !blas_memory_alloc || !blas_memory_free ? 0 : MIN_OF(n_threads, MOST);
     for (size_t i = 0; i < n; i++)
         buffer[i] = blas_memory_alloc(0);
     for (size_t i = 0; i < n; i++)

@@ -82,7 +82,9 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
             return try_status_;                                                                                        \
     } while (0)
 
-#define N_OF(array) (sizeof(array) / sizeof *(array)) /* elements */
+#define N_OF(array)  (sizeof(array) / sizeof *(array)) /* elements */
+#define MIN_OF(a, b) ((a) < (b) ? (a) : (b))
+#define MAX_OF(a, b) ((a) > (b) ? (a) : (b))
 
 /* Zeroed memory for n of what the pointer points to; where it is refused the function returns, as by TRY. what: of the
  * many, "designs", or with n = 1 of one, "a run". */

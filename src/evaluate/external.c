@@ -322,7 +322,7 @@ static void take_end(External *e, Worker *w)
 static void read_more(External *e, Worker *w)
 {
     const size_t room = LINE_MAX_BYTES - w->n_line;
-    const ssize_t n = read(w->out, w->line + w->n_line, room < READ_BYTES ? room : READ_BYTES);
+    const ssize_t n = read(w->out, w->line + w->n_line, MIN_OF(room, READ_BYTES));
     if (n > 0) {
         w->n_line += n;
         look_for_answer(e, w);

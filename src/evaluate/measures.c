@@ -75,7 +75,7 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
     };
     const unsigned has = has_of(core, b);
     for (int k = 0; k < N_MEASURES; k++)
-        for (size_t i = 0; set >> k & 1 && i < sizeof LACKS / sizeof LACKS[0]; i++)
+        for (size_t i = 0; set >> k & 1 && i < N_OF(LACKS); i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)
                 return bad_data(err, "search.objectives: %s (there or in search.limits): %s", MEASURES[k].name,
                                 LACKS[i].words);

@@ -108,7 +108,7 @@ static inline double violation_of(size_t n_con, const double g[])
 {
     double sum = 0.0;
     for (size_t c = 0; c < n_con; c++)
-        sum += g[c] > 0.0 ? g[c] : 0.0;
+        sum += MAX_OF(g[c], 0.0);
     return sum;
 }
 

@@ -227,7 +227,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 static ReplicatePlan plan_of(const Tower *t, size_t n)
 {
     ReplicatePlan plan = t->plan;
-    plan.n_records = n < plan.n_records ? n : plan.n_records;
+    plan.n_records = MIN_OF(n, plan.n_records);
     plan.n_replicates = n / plan.n_records;
     return plan;
 }
@@ -390,7 +390,7 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     }
     t->recipe = recipe;
-    t->n_workers = workers < n_tasks ? workers : n_tasks;
+    t->n_workers = MIN_OF(workers, n_tasks);
     t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
                               .n_replicates = s->sim.replicates,
                               .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
@@ -555,10 +555,10 @@ static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult r
     own.n_parts = 1;
     for (size_t i = 0; i < n; i++) {
         n_simulations += tasks[i].n_parts ? tasks[i].n_parts : 1;
-        own.n_parts = tasks[i].n_parts > own.n_parts ? tasks[i].n_parts : own.n_parts;
+        own.n_parts = MAX_OF(tasks[i].n_parts, own.n_parts);
         own.part_size = results || tasks[i].result ? sizeof(Whole) : own.part_size;
     }
-    own.n_workers = n_simulations < own.n_workers ? n_simulations : own.n_workers;
+    own.n_workers = MIN_OF(n_simulations, own.n_workers);
     if (own.n_workers < 2)
         own.executor = NULL;
     TRY(queue_open(&q, &own, QUEUE_AS_ASKED, 0, err));

@@ -66,12 +66,12 @@ CLONED_V3 static void ray_values(const Infill *q, const double f[], double value
 #pragma omp simd
         for (size_t r = 0; r < q->n_dir; r++) {
             const double end = off * over[r];
-            value[r] = end > value[r] ? end : value[r];
+            value[r] = MAX_OF(end, value[r]);
         }
     }
 #pragma omp simd
     for (size_t r = 0; r < q->n_dir; r++)
-        value[r] = value[r] < 0.0 ? value[r] : 0.0;
+        value[r] = MIN_OF(value[r], 0.0);
 }
 
 /* With |w| = 1, off^2 = |z|^2 - along^2. */
@@ -90,7 +90,7 @@ CLONED_V3 static void pbi_values(const Infill *q, const double f[], double pbi[]
 #pragma omp simd
     for (size_t r = 0; r < q->n_dir; r++) {
         const double rest = square - pbi[r] * pbi[r];
-        pbi[r] += PBI_THETA * sqrt(rest > 0.0 ? rest : 0.0);
+        pbi[r] += PBI_THETA * sqrt(MAX_OF(rest, 0.0));
     }
 }
 
@@ -183,7 +183,7 @@ double infill_distance(Infill *q, const double f[])
 #pragma omp simd reduction(min : nearest)
     for (size_t r = 0; r < q->n_dir; r++) {
         const double off = q->row[r] - q->best_value[r];
-        nearest = off < nearest ? off : nearest;
+        nearest = MIN_OF(off, nearest);
     }
     return nearest;
 }

@@ -190,8 +190,8 @@ static int extend(size_t m, double bounds[], const double f[])
     int wider = 0;
     for (size_t k = 0; k < m; k++) {
         wider |= f[k] < bounds[k] || f[k] > bounds[m + k];
-        bounds[k] = f[k] < bounds[k] ? f[k] : bounds[k];
-        bounds[m + k] = f[k] > bounds[m + k] ? f[k] : bounds[m + k];
+        bounds[k] = MIN_OF(f[k], bounds[k]);
+        bounds[m + k] = MAX_OF(f[k], bounds[m + k]);
     }
     return wider;
 }

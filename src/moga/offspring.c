@@ -150,8 +150,7 @@ static void add_descended(Offspring *o, const Breeding *w)
     const Common *c = w->common;
     const Problem *p = c->problem;
     const size_t n_vectors = w->criteria->vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(c),
-                 wanted = two_each < c->config->population ? two_each : c->config->population,
-                 n = wanted < n_vectors ? wanted : n_vectors, first = n / 2;
+                 wanted = MIN_OF(two_each, c->config->population), n = MIN_OF(wanted, n_vectors), first = n / 2;
     size_t *vector = o->descent_vector;
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
@@ -196,7 +195,7 @@ static void add_probes(Offspring *o, const Breeding *w)
 static void add_pending(Offspring *o, const Common *c)
 {
     const size_t n = queue_pending(c->queue);
-    o->n_pending = n < o->pending_max ? n : o->pending_max;
+    o->n_pending = MIN_OF(n, o->pending_max);
     for (size_t i = 0; i < o->n_pending; i++)
         population_add(&o->members, queue_design(c->queue, i).x);
 }

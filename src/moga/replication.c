@@ -123,13 +123,10 @@ static size_t append(const Common *c, const Criteria *q, Batch *b, size_t import
     return n;
 }
 
-static size_t min_size(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t importance[], size_t n)
 {
-    const size_t room = min_size(b->size_max, common_left(c)), asked = c->archive.n + queue_pending(c->queue) + n;
-    return append(c, q, b, importance, n, min_size(room, n + replicates_due(c, asked)));
+    const size_t left = common_left(c), asked = c->archive.n + queue_pending(c->queue) + n,
+                 due = replicates_due(c, asked);
+    const size_t room = MIN_OF(b->size_max, left);
+    return append(c, q, b, importance, n, MIN_OF(room, n + due));
 }

@@ -87,16 +87,11 @@ static int is_open(const Screening *q, const Archive *a, size_t i)
     return d->finished == SIZE_MAX && a->usable[d->row];
 }
 
-static size_t min_size(size_t a, size_t b)
-{
-    return a < b ? a : b;
-}
-
 /* Designs to be finished when n more have been screened. */
 static size_t finish_due(const Screening *q, size_t n)
 {
     const size_t due = (q->n + n) / SCREENED_PER_FINISHED;
-    return due > q->n_finished ? min_size(due - q->n_finished, q->n_open + n) : 0;
+    return due > q->n_finished ? MIN_OF(due - q->n_finished, q->n_open + n) : 0;
 }
 
 size_t screening_room(const Screening *q, const Common *c, size_t n_max)
@@ -403,7 +398,7 @@ static size_t size_with(const Screening *q, const Common *c, const Batch *b, siz
 {
     const size_t asked = n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(q, c),
                  room = all > asked ? all - asked : 0;
-    return min_size(b->size_max, n + min_size(wanted, room / q->cost.rest));
+    return MIN_OF(b->size_max, n + MIN_OF(wanted, room / q->cost.rest));
 }
 
 /* Pairs to compare the levels by, or the initial sample where nothing is screened any more. */

@@ -37,7 +37,7 @@ static void layout(void *selection, Carve *c)
     CARVE(c, s->z, m);
     CARVE(c, s->members, r);
     CARVE(c, s->candidates, r);
-    CARVE(c, s->ties, n > r ? n : r);
+    CARVE(c, s->ties, MAX_OF(n, r));
     CARVE(c, s->taken, n);
 }
 

@@ -71,11 +71,11 @@ Status state_create(Search *s, Err *err)
     screening_begin(&s->screening, &s->common);
     const size_t population = c->population, initial = c->n_given + generation_samples(s);
     const size_t pending = pending_max(c, p->n_workers);
-    const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * pending;
+    const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
-    const size_t evals = c->max_evals > 4 ? c->max_evals : 4;
-    const size_t centres = c->surrogate_max < evals ? c->surrogate_max : evals;
-    s->batch.size_max = initial > population ? initial : population;
+    const size_t evals = MAX_OF(c->max_evals, 4);
+    const size_t centres = MIN_OF(c->surrogate_max, evals);
+    s->batch.size_max = MAX_OF(initial, population);
     s->offspring.pending_max = pending;
     TRY(create_selection(s, n_pool, err));
     TRY(create_criteria(s, n_members, err));

@@ -217,7 +217,7 @@ static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
     size_t n = 0, n_designs = 0;
     for (size_t i = 0; i < a->n; i++)
         n_designs += a->replicates[i] > 0;
-    const size_t kept = n_designs < s->n_max ? n_designs : s->n_max;
+    const size_t kept = MIN_OF(n_designs, s->n_max);
     s->knows_failures = 0;
     if (a->n_failed == 0)
         return STATUS_OK;
@@ -349,12 +349,12 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
     const size_t n_dim = s->n_dim, n = s->fitted ? gather(s, population, first) : 0;
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK)
-        rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_dim, s->f + i * s->n_out,
+        rbf_eval(s->rbf, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->f + i * s->n_out,
                  with_uncertainty ? s->e + i * s->n_out : NULL);
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK)
         if (s->knows_failures)
-            rbf_eval(s->success, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_dim, s->chance + i, NULL);
+            rbf_eval(s->success, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->chance + i, NULL);
     for (size_t i = 0; i < n; i++)
         fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
                     s->knows_failures ? s->chance[i] : 1.0);
@@ -455,7 +455,7 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
     const size_t length = descent_length(s);
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
-        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        const size_t count = MIN_OF(n - i, RBF_BLOCK);
         double *U = s->descent + i * length, *x = X + i * p->n_var;
         for (size_t j = 0; j < count; j++) {
             memcpy(x + j * p->n_var, a->X + infill_best(near, vectors[i + j]) * p->n_var, p->n_var * sizeof *x);

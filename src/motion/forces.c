@@ -40,7 +40,7 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
         TRY(floor_of(t, c, &floor, err));
         if (table_column(t, t->names[c]) != (int)c)
             return bad_data(err, "%s: column '%s' is there twice", t->path, t->names[c]);
-        m->n_force = floor > m->n_force ? floor : m->n_force;
+        m->n_force = MAX_OF(floor, m->n_force);
     }
     TRY(check_rows(t, err));
     const size_t width = (size_t)m->n_force + 1;

@@ -13,7 +13,7 @@
 static const double LARGEST_PEAK_G = 20.0;
 
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT, &FORMAT_SIMCENTER};
-enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2 };
+enum { N_BINARY_FORMATS = N_OF(BINARY_FORMATS), ARCHIVES_DEEP = 2 };
 
 static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
@@ -240,7 +240,7 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
     const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, intervals = (double)(s->n - 1);
     int decimals = row_at(s, 0)->decimals;
     for (size_t i = 1; i < s->n; i++)
-        decimals = row_at(s, i)->decimals > decimals ? row_at(s, i)->decimals : decimals;
+        decimals = MAX_OF(row_at(s, i)->decimals, decimals);
     const double digit = pow(10.0, -decimals);
     *dt = shortest_near(span / intervals, digit / intervals);
     if (!(*dt > 0) || !isfinite(span))

@@ -308,8 +308,7 @@ static Status load(Motion *m, const char *source, const MotionHow *how, Err *err
     if (builtin_name(source))
         return builtin_motion(m, source, err); /* in m/s2, one channel, whatever is said of files */
     const Status status = motion_read(m, source, how, err);
-    const char *near =
-        status == STATUS_MISSING ? nearest_word(source, MOTIONS, sizeof MOTIONS / sizeof MOTIONS[0]) : NULL;
+    const char *near = status == STATUS_MISSING ? nearest_word(source, MOTIONS, N_OF(MOTIONS)) : NULL;
     return near ? fail(err, status, "%s: there is no such file; did you mean %s?", source, near) : status;
 }
 

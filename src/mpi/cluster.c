@@ -69,7 +69,7 @@ static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VER
 static void ignore_signals(void)
 {
     static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
-    for (size_t i = 0; i < sizeof SIGNALS / sizeof SIGNALS[0]; i++)
+    for (size_t i = 0; i < N_OF(SIGNALS); i++)
         signal(SIGNALS[i], SIG_IGN);
 }
 

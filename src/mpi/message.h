@@ -74,7 +74,7 @@ static inline int is_done_message(const DoneMessage *m, size_t n, size_t part_si
  * comes. */
 static inline double longer_pause(double pause, double longest)
 {
-    return pause * 1.5 < longest ? pause * 1.5 : longest;
+    return MIN_OF(pause * 1.5, longest);
 }
 static const double PAUSE_MIN_S = 2e-5;
 static inline void pause_s(double seconds)

@@ -154,7 +154,7 @@ static Status start_workers(Service *s, Err *err)
     for (; s->n_workers < n; s->n_workers++) {
         Worker *w = &s->worker[s->n_workers];
         *w = (Worker){.service = s, .number = s->n_workers};
-        w->done = malloc(sizeof *w->done + (part > WHY_BYTES ? part : WHY_BYTES));
+        w->done = malloc(sizeof *w->done + MAX_OF(part, WHY_BYTES));
         if (!w->done || pthread_create(&w->thread, NULL, work, w) != 0) {
             free(w->done);
             return fail(err, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", s->n_workers + 1, n);

@@ -14,7 +14,7 @@ static void layout(void *interpolant, Carve *c)
 {
     Rbf *m = interpolant;
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES,
-                 with_squares = spread + m->stride, tuned = n < TUNE_CENTRES_MAX ? n : TUNE_CENTRES_MAX;
+                 with_squares = spread + m->stride, tuned = MIN_OF(n, TUNE_CENTRES_MAX);
     CARVE(c, m->C, 3 * spread);
     CARVE(c, m->F, m->n_out * n);
     CARVE(c, m->noise, m->n_out * n);
@@ -61,13 +61,13 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     const int threads = omp_get_max_threads();
     *out = NULL;
     if (threads > 1 && n_out > 1)
-        TRY(linalg_room(n_out < (size_t)threads ? n_out : (size_t)threads, err));
+        TRY(linalg_room(MIN_OF(n_out, (size_t)threads), err));
     Rbf plain = {.n_max = n_max,
                  .n_dim = n_dim,
                  .n_out = n_out,
                  .n_tail_max = 1 + 2 * n_dim,
                  .stride = (n_max + KERNEL_LANES - 1) / KERNEL_LANES * KERNEL_LANES,
-                 .n_workers = n_out < (size_t)threads ? n_out : (size_t)threads};
+                 .n_workers = MIN_OF(n_out, (size_t)threads)};
     Rbf *m = *out = carve_object(layout, &plain, sizeof plain);
     if (!m)
         return fail_memory(err, n_max, "centres of an interpolant");
@@ -110,7 +110,7 @@ void model_additive(const Rbf *m, size_t n, const double C[], double reach, doub
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
-            const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
+            const size_t count = MIN_OF(n - i, KERNEL_CHUNK);
             kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, reach, factor);
             for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
                 memcpy(K + (j + p) * n + i, factor[p], count * sizeof *K);
@@ -129,7 +129,7 @@ void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], Rb
         if (!is_made)
             model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
-            const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
+            const size_t count = MIN_OF(n - i, KERNEL_CHUNK);
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
             if (!is_made)
                 kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
@@ -402,7 +402,7 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
     if (o->form.reach > 0.0)
         place_points(m->n_dim, n, X, u);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
-        const size_t count = m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK;
+        const size_t count = MIN_OF(m->n - first, KERNEL_CHUNK);
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
         if (o->form.reach > 0.0)
             kernel_additive(m->n_dim, m->stride, m->C, u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
@@ -426,7 +426,7 @@ void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[])
 {
     double L[2 * RBF_BLOCK * RBF_DIM_MAX];
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
-        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        const size_t count = MIN_OF(n - i, RBF_BLOCK);
         take_logs(m, count, X + i * m->n_dim, L);
         for (size_t k = 0; k < m->n_out; k++)
             eval_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,
@@ -498,7 +498,7 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
         kernel_warp_by_u(RBF_BLOCK, L + d * RBF_BLOCK, L + (n_dim + d) * RBF_BLOCK, o->shape.theta[d], o->shape.warp,
                          s.by_u + d * RBF_BLOCK);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK)
-        slope_chunk(m, o, n, first, m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK, &s);
+        slope_chunk(m, o, n, first, MIN_OF(m->n - first, KERNEL_CHUNK), &s);
     for (size_t p = 0; p < n; p++) {
         f[p * m->n_out] = o->mean + o->scale * (s.value[p] + tail_sum(m, o, X + p * n_dim));
         for (size_t d = 0; d < n_dim; d++)
@@ -512,7 +512,7 @@ void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 {
     double L[2 * RBF_BLOCK * RBF_DIM_MAX];
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
-        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        const size_t count = MIN_OF(n - i, RBF_BLOCK);
         take_logs(m, count, X + i * m->n_dim, L);
         for (size_t k = 0; k < m->n_out; k++)
             slope_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,

@@ -172,7 +172,7 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
 /* At most TUNE_CENTRES_MAX centres, evenly spread over their order: a likelihood costs n^3. */
 static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const double f[], const double noise[])
 {
-    const size_t n = m->n < TUNE_CENTRES_MAX ? m->n : TUNE_CENTRES_MAX;
+    const size_t n = MIN_OF(m->n, TUNE_CENTRES_MAX);
     for (size_t i = 0; i < n; i++) {
         const size_t from = i * m->n / n;
         for (size_t d = 0; d < 3 * m->n_dim; d++)

@@ -147,7 +147,7 @@ static void draw(FILE *out, const Building *b, const Frame *f)
     const double scale = fmin(HEIGHT / (z1 - z0), WIDTH_MAX / fmax(x1 - x0, 1e-9)), across = (x1 - x0) * scale;
     const Drawing d = {
         .out = out, .b = b, .x0 = x0, .z1 = z1, .scale = scale, .ground = ground, .right = LEFT + across};
-    const int modes = b->n < MODES_SHOWN ? b->n : MODES_SHOWN;
+    const int modes = MIN_OF(b->n, MODES_SHOWN);
     const double width = d.right + LABELS + MODE_WIDTH * modes + 20, height = TOP + (z1 - z0) * scale + 40;
     fprintf(out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\">\n"

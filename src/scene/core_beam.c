@@ -168,7 +168,7 @@ static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m
                  {"core.inertias_m4", &o->inertias_m4},
                  {"core.shear_areas_m2", &o->shear_areas_m2},
                  {"core.masses_kg", &o->masses_kg}};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0] && o->section == CORE_EFFECTIVE; i++)
+    for (size_t i = 0; i < N_OF(lists) && o->section == CORE_EFFECTIVE; i++)
         if (lists[i].list->n > 2 && lists[i].list->n != n)
             return bad_data(err, "%s: has %d values; the building has %d storeys", lists[i].key, lists[i].list->n, n);
     for (int j = 0; j < n && o->section == CORE_EFFECTIVE; j++)

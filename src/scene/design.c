@@ -10,7 +10,7 @@ enum { HAS_GAPS = 1, HAS_THICKNESS = 2, HAS_BUMPER = 4, HAS_SIDE = 8 };
 static Status take_words(const char *list, unsigned *set, Err *err)
 {
     static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side"};
-    enum { N = sizeof WORDS / sizeof WORDS[0] };
+    enum { N = N_OF(WORDS) };
     char word[64];
     *set = 0;
     for (size_t i = 0; i < list_count(list); i++) {

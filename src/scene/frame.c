@@ -255,7 +255,7 @@ Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
     if (!named)
         TRY(number_floors(f, err));
     for (int i = 0; i < f->n[FRAME_NODES]; i++)
-        f->n_floors = f->node[i].floor > f->n_floors ? f->node[i].floor : f->n_floors;
+        f->n_floors = MAX_OF(f->node[i].floor, f->n_floors);
     if (f->n_floors == 0)
         return bad_data(err, "%s: no floors: no level element has ends that may move sideways", model);
     if (f->n_floors > FLOORS_MAX)

@@ -123,7 +123,7 @@ static const SheetForm SHEETS[] = {
       {"z", COLUMN_SWITCH, 0},
       {"rot", COLUMN_SWITCH, 0}}},
 };
-enum { N_SHEETS = sizeof SHEETS / sizeof SHEETS[0], N_REQUIRED = N_SHEETS - 2 };
+enum { N_SHEETS = N_OF(SHEETS), N_REQUIRED = N_SHEETS - 2 };
 
 int frame_reads(const char *name)
 {

@@ -209,7 +209,7 @@ static const struct {
     const char *type, *words;
 } MEMBERS[] = {{"elasticBeamColumn", "AEIT"},  {"elasticBeamColumn", "ST"}, {"forceBeamColumn", "-ST"},
                {"nonlinearBeamColumn", "-ST"}, {"dispBeamColumn", "-ST"},   {"truss", "AM"}};
-enum { N_MEMBERS = sizeof MEMBERS / sizeof MEMBERS[0] };
+enum { N_MEMBERS = N_OF(MEMBERS) };
 
 /* *options: where they begin. Section s in the units of the model. */
 static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
@@ -483,7 +483,7 @@ static const TclCommand COMMANDS[] = {
     {"unknown", 1, take_unknown, ""},
     {"", 1, skip, ""}, /* those of SKIPPED */
 };
-enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
+enum { N_COMMANDS = N_OF(COMMANDS) };
 
 static int run_command(ClientData command, Tcl_Interp *tcl, int n, Words w)
 {
@@ -503,7 +503,7 @@ static void add_commands(Tcl_Interp *tcl)
         Tcl_CreateObjCommand(tcl, word, run_command, (ClientData)&COMMANDS[N_COMMANDS - 1], NULL);
     for (int i = 0; i < N_COMMANDS - 1; i++)
         Tcl_CreateObjCommand(tcl, COMMANDS[i].word, run_command, (ClientData)&COMMANDS[i], NULL);
-    for (size_t i = 0; i < sizeof REMOVED / sizeof REMOVED[0]; i++)
+    for (size_t i = 0; i < N_OF(REMOVED); i++)
         Tcl_DeleteCommand(tcl, REMOVED[i]);
     Tcl_CreateAlias(tcl, "pset", tcl, "set", 0, NULL); /* a parameter of OpenSees */
 }

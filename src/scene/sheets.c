@@ -32,7 +32,7 @@ static const BuiltIn BUILT_IN[] = {
 /* NULL: there is no such file. */
 static const BuiltIn *built_in(const char *model, const char *file)
 {
-    for (size_t i = 0; i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
+    for (size_t i = 0; i < N_OF(BUILT_IN); i++)
         if (!strcmp(model, BUILT_IN[i].model) && !strcmp(file, BUILT_IN[i].file))
             return &BUILT_IN[i];
     return NULL;

@@ -748,7 +748,7 @@ static const Format *format_at(Lines l)
 {
     l.next = l.raw;
     l.number = 0;
-    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; i++)
+    for (size_t i = 0; i < N_OF(FORMATS); i++)
         if (recognise(&FORMATS[i], l))
             return &FORMATS[i];
     return NULL;

@@ -130,7 +130,7 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
 /* Every "key ... = value" or "key ... : value" of a comment or a line of words. */
 static void take_pairs(Plain *t, const Lines *l)
 {
-    for (size_t i = 0; i < sizeof KEYS / sizeof KEYS[0]; i++) {
+    for (size_t i = 0; i < N_OF(KEYS); i++) {
         const size_t n = strlen(KEYS[i].word);
         if (strcmp(KEYS[i].word, "step") == 0 && t->dt > 0) /* "step 2: filtered" may follow */
             continue;
@@ -251,7 +251,7 @@ static void unit_in_name(Cell name, Channel *c)
         if (c->scale != 1 || (c->unit && unit_of(open, close) != c->unit)) { /* tenths, or more than a unit */
             c->unit = UNIT_FROM_FILE;
             c->scale = 1;
-            snprintf(c->stated, sizeof c->stated, "%.*s", (int)(close - open < 31 ? close - open : 31), open);
+            snprintf(c->stated, sizeof c->stated, "%.*s", (int)MIN_OF(close - open, 31), open);
         }
         return;
     }

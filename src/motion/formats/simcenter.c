@@ -87,7 +87,7 @@ static Status check_factor(const Lines *l, const json_t *o, Channel *c, Err *err
         c->warning = "its samples are multiplied by the factor that stands beside them";
     }
     static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
-    for (size_t k = 0; k < sizeof FACTORS / sizeof FACTORS[0]; k++) {
+    for (size_t k = 0; k < N_OF(FACTORS); k++) {
         const json_t *x = json_object_get(o, FACTORS[k]);
         if (x && !(json_is_number(x) && json_number_value(x) == 1) && c->scale == 1)
             return bad_data(err,
@@ -119,7 +119,7 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
     place.count = json_number_value(json_object_get(node, "numSteps"));
     TRY(check_type(place.l, node, err));
     TRY(check_factor(place.l, node, &place.shape, err));
-    for (size_t k = 0; k < sizeof LISTS / sizeof LISTS[0] && json_is_number(dt); k++)
+    for (size_t k = 0; k < N_OF(LISTS) && json_is_number(dt); k++)
         if (json_is_array(json_object_get(node, LISTS[k])))
             TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
     json_object_foreach((json_t *)node, key, value) TRY(search(place, value, depth + 1, err));

@@ -35,7 +35,7 @@ Lines lines_ahead(const Lines *l)
 
 int line_shown(const Lines *l)
 {
-    return (int)(l->to - l->from < 40 ? l->to - l->from : 40);
+    return (int)MIN_OF(l->to - l->from, 40);
 }
 
 int line_begins(const Lines *l, const char *word)
@@ -60,8 +60,7 @@ int text_is(Match how, const char *from, const char *to, const char *words)
         n = strcspn(words, "|");
         memcpy(word, words, n);
         word[n] = 0;
-        const char *at =
-            how == HOLDS ? find_word(from, to, word) : find_word(from, from + n < to ? from + n : to, word);
+        const char *at = how == HOLDS ? find_word(from, to, word) : find_word(from, MIN_OF(from + n, to), word);
         if (at && (how != EQUALS || from + n == to))
             return 1;
     }
@@ -169,7 +168,7 @@ int quantity_behind(const char *from, const char *to, const char *word, int is_r
     const char *end = p;
     while (end < to && isalpha((unsigned char)*end))
         end++;
-    for (size_t i = 0; i < sizeof UNITS / sizeof UNITS[0] && !(end < to && strchr("-^/", *end)); i++) /* s-1, m/s2 */
+    for (size_t i = 0; i < N_OF(UNITS) && !(end < to && strchr("-^/", *end)); i++) /* s-1, m/s2 */
         if (text_is(EQUALS, p, end, UNITS[i].words)) {
             const double unit = is_rate ? UNITS[i].hertz : UNITS[i].seconds;
             *x *= unit;
@@ -185,8 +184,7 @@ static Status parted_numbers(const Lines *l, int width, size_t max, double x[], 
         const Cell c = cell_next(&p, l->to, " ,;");
         const long length = c.to - c.from;
         if (width && length > width && !memchr(c.from, '.', length))
-            return fail_at(err, l, "'%.*s' is wider than %d characters", (int)(length < 40 ? length : 40), c.from,
-                           width);
+            return fail_at(err, l, "'%.*s' is wider than %d characters", (int)MIN_OF(length, 40), c.from, width);
         TRY(line_number(l, c, 0, &x[*n], err));
     }
     return STATUS_OK;
@@ -249,7 +247,7 @@ MotionUnit unit_of(const char *from, const char *to)
     static const char *const PER_SECOND[] = {"m/s2", "m/s/s", "m/ss", "ms-2"};
     char text[16];
     tidy_unit(from, to, text);
-    for (size_t i = 0; i < sizeof PER_SECOND / sizeof PER_SECOND[0]; i++)
+    for (size_t i = 0; i < N_OF(PER_SECOND); i++)
         if (strcmp(text + (text[0] == 'c'), PER_SECOND[i]) == 0)
             return text[0] == 'c' ? UNIT_CM_S2 : UNIT_M_S2;
     if (strcmp(text, "gal") == 0 || strcmp(text, "gals") == 0)
