@@ -7,8 +7,7 @@
  *   m = carve_object(layout, &plain, sizeof plain);      the same with the object itself
  *
  * Every slice starts on a cache line. The store is zeroed and released by free. */
-#ifndef IMTET_BASE_CARVE_H
-#define IMTET_BASE_CARVE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -66,5 +65,3 @@ static inline void *carve_wider(Carve *c, const void *old, size_t n_old, size_t 
     return slice && n_old > 0 ? memcpy(slice, old, n_old * size) : slice;
 }
 #define CARVE_WIDER(c, array, n_old, n) ((array) = carve_wider(c, array, n_old, n, sizeof *(array)))
-
-#endif

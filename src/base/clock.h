@@ -1,8 +1,7 @@
 /* base/clock.h -- seconds of wall time from some moment on, never set back.
  *
  * Threads  no state */
-#ifndef IMTET_BASE_CLOCK_H
-#define IMTET_BASE_CLOCK_H
+#pragma once
 
 #include <time.h>
 
@@ -12,5 +11,3 @@ static inline double clock_seconds(void)
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
-
-#endif

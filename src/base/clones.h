@@ -4,8 +4,7 @@
  *   CLONED_V3   x86-64-v3, any: kernels written in vectors of four doubles
  *
  * The choice runs before sanitizers are set up, and clang has another syntax: there, one version for any processor. */
-#ifndef IMTET_BASE_CLONES_H
-#define IMTET_BASE_CLONES_H
+#pragma once
 
 #if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define CLONED    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
@@ -13,6 +12,4 @@
 #else
 #define CLONED
 #define CLONED_V3
-#endif
-
 #endif

@@ -9,8 +9,7 @@
  *
  * Ownership  Lines borrow path and text; table_read allocates, table_free releases (an empty one is fine)
  * Threads    no state.   Errors  "PATH:LINE: what was found" */
-#ifndef IMTET_BASE_CSV_H
-#define IMTET_BASE_CSV_H
+#pragma once
 
 #include "base/status.h"
 
@@ -89,5 +88,3 @@ const char *sheet_text(const Table *s, size_t row, const char *column);
 
 /* The number of a cell; `otherwise` where column or content are missing. NAN as `otherwise`: it must be there. */
 Status sheet_number(const Table *s, size_t row, const char *column, double otherwise, double *value, Err *err);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * A response that has died away passes through them, and arithmetic on them is many times slower.
  * Threads  the mode belongs to the calling thread; other processors than x86-64 keep theirs */
-#ifndef IMTET_BASE_DENORMAL_H
-#define IMTET_BASE_DENORMAL_H
+#pragma once
 
 static inline unsigned denormal_off(void)
 {
@@ -25,5 +24,3 @@ static inline void denormal_restore(unsigned before)
     (void)before;
 #endif
 }
-
-#endif

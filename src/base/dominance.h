@@ -14,8 +14,7 @@
  *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort)
  *          Fishburn, J. Math. Psychol. 7 (1970) 144-149 (interval orders)
  *          Teich, EMO 2001, LNCS 1993, 314-328 (Pareto fronts of objectives known as intervals). */
-#ifndef IMTET_BASE_DOMINANCE_H
-#define IMTET_BASE_DOMINANCE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -29,5 +28,3 @@ int dominates_constrained(size_t n_obj, const double a[], double violation_a, co
  * Returns the number of layers. violation (n) may be NULL. scratch holds 3 n numbers. */
 size_t nondominated_sort(size_t n, size_t n_obj, const double F[], const double violation[], size_t rank[],
                          size_t scratch[]);
-
-#endif

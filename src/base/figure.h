@@ -11,12 +11,9 @@
  * with the plus-minus sign of UTF-8. Without an exponent from 1e-4 to 1e7, beyond that (1.53 +- 0.02)e+08.
  *
  * Threads  pure functions */
-#ifndef IMTET_BASE_FIGURE_H
-#define IMTET_BASE_FIGURE_H
+#pragma once
 
 enum { FIGURE_MAX = 64 };
 
 /* error, sd: in the unit of the value; NAN: not known. */
 void figure_text(double value, double error, double sd, char text[FIGURE_MAX]);
-
-#endif

@@ -10,8 +10,7 @@
  * Memory   none is allocated.  Threads  no state
  * Errors   STATUS_BAD_DATA: the cutoff is not between 0 and half the sampling rate
  * Source   A. V. Oppenheim and R. W. Schafer, Discrete-Time Signal Processing, 3rd ed., sections 7.2 and 5.6 */
-#ifndef IMTET_BASE_FILTER_H
-#define IMTET_BASE_FILTER_H
+#pragma once
 
 #include "base/status.h"
 
@@ -48,5 +47,3 @@ void filter_zero_phase(const Filter *f, size_t n, size_t width, double x[]);
         s[k_][0] = q_->b1 * in_ - q_->a1 * x + s[k_][1];                                                               \
         s[k_][1] = q_->b2 * in_ - q_->a2 * x;                                                                          \
     }
-
-#endif

@@ -1,6 +1,5 @@
 /* base/hash.h -- FNV-1a, 64 bit: tells whether two files or matrices are the same bytes; not for adversaries. */
-#ifndef IMTET_BASE_HASH_H
-#define IMTET_BASE_HASH_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -14,5 +13,3 @@ static inline uint64_t hash_fnv1a(const void *data, size_t length, uint64_t hash
         hash = (hash ^ bytes[i]) * HASH_PRIME;
     return hash;
 }
-
-#endif

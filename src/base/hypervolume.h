@@ -7,8 +7,7 @@
  *
  * Life cycle  hypervolume_create -> hypervolume_add ... -> hypervolume_free
  * Threads     one Hypervolume per thread */
-#ifndef IMTET_BASE_HYPERVOLUME_H
-#define IMTET_BASE_HYPERVOLUME_H
+#pragma once
 
 #include "base/status.h"
 
@@ -26,5 +25,3 @@ double hypervolume_gain(const Hypervolume *h, const double f[]); /* by which it 
 double hypervolume_share(const Hypervolume *h);                  /* of the box */
 double hypervolume_error(double share);                          /* standard error of a share */
 void hypervolume_free(Hypervolume *h);                           /* NULL is fine */
-
-#endif

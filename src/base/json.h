@@ -4,8 +4,7 @@
  *
  * Ownership  the caller's reference
  * Errors     none: refused memory ends the program (json_memory, main.c), so that nothing is half there */
-#ifndef IMTET_BASE_JSON_H
-#define IMTET_BASE_JSON_H
+#pragma once
 
 #include <jansson.h>
 
@@ -23,5 +22,3 @@ __attribute__((format(printf, 2, 3))) json_t *json_put(json_t *o, const char *me
 #define json_of(...) json_put(json_object(), __VA_ARGS__)
 
 json_t *json_pair(size_t n, const double one[], const double other[]); /* [[...], [...]] */
-
-#endif

@@ -3,8 +3,7 @@
  * Errors   STATUS_BAD_DATA, one sentence that begins with the setting: a word that is no key, that stands twice, or a
  *          number outside its range
  * Threads  no state */
-#ifndef IMTET_BASE_KEYED_H
-#define IMTET_BASE_KEYED_H
+#pragma once
 
 #include "base/status.h"
 
@@ -19,5 +18,3 @@ typedef struct {
  * one bit, whose keys are taken. */
 Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_t n, const KeyedNumber keys[],
                      double x[], Err *err);
-
-#endif

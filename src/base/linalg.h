@@ -2,8 +2,7 @@
  * symmetric ones are read in full.
  *
  * Threads  no state; BLAS is expected to run on one thread (linalg_use) */
-#ifndef IMTET_BASE_LINALG_H
-#define IMTET_BASE_LINALG_H
+#pragma once
 
 #include "base/option.h"
 #include "base/status.h"
@@ -57,5 +56,3 @@ void linalg_product(int r, int k, int c, const double A[], const double B[], dou
 
 /* out = exp(A), A (n, n) overwritten: Taylor to full precision where |A| <= 1/2, then squared back up. work (2 n n) */
 void linalg_exponential(int n, double A[], double out[], double work[]);
-
-#endif

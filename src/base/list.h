@@ -1,8 +1,7 @@
 /* base/list.h -- comma lists: "a, b, c" has three items, without the blanks around them.
  *
  * Threads  no state */
-#ifndef IMTET_BASE_LIST_H
-#define IMTET_BASE_LIST_H
+#pragma once
 
 #include <stddef.h>
 
@@ -17,5 +16,3 @@ int list_is_given(const char *list); /* it is not empty, nor the word none */
  * result has no room. */
 typedef void (*ListItemFn)(char item[LIST_MAX], void *user);
 void list_change(char list[LIST_MAX], ListItemFn change, void *user);
-
-#endif

@@ -5,8 +5,7 @@
  *   CHOICE_WORDS(SHAPE_LIST)        "box|plate"
  *
  * so that the constants and the words of a settings file come from one list. */
-#ifndef IMTET_BASE_OPTION_H
-#define IMTET_BASE_OPTION_H
+#pragma once
 
 #include "base/status.h"
 
@@ -45,5 +44,3 @@ Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err)
 
 #define SWITCH_LIST(X) X(SWITCH_OFF, "off") X(SWITCH_ON, "on")
 typedef enum { SWITCH_LIST(CHOICE_NAME) } Switch;
-
-#endif

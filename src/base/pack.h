@@ -13,8 +13,7 @@
  * what is left to be read is then unchanged. Numbers are in the order of bytes of the machine.
  *
  * Threads  a Pack belongs to one thread. */
-#ifndef IMTET_BASE_PACK_H
-#define IMTET_BASE_PACK_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -39,5 +38,3 @@ void pack_expect(Pack *p, uint64_t value);
 
 /* Reading: every byte was used and fitted. Writing: there was memory enough. */
 int pack_finished(const Pack *p);
-
-#endif

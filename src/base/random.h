@@ -8,8 +8,7 @@
  * Life cycle  random_stream, then draw; a Random is a plain value, copy it to fork it
  * Threads     a Random belongs to one thread; there is no other state
  * Source      Salmon, Moraes, Dror and Shaw, Parallel random numbers: as easy as 1, 2, 3, SC11 (Random123). */
-#ifndef IMTET_BASE_RANDOM_H
-#define IMTET_BASE_RANDOM_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -45,5 +44,3 @@ double random_uniform(Random *r);         /* [0, 1), a multiple of 2^-53 */
 size_t random_below(Random *r, size_t n); /* 0..n-1, exactly uniform; n >= 1 */
 double random_normal(Random *r);          /* mean 0, variance 1 */
 void random_shuffle(Random *r, size_t n, size_t list[]);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * Threads  no state but the caller's
  * Source   Riedmiller and Braun, ICNN 1993, 586-591 (both factors) */
-#ifndef IMTET_BASE_RPROP_H
-#define IMTET_BASE_RPROP_H
+#pragma once
 
 /* By how much a variable with derivative g moves against it; *last is its derivative of the step before, 0 at first. */
 static inline double rprop_move(double g, double *last, double *step)
@@ -16,5 +15,3 @@ static inline double rprop_move(double g, double *last, double *step)
     *last = same_sign < 0.0 ? 0.0 : g;
     return *last > 0.0 ? -*step : *last < 0.0 ? *step : 0.0;
 }
-
-#endif

@@ -3,8 +3,7 @@
  *   mean = sum_i v_i / n        sd = root(sum_i (v_i - mean)^2 / (n - 1))        NAN: no value, less than two
  *
  * Threads  no state */
-#ifndef IMTET_BASE_STAT_H
-#define IMTET_BASE_STAT_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -20,5 +19,3 @@ static inline int all_finite(size_t n, const double v[])
         i++;
     return i == n;
 }
-
-#endif

@@ -4,8 +4,7 @@
  * line, key), the number that was found and what to do. Only main and src/cmd print or exit.
  *
  * Threads  an Err belongs to one thread; nothing here is shared. */
-#ifndef IMTET_BASE_STATUS_H
-#define IMTET_BASE_STATUS_H
+#pragma once
 
 /* What nearly every file takes of the C library, for all that include this. */
 #include <math.h>
@@ -94,5 +93,3 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
         if (!(pointer))                                                                                                \
             return fail_memory(err, (size_t)(n), what);                                                                \
     } while (0)
-
-#endif

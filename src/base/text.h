@@ -3,12 +3,9 @@
  *
  * Ownership  *text is malloc'd, ends with a zero byte behind its *length, and is the caller's
  * Errors     text_open: NULL; text_close: not 0. *text is NULL then */
-#ifndef IMTET_BASE_TEXT_H
-#define IMTET_BASE_TEXT_H
+#pragma once
 
 #include <stdio.h>
 
 FILE *text_open(char **text, size_t *length);
 int text_close(FILE *stream);
-
-#endif

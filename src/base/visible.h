@@ -14,8 +14,7 @@
  * not for this.
  *
  * Threads  no state */
-#ifndef IMTET_BASE_VISIBLE_H
-#define IMTET_BASE_VISIBLE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ int visible_text(char out[], size_t size, const char *text);
 
 /* At most size - 1 characters and a NUL, none of UTF-8 cut in two; text and cell do not overlap. */
 void cell_text(char cell[], size_t size, const char *text);
-
-#endif

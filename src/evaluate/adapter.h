@@ -6,8 +6,7 @@
  *
  * Life cycle  adapter_open -> search on adapter_problem -> adapter_close
  * Threads     as evaluate/problem.h */
-#ifndef IMTET_EVALUATE_ADAPTER_H
-#define IMTET_EVALUATE_ADAPTER_H
+#pragma once
 
 #include "evaluate/limits.h"
 #include "evaluate/tower.h"
@@ -27,5 +26,3 @@ int adapter_threads(const Adapter *a);
 
 /* Copied; at first there is none. */
 void adapter_observe(Adapter *a, const Observer *observer);
-
-#endif

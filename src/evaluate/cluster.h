@@ -8,8 +8,7 @@
  * Life cycle  cluster_join, first thing in main -> executors, or cluster_disband -> cluster_leave, last thing
  * Threads     one executor of the cluster at a time
  * Errors      another version of the program, or another command, on a rank is refused, host and rank named */
-#ifndef IMTET_EVALUATE_CLUSTER_H
-#define IMTET_EVALUATE_CLUSTER_H
+#pragma once
 
 #include "evaluate/problem.h"
 
@@ -29,5 +28,3 @@ void cluster_disband(void);
 
 /* NULL: this process is alone, or no rank 0. n_ranks: those that evaluate. */
 const Executor *cluster_executor(size_t *n_ranks);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Source   G. B. Warburton, Earthquake Eng. Struct. Dyn. 10 (1982) 381-401
  * Threads  those of the integrators */
-#ifndef IMTET_EVALUATE_DEVICE_H
-#define IMTET_EVALUATE_DEVICE_H
+#pragma once
 
 #include "evaluate/replicates.h"
 #include "evaluate/scenario.h"
@@ -31,5 +30,3 @@ double device_strong_part(const Motion *m, double period);
 /* f1 and damping of a tuned mass on an undamped structure of frequency hz under white noise at the base; mu: ratio of
  * masses. */
 LinearDevice warburton_device(double hz, double mu);
-
-#endif

@@ -15,8 +15,7 @@
  *            addresses
  * Threads    no state
  * Errors     STATUS_NO_MEMORY; a design that failed is a row with another outcome than OUTCOME_OK, not an error */
-#ifndef IMTET_EVALUATE_EVALUATION_H
-#define IMTET_EVALUATE_EVALUATION_H
+#pragma once
 
 #include "base/status.h"
 
@@ -114,5 +113,3 @@ Status evaluation_table_give_room(Evaluation *row, Err *err); /* for its reason 
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);
 
 void evaluation_table_free(EvaluationTable *t); /* its shapes stay; {0} is fine */
-
-#endif

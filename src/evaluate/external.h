@@ -15,8 +15,7 @@
  * Stops           a process at work gets some seconds more to answer, then it is killed and its design counts as never
  *                 asked for
  * Errors          a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker does is not an error */
-#ifndef IMTET_EVALUATE_EXTERNAL_H
-#define IMTET_EVALUATE_EXTERNAL_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "settings/options.h"
@@ -31,5 +30,3 @@ typedef struct {
 /* command: words apart by blanks; '...' and "..." keep blanks, a backslash outside '...' keeps the next character.
  * lower and upper: one number for all variables, or a list. */
 Status external_open(Problem *p, const ProblemOptions *options, size_t n_workers, Err *err);
-
-#endif

@@ -9,8 +9,7 @@
  * Life cycle  helper_start -> helper_run, helper_release ... -> helper_end ({0} is fine)
  * Threads     helper_run and helper_release may be called from several, each for slots of its own
  * Source      prctl(2), PR_SET_PDEATHSIG; unix(7), SCM_RIGHTS; vfork(2) */
-#ifndef IMTET_EVALUATE_HELPER_H
-#define IMTET_EVALUATE_HELPER_H
+#pragma once
 
 #include <pthread.h>
 #include <sys/types.h>
@@ -40,5 +39,3 @@ void helper_release(Helper *h, size_t slot, int kill_it);
 int helper_is_lost(Helper *h);
 
 void helper_end(Helper *h);
-
-#endif

@@ -7,8 +7,7 @@
  *                                  read; its bounds are not read
  *
  * Threads  no state */
-#ifndef IMTET_EVALUATE_KINDS_H
-#define IMTET_EVALUATE_KINDS_H
+#pragma once
 
 #include "evaluate/problem.h"
 
@@ -22,5 +21,3 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lo
 /* The word that a choice has for its number, and back; 0: variable j is no choice or has none such. */
 int kinds_word(const char *list, size_t j, double number, char word[KIND_WORD_MAX]);
 int kinds_number(const char *list, size_t j, const char *word, double *number);
-
-#endif

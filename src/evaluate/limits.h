@@ -5,8 +5,7 @@
  * Threads  limits_apply reads only
  * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both, or one
  *          that is given twice, or one that excludes what is better and has none on the other side */
-#ifndef IMTET_EVALUATE_LIMITS_H
-#define IMTET_EVALUATE_LIMITS_H
+#pragma once
 
 #include "evaluate/schema.h"
 
@@ -27,5 +26,3 @@ Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
 
 /* g (n) of an evaluation with so many objectives. */
 void limits_apply(const Limits *l, size_t n_obj, const Evaluation *e, double g[]);
-
-#endif

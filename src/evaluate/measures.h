@@ -10,8 +10,7 @@
  * A new one goes to the end, so that runs from before it can be read.
  *
  * Threads  pure functions */
-#ifndef IMTET_EVALUATE_MEASURES_H
-#define IMTET_EVALUATE_MEASURES_H
+#pragma once
 
 #include "evaluate/evaluation.h"
 #include "sim/sim.h"
@@ -142,5 +141,3 @@ void measures_settle(SimResult *r, MeasureSet set);
 
 /* What a run comes to as an evaluation. */
 Outcome measure_outcome(RunOutcome outcome);
-
-#endif

@@ -18,8 +18,7 @@
  *          thread, for one design at a time. judge and repair: pure
  * Errors   a simulation that fails is information about a design, told by its part; Status is for what ends everything.
  *          Of several faults the one of the task asked for first is reported */
-#ifndef IMTET_EVALUATE_PROBLEM_H
-#define IMTET_EVALUATE_PROBLEM_H
+#pragma once
 
 #include "evaluate/evaluation.h"
 
@@ -185,5 +184,3 @@ static inline void problem_judge(const Problem *p, const Evaluation *e, double f
         for (size_t k = 0; k < p->n_obj; k++)
             f[k] = e->f[k];
 }
-
-#endif

@@ -21,8 +21,7 @@
  * Life cycle queue_open (starts the executor) -> queue_ask, queue_next ... -> queue_close (waits for what is under way)
  * Threads    take and give from any thread, the rest from the client's own
  * Memory     of a pending design all at once, used again for later ones */
-#ifndef IMTET_EVALUATE_QUEUE_H
-#define IMTET_EVALUATE_QUEUE_H
+#pragma once
 
 #include "evaluate/tasks.h"
 
@@ -68,5 +67,3 @@ void queue_know(Queue *q, size_t n, const Evaluation rows[]);
  * pending. repeat (n): as in Asked, NULL: 0. */
 Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
                       unsigned char ok[], Err *err);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Files are named by their paths, which must lead to the same files there (Problem.inputs).
  * Ownership  belongs to the simulator, or to its adapter */
-#ifndef IMTET_EVALUATE_RECIPE_H
-#define IMTET_EVALUATE_RECIPE_H
+#pragma once
 
 #include "settings/options.h"
 
@@ -29,5 +28,3 @@ static inline char *recipe_record(const Recipe *r, size_t i)
 {
     return (char *)(r->scene + r->n_scenes) + i * OPTION_TEXT_MAX;
 }
-
-#endif

@@ -17,8 +17,7 @@
  * another run of it). As built: gap tolerance or sim.uncertain. A design with a replicate that failed has failed.
  *
  * Threads  pure functions */
-#ifndef IMTET_EVALUATE_REPLICATES_H
-#define IMTET_EVALUATE_REPLICATES_H
+#pragma once
 
 #include "evaluate/measures.h"
 
@@ -61,5 +60,3 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
 
 /* v (n), sorted by this call: mean_plus_sd or quantile, sense +1: large values are bad. sd NAN: one value. */
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Life cycle  scenario_open -> ... -> scenario_close      (a zeroed Scenario may be closed)
  * Ownership   the scene borrows the motion beside it: a Scenario must stay where it was opened */
-#ifndef IMTET_EVALUATE_SCENARIO_H
-#define IMTET_EVALUATE_SCENARIO_H
+#pragma once
 
 #include "motion/motion.h"
 #include "motion/options.h"
@@ -27,5 +26,3 @@ void scenario_close(Scenario *w);
 /* The options of a run with twice the steps, by which the error of another one is estimated (analysis/estimate.h); 0:
  * this engine has none. */
 int estimate_options(const SimOptions *o, SimOptions *finer);
-
-#endif

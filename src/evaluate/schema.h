@@ -4,8 +4,7 @@
  *
  * Internally every objective is minimised, f = sense * value; every file shows the natural value.
  * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
-#ifndef IMTET_EVALUATE_SCHEMA_H
-#define IMTET_EVALUATE_SCHEMA_H
+#pragma once
 
 #include "base/list.h"
 #include "base/csv.h"
@@ -58,5 +57,3 @@ Status schema_pick_objective(const Schema *schema, const char *where, const char
 Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
                           Err *err);
 void schema_free(Schema *schema);
-
-#endif

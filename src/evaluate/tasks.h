@@ -1,8 +1,7 @@
 /* evaluate/tasks.h -- the queue as an executor sees it (evaluate/queue.h): tasks to be done, and their results.
  *
  * Threads  any */
-#ifndef IMTET_EVALUATE_TASKS_H
-#define IMTET_EVALUATE_TASKS_H
+#pragma once
 
 #include "evaluate/problem.h"
 
@@ -22,5 +21,3 @@ void executor_choose(Problem *p);
 
 /* Workers for a setting of so many threads; 0: one for each processor. */
 size_t threads_wanted(long setting);
-
-#endif

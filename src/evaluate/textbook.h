@@ -15,8 +15,7 @@
  * Threads  pure functions
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
  *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4). */
-#ifndef IMTET_EVALUATE_TEXTBOOK_H
-#define IMTET_EVALUATE_TEXTBOOK_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "settings/options.h"
@@ -43,5 +42,3 @@ void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[]);
 
 /* n_position: a multiple of n_obj - 1 below n_var; n_var <= TEXTBOOK_VAR_MAX, n_obj <= TEXTBOOK_OBJ_MAX */
 void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[]);
-
-#endif

@@ -11,8 +11,7 @@
  *
  * Life cycle tower_open -> tower_simulate, or a search on the problem ... -> problem_close
  * Threads    every worker has an integrator of its own for every scene that it has open */
-#ifndef IMTET_EVALUATE_TOWER_H
-#define IMTET_EVALUATE_TOWER_H
+#pragma once
 
 #include "evaluate/queue.h"
 #include "evaluate/recipe.h"
@@ -77,5 +76,3 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
 /* X (n, n_var) with all replicates and records of the tower. */
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err);
-
-#endif

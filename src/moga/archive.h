@@ -18,8 +18,7 @@
  * Memory      without replicates F and G are Y and H, and S, sd and error are NULL. Grows by doubling,
  *             of many rows by a quarter: pointers move
  * Threads     one writer */
-#ifndef IMTET_MOGA_ARCHIVE_H
-#define IMTET_MOGA_ARCHIVE_H
+#pragma once
 
 #include "base/status.h"
 #include "moga/nd_tree.h"
@@ -83,5 +82,3 @@ void pareto_archive_list_front(Archive *a);
 
 /* Row of exactly this design, or n where it has not been evaluated. */
 size_t pareto_archive_find(const Archive *a, const double x[]);
-
-#endif

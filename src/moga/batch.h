@@ -1,8 +1,7 @@
 /* moga/batch.h -- the designs of a generation that are asked for together.
  *
  * Threads  one */
-#ifndef IMTET_MOGA_BATCH_H
-#define IMTET_MOGA_BATCH_H
+#pragma once
 
 #include "moga/common.h"
 
@@ -23,5 +22,3 @@ size_t batch_add(Batch *b, const Common *c, size_t n, const double x[], Evaluati
 
 /* Appends the design of a row of the archive, which has so many replicates. */
 size_t batch_repeat(Batch *b, const Archive *a, size_t n, size_t row, size_t replicates);
-
-#endif

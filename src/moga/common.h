@@ -3,8 +3,7 @@
  * The loop changes it (search.c, generation.c); of the archive screening changes what is predicted in it.
  *
  * Threads  one */
-#ifndef IMTET_MOGA_COMMON_H
-#define IMTET_MOGA_COMMON_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "evaluate/queue.h"
@@ -43,5 +42,3 @@ static inline size_t common_left(const Common *c)
     const size_t asked = c->archive.n + queue_pending(c->queue), end = common_end(c);
     return end > asked ? end - asked : 0;
 }
-
-#endif

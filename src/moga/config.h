@@ -2,8 +2,7 @@
  *
  * Ownership  borrows every array
  * Threads    no state */
-#ifndef IMTET_MOGA_CONFIG_H
-#define IMTET_MOGA_CONFIG_H
+#pragma once
 
 #include "evaluate/evaluation.h"
 #include "settings/search_options.h"
@@ -44,5 +43,3 @@ typedef struct {
 
 /* Whether this version of the search wrote the state: another one cannot be resumed. */
 int search_state_is_current(const void *state, size_t n_state);
-
-#endif

@@ -3,8 +3,7 @@
  * docs/search.md lists them with their sources and with what turning each off costs. scripts/ablation measures that: it
  * builds a copy of the sources in which these are variables. What follows from a definition or guards against overflow
  * stands where it is used. */
-#ifndef IMTET_MOGA_CONSTANTS_H
-#define IMTET_MOGA_CONSTANTS_H
+#pragma once
 
 /* -- generation.c: initial sample ---------------------------------------------------------------------------------- */
 
@@ -64,5 +63,3 @@ static const double LEVEL_TAU_MIN = 0.5; /* mean of Kendall's tau between the le
 enum { REPLICATE_AFTER = 18 };               /* evaluations per variable before the first replicate */
 static const double NOISE_NEGLIGIBLE = 1e-3; /* standard deviation, in ranges of the front, that ends replication */
 enum { NOISE_SAMPLE = 8 };                   /* replicates before it may end */
-
-#endif

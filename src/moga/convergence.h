@@ -12,8 +12,7 @@
  *          d1 min(d1 / d2, 1), what a power law h = h_inf - c n^-a makes of them
  *
  * Threads  pure functions on the caller's memory */
-#ifndef IMTET_MOGA_CONVERGENCE_H
-#define IMTET_MOGA_CONVERGENCE_H
+#pragma once
 
 #include "base/pack.h"
 #include "base/status.h"
@@ -39,5 +38,3 @@ typedef struct {
 } Convergence;
 
 void convergence_pack(Convergence *c, Pack *p);
-
-#endif

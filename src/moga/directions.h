@@ -7,8 +7,7 @@
  * Life cycle  directions_create -> read W -> directions_free
  * Sources     Das and Dennis, SIAM J. Optim. 8 (1998) 631-657
  *             Deb and Jain (see moga/search.h), the two layers */
-#ifndef IMTET_MOGA_DIRECTIONS_H
-#define IMTET_MOGA_DIRECTIONS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -27,5 +26,3 @@ Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner
 Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err);
 void directions_unit(const Directions *d, double unit[]); /* (n, n_obj) the same at length 1 */
 void directions_free(Directions *d);
-
-#endif

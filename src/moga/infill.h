@@ -18,8 +18,7 @@
  * Sources     Zhang and Li, IEEE Trans. Evol. Comput. 11 (2007) 712-731 (PBI)
  *             Zhang and Golovin, Random hypervolume scalarizations for provable multi-objective black box optimization,
  *             ICML 2020 (rays) */
-#ifndef IMTET_MOGA_INFILL_H
-#define IMTET_MOGA_INFILL_H
+#pragma once
 
 #include "moga/directions.h"
 
@@ -52,5 +51,3 @@ size_t infill_pick(Infill *q, unsigned char allowed[]);
 
 /* A candidate that another criterion picked, or that is pending: lowers best_w. */
 void infill_take(Infill *q, size_t candidate);
-
-#endif

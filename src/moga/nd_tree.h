@@ -11,8 +11,7 @@
  * Errors     STATUS_NO_MEMORY
  * Source     Jaszkiewicz and Lust, ND-tree-based update: a fast algorithm for the dynamic nondominance problem,
  *            IEEE Trans. Evol. Comput. 22 (2018) 778-791 */
-#ifndef IMTET_MOGA_ND_TREE_H
-#define IMTET_MOGA_ND_TREE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -32,5 +31,3 @@ Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change,
 
 /* An empty tree gets n points of which it is known that none dominates another: several times as fast as one by one. */
 Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err);
-
-#endif

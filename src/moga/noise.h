@@ -11,8 +11,7 @@
  *
  * Threads  pure functions on the caller's memory
  * Source   Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3 (variances moderated by a common one) */
-#ifndef IMTET_MOGA_NOISE_H
-#define IMTET_MOGA_NOISE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ NoiseModel noise_fit(size_t n, const size_t rows[], const size_t replicates[], s
 
 /* s^2 of one design. */
 double noise_variance(const NoiseModel *model, double mean, double S, size_t replicates);
-
-#endif

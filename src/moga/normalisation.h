@@ -6,8 +6,7 @@
  *
  * Threads  pure functions on the caller's memory
  * Source   Deb and Jain (see moga/search.h), section IV.C. */
-#ifndef IMTET_MOGA_NORMALISATION_H
-#define IMTET_MOGA_NORMALISATION_H
+#pragma once
 
 #include <stddef.h>
 
@@ -28,5 +27,3 @@ static inline double normalised(const Normalisation *q, size_t k, double f)
 {
     return (f - q->ideal[k]) / q->width[k];
 }
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Memory   all of it in state_create
  * Threads  one; predictions and descents use several */
-#ifndef IMTET_MOGA_OFFSPRING_H
-#define IMTET_MOGA_OFFSPRING_H
+#pragma once
 
 #include "moga/batch.h"
 #include "moga/population.h"
@@ -43,5 +42,3 @@ size_t offspring_select(Offspring *o, const Breeding *w, Batch *b);
 
 /* Environmental selection; step: of the random stream. */
 void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step);
-
-#endif

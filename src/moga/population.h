@@ -4,8 +4,7 @@
  *
  * Life cycle  population_create -> population_add ... population_keep ... -> population_free; n_max is fixed
  * Threads     one writer. */
-#ifndef IMTET_MOGA_POPULATION_H
-#define IMTET_MOGA_POPULATION_H
+#pragma once
 
 #include "base/pack.h"
 #include "base/status.h"
@@ -35,5 +34,3 @@ void population_keep(Population *p, size_t n, const size_t kept[]);       /* asc
 
 /* All members, which are evaluated: rows of the archive, with objectives and violation as they were estimated. */
 void population_pack(Population *population, Pack *p, const Archive *a);
-
-#endif

@@ -1,13 +1,10 @@
 /* moga/replication.h -- which noisy designs are evaluated again (docs/noise.md).
  *
  * Threads  one */
-#ifndef IMTET_MOGA_REPLICATION_H
-#define IMTET_MOGA_REPLICATION_H
+#pragma once
 
 #include "moga/batch.h"
 
 /* Replicates of designs that the search builds on, after n designs of a batch; returns the new n. The criteria have
  * measured the front. importance: (archive.n) scratch. */
 size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t importance[], size_t n);
-
-#endif

@@ -3,8 +3,7 @@
  * Life cycle  screening_begin -> (screening_take, screening_update ...) ... -> screening_free
  * Memory      grows with the screened designs
  * Threads     one */
-#ifndef IMTET_MOGA_SCREENING_H
-#define IMTET_MOGA_SCREENING_H
+#pragma once
 
 #include "moga/batch.h"
 
@@ -47,5 +46,3 @@ const void *screening_parts(const Screening *q, const Common *c, const double x[
 Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
 Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
 int screening_is_due(const Screening *q, const Common *c); /* designs are to be finished, and there is room */
-
-#endif

@@ -52,8 +52,7 @@
  *               bounds)
  *               Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
  * Constants     moga/constants.h; what each is worth: docs/search.md */
-#ifndef IMTET_MOGA_SEARCH_H
-#define IMTET_MOGA_SEARCH_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "moga/config.h"
@@ -110,5 +109,3 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
  * is STATUS_BAD_DATA. A search that has reached its limits evaluates nothing and does not call observe. */
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err);
-
-#endif

@@ -11,8 +11,7 @@
  * Memory      all of it in selection_create, for at most n_max designs
  * Threads     one Selection per thread
  * Source      Deb and Jain (see moga/search.h). */
-#ifndef IMTET_MOGA_SELECTION_H
-#define IMTET_MOGA_SELECTION_H
+#pragma once
 
 #include "base/random.h"
 #include "moga/directions.h"
@@ -25,5 +24,3 @@ Status selection_create(Selection **out, size_t n_max, const Directions *directi
 /* Selects min(n, keep) of F (n, n_obj), violation (n) or NULL; selected holds their rows in ascending order. */
 size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,
                         size_t selected[]);
-
-#endif

@@ -3,8 +3,7 @@
  * that it changes and moga/common.h; everybody else reads search.h.
  *
  * Threads  one; the simulator and predictions of the surrogate use several */
-#ifndef IMTET_MOGA_STATE_H
-#define IMTET_MOGA_STATE_H
+#pragma once
 
 #include "base/clock.h"
 #include "base/pack.h"
@@ -64,5 +63,3 @@ size_t generation_samples(const Search *s); /* size of the initial sample withou
 Status generation_first(Search *s, Err *err);
 Status generation_next(Search *s, Err *err);
 Status generation_last(Search *s, Err *err); /* asynchronous: what is under way when the search ends */
-
-#endif

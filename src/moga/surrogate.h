@@ -17,8 +17,7 @@
  * Life cycle  surrogate_create -> (surrogate_fit -> surrogate_predict ...) ... -> surrogate_free
  * Memory      all in surrogate_create but the selection of centres, which grows with the archive
  * Threads     predictions and descents are shared out over OpenMP threads and stored by index */
-#ifndef IMTET_MOGA_SURROGATE_H
-#define IMTET_MOGA_SURROGATE_H
+#pragma once
 
 #include "moga/archive.h"
 #include "moga/infill.h"
@@ -64,5 +63,3 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
 
 /* State that outlives a generation; surrogate_fit makes the rest. */
 void surrogate_pack(Surrogate *s, Pack *p);
-
-#endif

@@ -10,8 +10,7 @@
  * Threads  no state but the random stream handed in
  * Sources  Deb and Agrawal, Complex Systems 9 (1995) 115-148; the bounded forms as in Deb's NSGA-II code;
  *          McKay, Beckman and Conover, Technometrics 21 (1979) 239-245. */
-#ifndef IMTET_MOGA_VARIATION_H
-#define IMTET_MOGA_VARIATION_H
+#pragma once
 
 #include "base/random.h"
 #include "evaluate/problem.h"
@@ -34,5 +33,3 @@ void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const dou
 /* After mutation: a whole number or a choice that is no longer what it was moves by 1 at least, to another word. */
 void mutate_discrete(Random *r, size_t n_var, const VariableKind kind[], const double lower[], const double upper[],
                      const double before[], double x[]);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
  * Threads    no state; the same samples every time */
-#ifndef IMTET_MOTION_BUILTIN_H
-#define IMTET_MOTION_BUILTIN_H
+#pragma once
 
 #include "base/option.h"
 #include "motion/motion.h"
@@ -16,5 +15,3 @@ const char *builtin_name(const char *source);
 
 /* source: with "builtin:". */
 Status builtin_motion(Motion *m, const char *source, Err *err);
-
-#endif

@@ -9,8 +9,7 @@
  * move by less than a step, which Motion.warning says. A force that is not 0 in the last row falls to 0 within a step.
  *
  * Ownership  as of the Motion. Errors  STATUS_BAD_DATA with file, line and column. Threads  no state */
-#ifndef IMTET_MOTION_FORCES_H
-#define IMTET_MOTION_FORCES_H
+#pragma once
 
 #include "motion/motion.h"
 
@@ -22,5 +21,3 @@ Status forces_place(Motion *m, Err *err);
 
 /* [N] on floor j = 0.. at time t [s]. */
 double motion_force(const Motion *m, int j, double t);
-
-#endif

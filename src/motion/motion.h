@@ -7,8 +7,7 @@
  * Ownership   accel, force and force_rows belong to the Motion
  * Units       SI; the unit of a file is converted once, here
  * Threads     read-only after motion_prepare */
-#ifndef IMTET_MOTION_MOTION_H
-#define IMTET_MOTION_MOTION_H
+#pragma once
 
 #include "base/status.h"
 #include "motion/options.h"
@@ -41,5 +40,3 @@ double motion_peak(const Motion *m); /* [m/s2] */
 enum { MOTION_PEAK_TEXT_MAX = 96 };
 void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX]);
 void motion_free(Motion *m);
-
-#endif

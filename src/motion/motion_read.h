@@ -20,8 +20,7 @@
  *
  * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
  * Threads    no state */
-#ifndef IMTET_MOTION_MOTION_READ_H
-#define IMTET_MOTION_MOTION_READ_H
+#pragma once
 
 #include "motion/motion.h"
 #include "motion/options.h"
@@ -41,5 +40,3 @@ Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
 
 /* The same from bytes in memory; `path` only names it in messages. */
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err);
-
-#endif

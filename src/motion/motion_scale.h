@@ -36,8 +36,7 @@
  * Errors   STATUS_BAD_DATA: a cutoff beyond half the sampling rate, fewer samples than the base line has
  *          coefficients, a motion of zeros, one that does not move an oscillator of that period, an absurd scale
  * Threads  no state */
-#ifndef IMTET_MOTION_MOTION_SCALE_H
-#define IMTET_MOTION_MOTION_SCALE_H
+#pragma once
 
 #include "motion/motion.h"
 #include "motion/options.h"
@@ -91,5 +90,3 @@ int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX]);
 
 /* As recorded: none of them. */
 void motion_unscale(MotionOptions *o);
-
-#endif

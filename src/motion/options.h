@@ -1,8 +1,7 @@
 /* motion/options.h -- how the ground moves: section [motion].
  *
  * Plain values, SI units. */
-#ifndef IMTET_MOTION_OPTIONS_H
-#define IMTET_MOTION_OPTIONS_H
+#pragma once
 
 #include "base/option.h"
 
@@ -31,5 +30,3 @@ typedef struct {
     double dt_s;                   /* 0: from the file */
     char forces[OPTION_TEXT_MAX];  /* a CSV file (motion/forces.h) or none */
 } MotionOptions;
-
-#endif

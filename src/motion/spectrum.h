@@ -7,8 +7,7 @@
  *   Arias = pi / (2 g) int a^2 dt  [m/s],  CAV = int |a| dt  [m/s],  D5-95 = time from 5 % to 95 % of Arias  [s]
  *
  * Threads  no state */
-#ifndef IMTET_MOTION_SPECTRUM_H
-#define IMTET_MOTION_SPECTRUM_H
+#pragma once
 
 #include "motion/motion.h"
 
@@ -23,5 +22,3 @@ void motion_figures(const Motion *m, MotionFigures *out);
 
 /* At each sample, all (n): velocity [m/s], displacement [m] and Husid's curve, the share 0..1 of Arias so far. */
 void motion_histories(const Motion *m, double velocity[], double displacement[], double husid[]);
-
-#endif

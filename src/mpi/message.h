@@ -15,8 +15,7 @@
  * are the same program on the same kind of machine.
  *
  * Threads  MPI is called by one thread at a time (MPI_THREAD_SERIALIZED) */
-#ifndef IMTET_MPI_MESSAGE_H
-#define IMTET_MPI_MESSAGE_H
+#pragma once
 
 #include <time.h>
 
@@ -89,5 +88,3 @@ Status serve(ReopenFn reopen, Err *err);
 
 /* The name of this machine, cut where it is too long. */
 void host_name(char host[HOST_MAX]);
-
-#endif

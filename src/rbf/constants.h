@@ -1,6 +1,5 @@
 /* rbf/constants.h -- every tuned constant of the interpolant, one a line; see moga/constants.h. */
-#ifndef IMTET_RBF_CONSTANTS_H
-#define IMTET_RBF_CONSTANTS_H
+#pragma once
 
 /* -- tune.c: Rprop on the logarithms of scales, warp and nugget ---------------------------------------------------- */
 
@@ -27,5 +26,3 @@ static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in varianc
 /* -- rbf.c --------------------------------------------------------------------------------------------------------- */
 
 static const double ADDITIVE_SHARE = 0.5; /* of the kernel is its additive part, the rest is as without it */
-
-#endif

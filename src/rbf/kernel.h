@@ -5,8 +5,7 @@
  * |s|^2 in the last row; stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
  *
  * Threads  pure functions. */
-#ifndef IMTET_RBF_KERNEL_H
-#define IMTET_RBF_KERNEL_H
+#pragma once
 
 #include <stddef.h>
 
@@ -64,5 +63,3 @@ void kernel_multiply(size_t n, const double factor[], double values[]);
 
 /* v[i] = (w[i] w_j / s2 - v[i]) slope[i]: the terms of the likelihood's gradient of one column. */
 void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[]);
-
-#endif

@@ -1,6 +1,5 @@
 /* rbf/model.h -- what the interpolant is made of; for rbf.c (fit, prediction), tune.c and their test. */
-#ifndef IMTET_RBF_MODEL_H
-#define IMTET_RBF_MODEL_H
+#pragma once
 
 #include "base/status.h"
 #include "rbf/kernel.h"
@@ -110,5 +109,3 @@ Status model_take(Rbf *m, size_t n, const double X[], const double F[], const do
 
 /* Fits every output with its form and scales to what was taken. */
 void model_fit(Rbf *m);
-
-#endif

@@ -30,8 +30,7 @@
  *             Wendland, Adv. Comput. Math. 4 (1995) 389-396 (psi)
  *             Snoek, Swersky, Zemel and Adams, Input warping for Bayesian optimization of non-stationary functions,
  *             ICML 2014 (the idea of v) */
-#ifndef IMTET_RBF_RBF_H
-#define IMTET_RBF_RBF_H
+#pragma once
 
 #include "base/pack.h"
 #include "base/status.h"
@@ -67,5 +66,3 @@ size_t rbf_left_out(const Rbf *m); /* outputs that the last fit left out */
 
 /* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all of the model's state. */
 void rbf_pack(Rbf *m, Pack *p);
-
-#endif

@@ -35,8 +35,7 @@
  * refused, and so are floors below 1e3 kg where other units would make them heavier.
  *
  * Ownership  building_load allocates, building_free releases (an empty Building is fine). Threads  read-only after. */
-#ifndef IMTET_SCENE_BUILDING_H
-#define IMTET_SCENE_BUILDING_H
+#pragma once
 
 #include "base/status.h"
 #include "scene/core_beam.h"
@@ -89,5 +88,3 @@ void building_join_core(const CoreBeam *c, const BuildingModel *building, double
 
 /* [Hz] of the lowest n modes of that. */
 Status building_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err);
-
-#endif

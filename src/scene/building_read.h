@@ -2,8 +2,7 @@
  * forms).
  *
  * Ownership  building_read allocates, building_files_free releases, after a failure too. Threads  no state */
-#ifndef IMTET_SCENE_BUILDING_READ_H
-#define IMTET_SCENE_BUILDING_READ_H
+#pragma once
 
 #include "base/status.h"
 #include "scene/frame.h"
@@ -29,5 +28,3 @@ void building_files_free(BuildingFiles *b);
 
 /* Is a file of this name read from the folder of a building? */
 int building_reads(const char *name);
-
-#endif

@@ -31,8 +31,7 @@
  * against complex modes).
  *
  * Mode shapes are mass-normalised as in scene/building.h. Threads  no state. */
-#ifndef IMTET_SCENE_CORE_BEAM_H
-#define IMTET_SCENE_CORE_BEAM_H
+#pragma once
 
 #include "base/status.h"
 #include "scene/foundation.h"
@@ -85,5 +84,3 @@ CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_ba
 Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err);
 const char *core_theory_word(CoreTheory theory);
-
-#endif

@@ -22,8 +22,7 @@
  * refused; t_top_m > t_base_m is let pass; the caller judges.
  *
  * Ownership  design_read allocates, design_free releases (an empty Designs is fine). Threads  no state */
-#ifndef IMTET_SCENE_DESIGN_H
-#define IMTET_SCENE_DESIGN_H
+#pragma once
 
 #include "base/status.h"
 #include "base/csv.h"
@@ -78,5 +77,3 @@ Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *
 /* The same of a table that is read already; its numbers pass over to the designs. */
 Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err);
 void design_free(Designs *d);
-
-#endif

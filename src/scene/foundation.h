@@ -20,8 +20,7 @@
  * Threads  no state
  * Source   J. P. Wolf, Foundation Vibration Analysis Using Simple Physical Models (1994), ch. 2; uplift: J. P. Wolf,
  *          Nucl. Eng. Des. 38 (1976) 357-384; ASCE 7-16, table 20.3-1; ASCE 41-17, table 8-2 */
-#ifndef IMTET_SCENE_FOUNDATION_H
-#define IMTET_SCENE_FOUNDATION_H
+#pragma once
 
 #include "base/status.h"
 
@@ -44,5 +43,3 @@ double foundation_loss(double K, double C, double omega);
 
 /* C_theta at frequency omega [rad/s]. */
 double foundation_rotation_dashpot(const Foundation *f, double omega);
-
-#endif

@@ -34,8 +34,7 @@
  *
  * Ownership  frame_read and the frame_add functions allocate, frame_free releases (an empty Frame is fine).
  * Threads  no state */
-#ifndef IMTET_SCENE_FRAME_H
-#define IMTET_SCENE_FRAME_H
+#pragma once
 
 #include "base/csv.h"
 #include "base/status.h"
@@ -121,5 +120,3 @@ Status frame_full_make(FrameFull *full, int n, Err *err);
 /* Allocates; frame_full_free releases (an empty one is fine). */
 Status frame_reduce(const Frame *f, FrameKept kept, FrameFull *out, Err *err);
 void frame_full_free(FrameFull *full);
-
-#endif

@@ -8,8 +8,7 @@
  * In the CoreBeam the nodes above `top` have no mass and no stiffness, and as many modes stand still.
  *
  * Errors  STATUS_BAD_DATA in words. Threads  no state */
-#ifndef IMTET_SCENE_NEIGHBOUR_H
-#define IMTET_SCENE_NEIGHBOUR_H
+#pragma once
 
 #include "scene/building.h"
 
@@ -27,5 +26,3 @@ const char *core_word(const CoreOptions *o);
 /* The core beside or inside building b, of whose options the neighbour is read; thicknesses are those of a beam. */
 Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, const Building *b, double t_base_m,
                  double t_top_m, Err *err);
-
-#endif

@@ -15,12 +15,9 @@
  * Units      an OpenSees model says none: the caller does
  * Ownership  opensees_read allocates the Frame, frame_free releases it, after a failure too
  * Threads    an interpreter of its own per call */
-#ifndef IMTET_SCENE_OPENSEES_H
-#define IMTET_SCENE_OPENSEES_H
+#pragma once
 
 #include "scene/frame.h"
 
 /* One unit of length in m, of force in N; that of mass is force s2 / length. */
 Status opensees_read(Frame *f, const char *path, double length_m, double force_n, Err *err);
-
-#endif

@@ -1,8 +1,7 @@
 /* scene/options.h -- what is built: sections [building], [core], [design].
  *
  * Plain values, SI units. */
-#ifndef IMTET_SCENE_OPTIONS_H
-#define IMTET_SCENE_OPTIONS_H
+#pragma once
 
 #include "base/option.h"
 
@@ -75,5 +74,3 @@ typedef struct {
     long gap_zones, bumper_zones;                       /* 0: one per floor */
     NumberList gap_m, thickness_m, bumper_n_m, width_m; /* each from, to */
 } DesignOptions;                                        /* the design variables and their bounds */
-
-#endif

@@ -10,8 +10,7 @@
  * out.
  *
  * Threads  no state */
-#ifndef IMTET_SCENE_REDUCTION_H
-#define IMTET_SCENE_REDUCTION_H
+#pragma once
 
 #include "scene/frame.h"
 
@@ -22,5 +21,3 @@ Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, 
  * one, shapes psi (m, m) with the floors first, resembles most: the largest (phi_i' M psi_k)^2, the share of mode k's
  * kinetic energy in that shape. -1: the floors' motion along x has less than half of it (vertical modes). */
 void reduction_alike(int n, const double phi[], const double M[], int m, const double psi[], int like[]);
-
-#endif

@@ -3,8 +3,7 @@
  * from. A sheet is read by a table of its columns.
  *
  * Threads  no state */
-#ifndef IMTET_SCENE_SHEETS_H
-#define IMTET_SCENE_SHEETS_H
+#pragma once
 
 #include "base/csv.h"
 #include "base/status.h"
@@ -40,5 +39,3 @@ typedef struct {
     Column column[COLUMNS_MAX]; /* the rest has no names */
 } SheetForm;
 Status sheet_take(const SheetForm *form, const char *model, void *user, Err *err);
-
-#endif

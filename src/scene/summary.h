@@ -5,8 +5,7 @@
  *   content      half the sampling rate of the motion: above it the samples hold nothing
  *
  * Threads  no state */
-#ifndef IMTET_SCENE_SUMMARY_H
-#define IMTET_SCENE_SUMMARY_H
+#pragma once
 
 #include "scene/building.h"
 #include "motion/motion.h"
@@ -50,5 +49,3 @@ static const double PERIOD_ERROR_MAX = 0.01;
 Status condensation_warnings(const Building *b, const BuildingOptions *o, WarnFn warn, void *user, Err *err);
 void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,
                     WarnFn warn, void *user);
-
-#endif

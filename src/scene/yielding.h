@@ -6,8 +6,7 @@
  * so that K - c B' diag(k) B, what is left where all have yielded, stays positive definite.
  *
  * Threads  no state */
-#ifndef IMTET_SCENE_YIELDING_H
-#define IMTET_SCENE_YIELDING_H
+#pragma once
 
 #include "base/status.h"
 
@@ -15,5 +14,3 @@
  * 0 where it does. hardening: as wanted; becomes 1 - c. Errors: STATUS_BAD_DATA, a storey without stiffness. */
 Status yielding_parts(int n, const double K_elastic[], const double M[], const double K[], const double yield_m[],
                       double *hardening, double k[], Err *err);
-
-#endif

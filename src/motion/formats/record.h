@@ -3,8 +3,7 @@
  * Life cycle  Record r = {0} -> read -> record_free      (also after a failure)
  * Ownership   row belongs to the Record
  * Units       of the file: a sample is scale * row[first + i stride].a in the channel's unit */
-#ifndef IMTET_MOTION_FORMATS_RECORD_H
-#define IMTET_MOTION_FORMATS_RECORD_H
+#pragma once
 
 #include "motion/formats/text.h"
 
@@ -124,5 +123,3 @@ int line_is_marker(const Lines *l);
 Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err);
 
 Status fail_too_short(const Lines *l, const char *what, Err *err);
-
-#endif

@@ -1,8 +1,7 @@
 /* motion/formats/text.h -- lines, numbers and units of text files that Fortran programs and people have written.
  *
  * Threads  no state.   Errors  "PATH:LINE: what was found" */
-#ifndef IMTET_MOTION_FORMATS_TEXT_H
-#define IMTET_MOTION_FORMATS_TEXT_H
+#pragma once
 
 #include "base/csv.h"
 #include "motion/options.h"
@@ -44,5 +43,3 @@ MotionUnit unit_of(const char *from, const char *to);
 /* Is the text a unit of anything, or a multiple of one, "kN", "m/s", "-", "% of g", and no component or remark, "N-S",
  * "filtered"? */
 int is_quantity(const char *from, const char *to);
-
-#endif
