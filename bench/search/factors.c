@@ -68,6 +68,8 @@ static Status make_course(const FactorPlan *plan, const Problem *p, Which which,
     Settings s = *plan->settings;
     s.search.seed = seed;
     TRY(course_create(c, n, p->n_obj, err));
+    if (which == PLAIN && plan->against_random)
+        s.search.initial = (long)n;
     return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
 }
 
@@ -81,8 +83,11 @@ static Status get_course(const FactorPlan *plan, const Problem *p, const Family 
     int found = 0;
     if (!plan->keep)
         return make_course(plan, p, which, seed, n, c, err);
-    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, which == OURS ? "imtet" : "plain", n,
-             seed);
+    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name,
+             which == OURS          ? "imtet"
+             : plan->against_random ? "random"
+                                    : "plain",
+             n, seed);
     TRY(course_load(c, path, n, p->n_obj, &found, err));
     if (found)
         return STATUS_OK;

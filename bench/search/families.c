@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "bench/search/mixed.h"
 
 typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
@@ -65,17 +66,52 @@ static const Recipe RECIPES[] = {
     {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
     {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, FAIL_NEVER, 0, 0, 0, 0},
     {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
+    {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3},
+     SPHERE,
+     CONCAVE,
+     FAIL_NEVER,
+     0,
+     0,
+     0,
+     0},
+    {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3},
+     ROSENBROCK,
+     CONVEX,
+     FAIL_NEVER,
+     0,
+     0,
+     0,
+     0},
+    {{"beam2", "welded beam of four materials", 6, 2, 4, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"reducer2", "speed reducer with whole teeth", 7, 2, 11, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"vessel2", "pressure vessel of plates", 4, 2, 2, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
+
+/* Which of the last variables are whole numbers and choices, or what stands in the place of all parts. */
+typedef struct {
+    const char *name;
+    size_t n_whole, n_choice;
+    const Mixed *mixed;
+} Mix;
+
+static const Mix MIXES[] = {{"mixed7", 6, 6, NULL},
+                            {"mixed3", 4, 4, NULL},
+                            {"beam2", 0, 0, &MIXED_BEAM},
+                            {"reducer2", 0, 0, &MIXED_REDUCER},
+                            {"vessel2", 0, 0, &MIXED_VESSEL}};
+enum { N_MIXES = sizeof MIXES / sizeof *MIXES };
 
 /* A recipe with its constants. */
 typedef struct {
     Recipe recipe;
+    const Mix *mix;                                 /* NULL: all variables are real */
     double shift[FAMILY_VAR_MAX];                   /* of the distance's zero */
     double turn[FAMILY_VAR_MAX][FAMILY_VAR_MAX];    /* orthogonal */
     double minimum[FAMILY_OBJ_MAX][FAMILY_VAR_MAX]; /* of each quadratic */
     double weight[FAMILY_OBJ_MAX][FAMILY_VAR_MAX];
     double lower[FAMILY_VAR_MAX], upper[FAMILY_VAR_MAX];
+    VariableKind kind[FAMILY_VAR_MAX];
 } Made;
 
 size_t family_count(void)
@@ -217,10 +253,26 @@ static int fails(const Made *m, const double x[])
     return 0;
 }
 
-static void evaluate(const Made *m, const double x[], double f[], double g[])
+static const double WORDS[] = {0.0, 0.75, 0.25, 1.0, 0.5}, TENTHS = 10.0;
+
+/* What stands for whole numbers and choices. */
+static void to_unit(const Made *m, const double x[], double u[])
+{
+    for (size_t j = 0; j < m->recipe.family.n_var; j++)
+        u[j] = m->kind[j] == VARIABLE_CHOICE  ? WORDS[(size_t)x[j]]
+               : m->kind[j] == VARIABLE_WHOLE ? x[j] / TENTHS
+                                              : x[j];
+}
+
+static void evaluate(const Made *m, const double design[], double f[], double g[])
 {
     const Family *a = &m->recipe.family;
-    double y[FAMILY_VAR_MAX];
+    double x[FAMILY_VAR_MAX], y[FAMILY_VAR_MAX];
+    if (m->mix && m->mix->mixed) {
+        m->mix->mixed->evaluate(design, f, g);
+        return;
+    }
+    to_unit(m, design, x);
     if (m->recipe.front == QUADRATICS) {
         quadratics(m, x, f);
     } else {
@@ -249,8 +301,11 @@ static size_t place_on_simplex(size_t n_obj, const double w[], double x[])
 size_t family_place(const Problem *p, const double w[], double share, double x[])
 {
     const Made *m = p->self;
-    memcpy(x, m->shift, p->n_var * sizeof *x);
-    if (m->recipe.front == QUADRATICS)
+    for (size_t j = 0; j < p->n_var; j++)
+        x[j] = m->kind[j] == VARIABLE_WHOLE    ? round(TENTHS * m->shift[j])
+               : m->kind[j] == VARIABLE_CHOICE ? 4.0
+                                               : m->shift[j];
+    if (m->recipe.front == QUADRATICS || (m->mix && m->mix->mixed))
         return 0;
     if (m->recipe.front != CURVE)
         return place_on_simplex(p->n_obj, w, x);
@@ -323,6 +378,33 @@ static void draw_turn(Random *r, size_t n, double turn[][FAMILY_VAR_MAX])
     }
 }
 
+static const Mix *mix_of(const char *name)
+{
+    for (size_t i = 0; i < N_MIXES; i++)
+        if (strcmp(MIXES[i].name, name) == 0)
+            return &MIXES[i];
+    return NULL;
+}
+
+/* The distance's zero goes where whole numbers and choices can be. */
+static void set_kinds(Made *m)
+{
+    const Mix *mix = m->mix;
+    const size_t n = m->recipe.family.n_var, first = n - mix->n_whole - mix->n_choice;
+    for (size_t j = first; j < n; j++) {
+        const int is_whole = j < first + mix->n_whole;
+        m->kind[j] = is_whole ? VARIABLE_WHOLE : VARIABLE_CHOICE;
+        m->upper[j] = is_whole ? TENTHS : 4.0;
+        m->shift[j] = is_whole ? round(TENTHS * m->shift[j]) / TENTHS : WORDS[4];
+    }
+    for (size_t j = 0; mix->mixed && j < n; j++) {
+        m->kind[j] = mix->mixed->kind[j];
+        m->lower[j] = mix->mixed->lower[j];
+        m->upper[j] = mix->mixed->upper[j];
+        m->shift[j] = 0.5 * (m->lower[j] + m->upper[j]);
+    }
+}
+
 static void draw(Made *m, size_t i)
 {
     Random r = random_stream((uint32_t)i, RANDOM_TEST, 1, 0);
@@ -346,12 +428,16 @@ Status family_open(Problem *p, size_t i, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
     m->recipe = RECIPES[i];
     draw(m, i);
+    m->mix = mix_of(a->name);
+    if (m->mix)
+        set_kinds(m);
     *p = (Problem){.n_var = a->n_var,
                    .n_obj = a->n_obj,
                    .n_con = a->n_con,
                    .n_extra = a->n_con,
                    .lower = m->lower,
                    .upper = m->upper,
+                   .kind = m->mix ? m->kind : NULL,
                    .judge = judge,
                    .user = m,
                    .simulator = &FAMILY,

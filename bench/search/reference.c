@@ -33,7 +33,9 @@ static void improve(const Problem *p, size_t fixed, const double w[], Random *ra
     for (size_t i = 0; i < STEPS_PER_VARIABLE * p->n_var; i++) {
         Point next = *best;
         for (size_t d = fixed; d < p->n_var; d++)
-            next.x[d] = fmin(fmax(next.x[d] + step * random_normal(random), p->lower[d]), p->upper[d]);
+            next.x[d] = fmin(fmax(next.x[d] + step * (p->upper[d] - p->lower[d]) * random_normal(random), p->lower[d]),
+                             p->upper[d]);
+        problem_repair(p, next.x);
         measure(p, w, &next);
         const int better = is_better(&next, best);
         step = fmin(step * (better ? exp(0.8) : exp(-0.2)), 0.3);
@@ -52,7 +54,7 @@ static Point least_from(const Problem *p, size_t fixed, const double w[], Random
         Point at = *zero;
         while (at.violation > 0.0) {
             for (size_t d = fixed; d < p->n_var; d++)
-                at.x[d] = p->lower[d] + (p->upper[d] - p->lower[d]) * random_uniform(random);
+                at.x[d] = problem_spread(p, d, random_uniform(random));
             measure(p, w, &at);
         }
         improve(p, fixed, w, random, &at);
