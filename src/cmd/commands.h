@@ -12,6 +12,7 @@
     X(STATUS)                                                                                                          \
     X(CHOOSE)                                                                                                          \
     X(POLISH)                                                                                                          \
+    X(SIMPLIFY)                                                                                                        \
     X(REPORT)                                                                                                          \
     X(SERVE)                                                                                                           \
     X(BUILDING)                                                                                                        \

@@ -309,6 +309,10 @@ static Status split(const char *option, const char *text, double otherwise, char
         return fail(err, STATUS_USAGE, "%s: '%.60s' is not NAME=NUMBER", option, text);
     snprintf(name, TABLE_NAME_MAX, "%.*s", (int)length, text);
     *value = text[length] ? strtod(text + length + 1, &end) : otherwise;
+    if (text[length] && end > text + length + 1 && *end == '%') {
+        *value *= 0.01;
+        end++;
+    }
     if (text[length] && (end == text + length + 1 || *end || !isfinite(*value)))
         return fail(err, STATUS_USAGE, "%s: '%.60s' has no number behind =", option, text);
     return STATUS_OK;

@@ -9,14 +9,17 @@ const BASELINE_NOTE = {
 // ---- heights
 
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
+// A gap as wide as this stands for no stop at all (src/study/simplify.h).
+const NO_STOP_M = 10;
+
 function gapFigure(host, d) {
   const gaps = variables.filter((c) => /^gap_/.test(c.name)), [low, high] = gaps[0]?.bounds ?? [NaN, NaN];
   const sides = d.gap_side_m ? [["right", 1, d.gap_side_m[0]], ["left", -1, d.gap_side_m[1]]] : [["", 1, d.gap_m]];
-  const rows = sides.flatMap(([side, sign, list]) => list.flatMap((g, j) => (g === null ? [] : [{ side, sign, g, j }]))).map(({ side, sign, g, j }) => ({ floor: j + 1, side, gap: sign * 1e3 * g, bumper: d.bumper_n_m[j], closes: d.with_core.closings?.[j] !== 0, bound: gaps.length ? atBound(gaps[0], 1e3 * g) : 0 }));
+  const rows = sides.flatMap(([side, sign, list]) => list.flatMap((g, j) => (g === null || g >= NO_STOP_M ? [] : [{ side, sign, g, j }]))).map(({ side, sign, g, j }) => ({ floor: j + 1, side, gap: sign * 1e3 * g, bumper: d.bumper_n_m[j], closes: d.with_core.closings?.[j] !== 0, bound: gaps.length ? atBound(gaps[0], 1e3 * g) : 0 }));
   const isBoth = !d.gap_side_m, bounds = [low, high].flatMap((b) => sides.map(([, sign]) => sign * b));
   const soft = Math.min(...d.bumper_n_m), hard = Math.max(...d.bumper_n_m);
   const stiffness = soft === hard ? `${show(soft / 1e6)} MN/m` : `${show(soft / 1e6)} to ${show(hard / 1e6)} MN/m`;
-  const bumpers = hard > 0 ? ` Bumpers of ${stiffness}.` : "";
+  const bumpers = `${hard > 0 ? ` Bumpers of ${stiffness}.` : ""}${rows.length < sides.length * d.gap_m.length ? " Where no bar is there is no stop." : ""}`;
   const words = (r) => `floor ${r.floor}${r.side && `, ${r.side}`}: ${show(Math.abs(r.gap))} mm${r.bound ? ", at a bound" : ""}${r.closes ? "" : ", never closes"}${r.bumper > 0 ? `, bumper ${show(r.bumper / 1e6)} MN/m` : ""}`;
   figure(host, "Gaps over the height", `${isBoth ? "Clearance between floor and core on either side." : "How far a floor may go to the left (drawn to the left of 0) and to the right before it meets the core."}${bumpers}`, (width) => chart({
     width, height: 380, ariaLabel: "Gap of every floor", x: { label: isBoth ? "gap [mm]" : "gap to the left and to the right [mm]", grid: true, zero: true, nice: true, tickFormat: (v) => String(Math.abs(v)) }, y: floorAxis(d.gap_m.length), color: { type: "identity" }, symbol: { type: "identity" },

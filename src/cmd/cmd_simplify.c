@@ -1,0 +1,163 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/list.h"
+#include "cmd/commands.h"
+#include "cmd/designs.h"
+#include "cmd/show.h"
+#include "settings/options.h"
+#include "store/run_read.h"
+#include "store/store.h"
+#include "study/simplify.h"
+
+static const double KEPT = 0.02, KEPT_OTHERS = 0.1;
+
+typedef struct {
+    RunStore *store;
+    Run run;
+    size_t row;
+    SimplifyConfig config;
+    Simplified result;
+} Work;
+
+/* "5" or "5mm", in m. */
+static Status take_mm(const char *option, const char *text, double *value, Err *err)
+{
+    char *end;
+    const double mm = strtod(text, &end);
+    if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm > 0.0 && mm <= 1e4))
+        return fail(err, STATUS_USAGE, "%s: '%.40s' is no length in mm, as 5 or 5mm", option, text);
+    *value = 1e-3 * mm;
+    return STATUS_OK;
+}
+
+static Status take_plates(const char *list, SimplifyConfig *c, Err *err)
+{
+    char item[32];
+    c->n_plates = list_count(list);
+    if (c->n_plates > PLATES_MAX)
+        return fail(err, STATUS_USAGE, "--plates: more than %d", PLATES_MAX);
+    for (size_t i = 0; i < c->n_plates; i++) {
+        if (!list_item(list, i, item, sizeof item))
+            return fail(err, STATUS_USAGE, "--plates: item %zu is empty or too long", i + 1);
+        TRY(take_mm("--plates", item, &c->plate[i], err));
+        if (i > 0 && c->plate[i] <= c->plate[i - 1])
+            return fail(err, STATUS_USAGE, "--plates: give them in ascending order: %s stands behind a thicker one",
+                        item);
+    }
+    return STATUS_OK;
+}
+
+static Status take_options(const Args *args, Work *w, Err *err)
+{
+    const Schema *schema = &w->run.schema;
+    SimplifyConfig *c = &w->config;
+    for (size_t k = 0; k < schema->n_obj; k++)
+        c->slack[k] = args_has(args, "--keep") ? INFINITY : k == 0 ? KEPT : KEPT_OTHERS;
+    if (args_has(args, "--keep"))
+        TRY(pairs_take(schema, "--keep", args_value(args, "--keep"), KEPT, c->slack, err));
+    if (args_has(args, "--gap-step"))
+        TRY(take_mm("--gap-step", args_value(args, "--gap-step"), &c->gap_step, err));
+    return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
+}
+
+static Status open_run(const Args *args, Work *w, Err *err)
+{
+    RecordPaths moved;
+    const char *word = args_value(args, "--design");
+    TRY(run_wanted(args->operand, err));
+    TRY(store_open(&w->store, args->operand, 0, err));
+    TRY(store_read(w->store, &w->run, err));
+    TRY(design_of_run(&w->run, word ? word : "knee", &w->row, NULL, err));
+    TRY(take_options(args, w, err));
+    TRY(args_moved(args, &moved, err));
+    return record_paths_find(w->run.settings, w->run.provenance, &moved, err);
+}
+
+static void show_path(const Work *w)
+{
+    static const char *const WORDS[] = {"as it is", "idle stops gone", "on steps", "moved on steps", "fewer stops"};
+    const Simplified *r = &w->result;
+    json_t *table = json_array();
+    for (size_t i = 0; i < r->n; i++) {
+        char label[64];
+        const Evaluation *e = &r->designs.row[i];
+        snprintf(label, sizeof label, "%s: %zu", WORDS[i], r->n_stops[i]);
+        figures_design(table, label, 0, &w->run.schema, e->f, r->error[i], e->sd, e->extra);
+    }
+    figures_print(table);
+    puts("behind the colon: stops that are left");
+}
+
+/* Name and number of every variable, gaps and plates in mm. */
+static void show_design(const Work *w, const double x[])
+{
+    const Schema *s = &w->run.schema;
+    putchar('\n');
+    for (size_t j = 0; j < s->n_var; j++)
+        if ((int)j < s->design.n_gaps && x[j] >= SIMPLIFY_OPEN_M)
+            printf("%-20s no stop\n", schema_variable(s, j)->name);
+        else if ((int)j < s->design.n_gaps + s->design.n_walls)
+            printf("%-20s %g mm\n", schema_variable(s, j)->name, 1e3 * x[j]);
+        else
+            printf("%-20s %g\n", schema_variable(s, j)->name, x[j]);
+}
+
+static Status simplify(const Args *args, Work *w, Err *err)
+{
+    long id = 0;
+    TRY(open_run(args, w, err));
+    TRY(simplify_design(&w->run, w->row, &w->config, &w->result, err));
+    const Simplified *r = &w->result;
+    const Evaluation *last = &r->designs.row[r->n - 1];
+    printf("design %ld of %s, %zu designs simulated, %.1f s\n\n", w->run.table.row[w->row].id, w->run.folder,
+           r->n_evaluated, r->seconds);
+    show_path(w);
+    show_design(w, last->x);
+    if (r->loss[r->n - 1] > 1.0) {
+        printf("\nOn these steps it loses %.3g times what may be lost: finer steps, more plates or another --keep.\n",
+               r->loss[r->n - 1]);
+        return STATUS_OK;
+    }
+    TRY(store_polished(w->store, last, (size_t)w->run.tried_to_polish, (size_t)w->run.polished_at, &id, err));
+    printf("\nstored in the run as design %ld.\n", id);
+    Run now;
+    TRY(store_write_front(w->store, &now, err));
+    run_free(&now);
+    return STATUS_OK;
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Work w = {0};
+    const Status status = simplify(args, &w, err);
+    simplified_free(&w.result);
+    run_free(&w.run);
+    store_free(w.store);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
+    {"--gap-step", "MM", NULL, 0, "gaps become multiples of it; they stay if not given"},
+    {"--plates", "MM,MM,...", NULL, 0, "walls become one of these; they stay if not given"},
+    {"--keep", "NAME[=S],...", NULL, 0,
+     "these may lose the share S of their value, 2% where none is given; if not given the first 2%, all others 10%"},
+    OPTION_MOVED,
+    OPTION_END,
+};
+
+const Command CMD_SIMPLIFY = {
+    .name = "simplify",
+    .group = GROUP_DECIDE,
+    .operand = "RUN",
+    .summary = "a design that can be built: fewer stops, gaps and plates as sold",
+    .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
+    .details =
+        "Takes out stops that never close, puts gaps and walls on steps, moves them on these, and takes out what\n"
+        "earns less than --keep, each simulated under all records of RUN. Prints the path; the end goes into the\n"
+        "run as a design of the kind polished.",
+    .options = OPTIONS,
+    .run = run,
+};

@@ -1,0 +1,287 @@
+#include "study/simplify.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/estimate.h"
+#include "base/clock.h"
+#include "evaluate/adapter.h"
+#include "settings/options.h"
+
+enum { ROUNDS = 50 };
+
+typedef struct {
+    const Run *run;
+    const SimplifyConfig *config;
+    Simplified *out;
+    Adapter *adapter;
+    Queue *queue;
+    const DesignSpace *space;
+    size_t n_var, n_obj, n_max;
+    double first[OBJECTIVES_MAX]; /* minimised objectives of the start */
+    double *x;                    /* (n_var) so far */
+    double *X, *F, *G;            /* (n_max, n_var) (n_max, n_obj) (n_max, n_con) designs of a round */
+    unsigned char *ok;            /* (n_max) */
+    size_t n;                     /* of them */
+} Simplify;
+
+/* -- designs of a round -------------------------------------------------------------------------------------------- */
+
+static int is_open(const Simplify *s, size_t j, double gap)
+{
+    return (int)j < s->space->n_gaps && gap >= SIMPLIFY_OPEN_M;
+}
+
+size_t simplify_n_stops(const DesignSpace *space, const double x[])
+{
+    size_t n = 0;
+    for (int j = 0; j < space->n_gaps; j++)
+        n += x[j] < SIMPLIFY_OPEN_M;
+    return n;
+}
+
+/* The present design with variable j at `value`. */
+static void add(Simplify *s, size_t j, double value)
+{
+    double *x = s->X + s->n++ * s->n_var;
+    memcpy(x, s->x, s->n_var * sizeof *x);
+    x[j] = value;
+}
+
+static double loss_of(const Simplify *s, const double f[])
+{
+    double loss = -INFINITY;
+    for (size_t k = 0; k < s->n_obj; k++)
+        if (isfinite(s->config->slack[k]))
+            loss = fmax(loss, (f[k] - s->first[k]) / fmax(s->config->slack[k] * fabs(s->first[k]), 1e-300));
+    return loss;
+}
+
+/* Simulates the round; returns the design with the least loss, s->n: none succeeds and keeps the limits. */
+static Status find_least(Simplify *s, size_t *least, double *loss, Err *err)
+{
+    const Problem *p = adapter_problem(s->adapter);
+    for (size_t i = 0; i < s->n; i++)
+        problem_repair(p, s->X + i * s->n_var);
+    TRY(queue_evaluate(s->queue, s->n, s->X, NULL, s->F, s->G, s->ok, err));
+    s->out->n_evaluated += s->n;
+    *least = s->n;
+    *loss = INFINITY;
+    for (size_t i = 0; i < s->n; i++) {
+        const double now = loss_of(s, s->F + i * s->n_obj);
+        if (s->ok[i] && violation_of(p->n_con, s->G + i * p->n_con) == 0.0 && now < *loss) {
+            *least = i;
+            *loss = now;
+        }
+    }
+    return STATUS_OK;
+}
+
+/* The present design with all its numbers, as the next one of the path. */
+static Status note(Simplify *s, Simplification what, Err *err)
+{
+    Finished done;
+    Simplified *out = s->out;
+    TRY(queue_ask(s->queue, &(Asked){.x = s->x}, err));
+    TRY(queue_next(s->queue, &done, err));
+    if (done.evaluation->outcome != OUTCOME_OK)
+        return fail(err, STATUS_BAD_DATA, "the design fails when it is simulated again (%s %s): choose another one",
+                    outcome_word(done.evaluation->outcome), done.evaluation->reason);
+    if (what == SIMPLIFY_START)
+        memcpy(s->first, done.f, s->n_obj * sizeof *done.f);
+    out->loss[what] = loss_of(s, done.f);
+    out->n_stops[what] = simplify_n_stops(s->space, s->x);
+    out->n_evaluated++;
+    out->n = (size_t)what + 1;
+    return evaluation_table_append(&out->designs, done.evaluation, err);
+}
+
+/* -- the path ------------------------------------------------------------------------------------------------------ */
+
+static void add_removals(Simplify *s)
+{
+    s->n = 0;
+    for (size_t j = 0; (int)j < s->space->n_gaps; j++)
+        if (!is_open(s, j, s->x[j]))
+            add(s, j, SIMPLIFY_OPEN_M);
+}
+
+static Status drop_idle_stops(Simplify *s, Err *err)
+{
+    size_t least;
+    double loss;
+    add_removals(s);
+    TRY(find_least(s, &least, &loss, err));
+    for (size_t i = 0, j = 0; i < s->n; i++, j++) {
+        while (is_open(s, j, s->x[j]))
+            j++;
+        const int is_idle = s->ok[i] && memcmp(s->F + i * s->n_obj, s->first, s->n_obj * sizeof *s->F) == 0;
+        s->x[j] = is_idle ? SIMPLIFY_OPEN_M : s->x[j];
+    }
+    return note(s, SIMPLIFY_CLOSING, err);
+}
+
+static size_t nearest_plate(const SimplifyConfig *c, double t)
+{
+    size_t best = 0;
+    for (size_t i = 1; i < c->n_plates; i++)
+        if (fabs(c->plate[i] - t) < fabs(c->plate[best] - t))
+            best = i;
+    return best;
+}
+
+static int is_wall(const Simplify *s, size_t j)
+{
+    return (int)j >= s->space->n_gaps && (int)j < s->space->n_gaps + s->space->n_walls;
+}
+
+static Status put_on_steps(Simplify *s, Err *err)
+{
+    const SimplifyConfig *c = s->config;
+    for (size_t j = 0; j < s->n_var; j++)
+        if (is_wall(s, j) && c->n_plates > 0)
+            s->x[j] = c->plate[nearest_plate(c, s->x[j])];
+        else if ((int)j < s->space->n_gaps && !is_open(s, j, s->x[j]) && c->gap_step > 0.0)
+            s->x[j] = fmax(round(s->x[j] / c->gap_step), 1.0) * c->gap_step;
+    return note(s, SIMPLIFY_STEPS, err);
+}
+
+static void add_neighbours(Simplify *s)
+{
+    const SimplifyConfig *c = s->config;
+    s->n = 0;
+    for (size_t j = 0; j < s->n_var; j++) {
+        if (is_wall(s, j) && c->n_plates > 0) {
+            const size_t at = nearest_plate(c, s->x[j]);
+            if (at > 0)
+                add(s, j, c->plate[at - 1]);
+            if (at + 1 < c->n_plates)
+                add(s, j, c->plate[at + 1]);
+        } else if ((int)j < s->space->n_gaps && !is_open(s, j, s->x[j]) && c->gap_step > 0.0) {
+            const double steps = round(s->x[j] / c->gap_step);
+            add(s, j, (steps + 1.0) * c->gap_step);
+            if (steps > 1.0)
+                add(s, j, (steps - 1.0) * c->gap_step);
+        }
+    }
+}
+
+static Status descend_on_steps(Simplify *s, Err *err)
+{
+    double loss = s->out->loss[SIMPLIFY_STEPS];
+    for (int round = 0; round < ROUNDS && loss > 1.0; round++) {
+        size_t least;
+        double now;
+        add_neighbours(s);
+        TRY(find_least(s, &least, &now, err));
+        if (!(now < loss))
+            break;
+        memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
+        loss = now;
+    }
+    return note(s, SIMPLIFY_MOVED, err);
+}
+
+static Status drop_what_earns_little(Simplify *s, Err *err)
+{
+    for (;;) {
+        size_t least;
+        double loss;
+        add_removals(s);
+        TRY(find_least(s, &least, &loss, err));
+        if (!(loss <= 1.0))
+            return note(s, SIMPLIFY_FEWER, err);
+        memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
+    }
+}
+
+static Status reserve(Simplify *s, const double start[], Err *err)
+{
+    const size_t n_con = adapter_problem(s->adapter)->n_con;
+    s->n_max = 2 * s->n_var;
+    TRY_ROOM(s->x, s->n_var, "variables", err);
+    TRY_ROOM(s->X, s->n_max * s->n_var, "designs", err);
+    TRY_ROOM(s->F, s->n_max * s->n_obj, "designs", err);
+    TRY_ROOM(s->G, s->n_max * n_con + 1, "designs", err);
+    TRY_ROOM(s->ok, s->n_max, "designs", err);
+    memcpy(s->x, start, s->n_var * sizeof *s->x);
+    return STATUS_OK;
+}
+
+static void close_simulator(Simplify *s)
+{
+    queue_close(s->queue);
+    adapter_close(s->adapter);
+    s->queue = NULL;
+    s->adapter = NULL;
+}
+
+static Status open_simulator(Simplify *s, const SimOptions *sim, Err *err)
+{
+    Settings settings = *s->run->settings;
+    settings.sim = *sim;
+    close_simulator(s);
+    TRY(adapter_open(&s->adapter, &settings, err));
+    adapter_observe(s->adapter, &(Observer){.go_on = s->config->go_on, .user = s->config->user});
+    return queue_open(&s->queue, adapter_problem(s->adapter), QUEUE_AS_ASKED, 0, err);
+}
+
+/* What twice the steps change in the designs of the path. */
+static Status find_errors(Simplify *s, Err *err)
+{
+    SimOptions finer;
+    const EvaluationTable *path = &s->out->designs;
+    if (!estimate_options(&s->run->settings->sim, &finer))
+        return STATUS_OK;
+    TRY(open_simulator(s, &finer, err));
+    TRY(queue_evaluate(s->queue, path->n, path->x, NULL, s->F, s->G, s->ok, err));
+    for (size_t i = 0; i < path->n; i++)
+        for (size_t k = 0; k < s->n_obj && s->ok[i]; k++)
+            s->out->error[i][k] = fabs(fabs(s->F[i * s->n_obj + k]) - fabs(path->row[i].f[k]));
+    return STATUS_OK;
+}
+
+static Status walk(Simplify *s, const double start[], Err *err)
+{
+    TRY(open_simulator(s, &s->run->settings->sim, err));
+    TRY(reserve(s, start, err));
+    TRY(note(s, SIMPLIFY_START, err));
+    TRY(drop_idle_stops(s, err));
+    TRY(put_on_steps(s, err));
+    TRY(descend_on_steps(s, err));
+    if (s->out->loss[SIMPLIFY_MOVED] <= 1.0)
+        TRY(drop_what_earns_little(s, err));
+    return find_errors(s, err);
+}
+
+Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config, Simplified *out, Err *err)
+{
+    const Schema *schema = &run->schema;
+    const double begun = clock_seconds();
+    Simplify s = {.run = run,
+                  .config = config,
+                  .out = out,
+                  .space = &schema->design,
+                  .n_var = schema->n_var,
+                  .n_obj = schema->n_obj};
+    *out = (Simplified){.designs = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
+    for (size_t i = 0; i < SIMPLIFY_PATH * OBJECTIVES_MAX; i++)
+        out->error[i / OBJECTIVES_MAX][i % OBJECTIVES_MAX] = NAN;
+    if (run->settings->problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "%s: simplify is for designs of a tower, with gaps and plates", run->folder);
+    const Status status = walk(&s, run_x(run, row), err);
+    close_simulator(&s);
+    free(s.x);
+    free(s.X);
+    free(s.F);
+    free(s.G);
+    free(s.ok);
+    out->seconds = clock_seconds() - begun;
+    return status;
+}
+
+void simplified_free(Simplified *s)
+{
+    evaluation_table_free(&s->designs);
+    *s = (Simplified){0};
+}
