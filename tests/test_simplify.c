@@ -7,7 +7,7 @@
 
 #define STEP 0.01
 static const double PLATES[] = {0.008, 0.012, 0.02, 0.03};
-static Run run;
+static Run study;
 static size_t row; /* its knee */
 
 static int make_run(void **state)
@@ -19,14 +19,14 @@ static int make_run(void **state)
     free(output_of("optimize @/s.ini --out @/run"));
     Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
-    row = run_knee(&run);
+    CHECK_OK(run_read(&study, path_of("run", path), &err), &err);
+    row = run_knee(&study);
     return 0;
 }
 
 static int end_run(void **state)
 {
-    run_free(&run);
+    run_free(&study);
     return clear_place(state);
 }
 
@@ -34,7 +34,7 @@ static SimplifyConfig config_of(double slack)
 {
     SimplifyConfig c = {.gap_step = STEP, .n_plates = N_OF(PLATES)};
     memcpy(c.plate, PLATES, sizeof PLATES);
-    for (size_t k = 0; k < run.schema.n_obj; k++)
+    for (size_t k = 0; k < study.schema.n_obj; k++)
         c.slack[k] = k == 0 ? slack : INFINITY;
     return c;
 }
@@ -43,7 +43,7 @@ static Simplified simplified(const SimplifyConfig *c)
 {
     Simplified s;
     Err err = {0};
-    CHECK_OK(simplify_design(&run, row, c, &s, &err), &err);
+    CHECK_OK(simplify_design(&study, row, c, &s, &err), &err);
     return s;
 }
 
@@ -60,7 +60,7 @@ TEST(the_path_loses_stops_only_and_ends_on_steps_within_what_may_be_lost)
     assert_int_equal(s.n, SIMPLIFY_PATH);
     for (size_t i = 1; i < s.n; i++)
         assert_at_most(s.n_stops[i], s.n_stops[i - 1]);
-    for (int j = 0; j < run.schema.design.n_gaps; j++) {
+    for (int j = 0; j < study.schema.design.n_gaps; j++) {
         assert_true(e[SIMPLIFY_CLOSING].x[j] == e[SIMPLIFY_START].x[j] || e[SIMPLIFY_CLOSING].x[j] == SIMPLIFY_OPEN_M);
         assert_less(off_step(e[s.n - 1].x[j], STEP), 1e-9);
     }
@@ -75,8 +75,8 @@ TEST(the_start_is_the_design_of_the_run_and_idle_stops_change_no_bit)
     const SimplifyConfig c = config_of(0.05);
     Simplified s = simplified(&c);
     const Evaluation *e = s.designs.row;
-    assert_memory_equal(e[SIMPLIFY_START].x, run_x(&run, row), run.schema.n_var * sizeof *e->x);
-    assert_memory_equal(e[SIMPLIFY_START].f, e[SIMPLIFY_CLOSING].f, run.schema.n_obj * sizeof *e->f);
+    assert_memory_equal(e[SIMPLIFY_START].x, run_x(&study, row), study.schema.n_var * sizeof *e->x);
+    assert_memory_equal(e[SIMPLIFY_START].f, e[SIMPLIFY_CLOSING].f, study.schema.n_obj * sizeof *e->f);
     assert_less(s.n_stops[SIMPLIFY_CLOSING], s.n_stops[SIMPLIFY_START]);
     simplified_free(&s);
 }
@@ -89,9 +89,9 @@ TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goe
     simplified_free(&s);
     c = (SimplifyConfig){0};
     s = simplified(&c);
-    for (size_t k = 0; k < run.schema.n_obj; k++)
-        assert_at_most(s.designs.row[s.n - 1].f[k] * (run.schema.column[run.schema.n_var + k].sense),
-                       s.designs.row[0].f[k] * run.schema.column[run.schema.n_var + k].sense);
+    for (size_t k = 0; k < study.schema.n_obj; k++)
+        assert_at_most(s.designs.row[s.n - 1].f[k] * (study.schema.column[study.schema.n_var + k].sense),
+                       s.designs.row[0].f[k] * study.schema.column[study.schema.n_var + k].sense);
     simplified_free(&s);
 }
 
@@ -101,8 +101,8 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
     assert_non_null(strstr(said, "stored in the run as design 41"));
     free(said);
     free(output_of("simulate @/s.ini --design @/run:41"));
-    expect(64, "--gap-step: 'wide' is no length in mm", "simplify @/run --gap-step wide");
-    expect(64, "--plates: give them in ascending order", "simplify @/run --plates 12,8");
+    expect(2, "--gap-step: 'wide' is no length in mm", "simplify @/run --gap-step wide");
+    expect(2, "--plates: give them in ascending order", "simplify @/run --plates 12,8");
 }
 
 int main(void)
