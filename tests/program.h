@@ -15,6 +15,15 @@
 
 #include "base/csv.h"
 
+/* A tower of six floors whose gaps close, in a few seconds of a record: what the program does with twenty floors, in a
+ * tenth of the time. As options and as a settings file. */
+#define SIX_FLOORS                                                                                                     \
+    "--set building.model=configs/neighbours/tower --set core.width_m=5 --set design.gap_m=0.001,0.05 "                \
+    "--set motion.stretch=1 "
+#define SIX_FLOORS_INI                                                                                                 \
+    "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"                               \
+    "[design]\ngap_m = 0.001, 0.05\n[motion]\npga_g = 0.3\n"
+
 typedef struct {
     int code; /* exit status */
     char *out, *err;

@@ -5,9 +5,8 @@
 #include "study/study.h"
 
 #define STUDY                                                                                                          \
-    "optimize configs/quick.ini --threads 2 --set search.initial=30 --set search.population=16 "                       \
-    "--set search.polish=0 --set sim.duration_s=30 --set sim.accuracy=coarse --set design.gap_m=0.001,0.02 --out "     \
-    "@/run --max-evals "
+    "optimize configs/quick.ini " SIX_FLOORS "--threads 2 --set search.initial=30 --set search.population=16 "         \
+    "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --out @/run --max-evals "
 
 static const double PROMISED[] = {1e-3, 3e-3, 1e-2}; /* of J1, J2, J3: docs/promise.md */
 
@@ -41,8 +40,7 @@ static size_t named_of(const Run *run, size_t rows[])
 static void simulate(long id, const char *accuracy, double j[3])
 {
     char words[300];
-    snprintf(words, sizeof words,
-             "simulate configs/quick.ini --json --set sim.duration_s=30 --set sim.accuracy=%s --design @/run:%ld",
+    snprintf(words, sizeof words, "simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld",
              accuracy, id);
     json_t *o = json_of(words);
     j[0] = number(o, "j1_m");
