@@ -2,7 +2,8 @@
 
 #include <float.h>
 #include <lapacke.h>
-#include <math.h>
+
+#include "base/status.h"
 
 /* Best and worst of each objective; width = worst - best, 1 where all are equal. */
 void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], const double F[])
@@ -31,8 +32,10 @@ static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const si
     size_t found = list[0];
     for (size_t i = 0; i < n; i++) {
         double worst = 0.0;
-        for (size_t j = 0; j < m; j++)
-            worst = fmax(worst, normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : OFF_AXIS));
+        for (size_t j = 0; j < m && worst < min; j++) {
+            const double z = normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : OFF_AXIS);
+            worst = MAX_OF(z, worst);
+        }
         if (worst < min) {
             min = worst;
             found = list[i];
