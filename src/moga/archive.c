@@ -1,6 +1,5 @@
 #include "moga/archive.h"
 
-
 #include "base/carve.h"
 #include "base/hash.h"
 #include "base/stat.h"
@@ -48,6 +47,11 @@ static void layout(void *archive, Carve *c)
     CARVE_WIDER(c, a->kind, n, n_max);
     CARVE_WIDER(c, a->on_front, n, n_max);
     CARVE(c, a->slot, a->n_slots);
+    CARVE(c, a->scratch.row, n_max);
+    CARVE(c, a->scratch.value, n_max);
+    CARVE(c, a->scratch.mark, n_max);
+    CARVE(c, a->expected, n_max);
+    CARVE(c, a->is_chosen, n_max);
 }
 
 /* FNV-1a of whole words. */

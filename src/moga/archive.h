@@ -42,6 +42,14 @@ typedef struct {
     double *sd;              /* (n, n_obj) standard deviation of one replicate */
     double *error;           /* (n, n_obj) standard error of the mean */
 
+    struct {
+        size_t *row;
+        double *value;
+        unsigned char *mark;
+    } scratch; /* (n_max) each, for one look at all rows: it is lost where the archive grows, as are the next two */
+    size_t *expected;         /* rows of the front of results and predictions (moga/screening.h) */
+    unsigned char *is_chosen; /* (n) screened designs that are finished in this generation */
+
     size_t *front;    /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
     size_t n_listed;  /* rows of `front` until then: those that have left are among them */
     NdTree *tree;     /* of the front, while there are no replicates; of a restored one when it is asked */

@@ -205,7 +205,7 @@ static void measure_front(Search *s)
         s->scratch.members[i] = i;
     for (int k = 0; k < INFILL_KINDS; k++)
         if (s->screening.n_front > 0)
-            infill_measure(s->criteria.select[k], s->screening.n_front, s->screening.front, a->F);
+            infill_measure(s->criteria.select[k], s->screening.n_front, a->expected, a->F);
         else if (a->n_front > 0)
             infill_measure(s->criteria.select[k], a->n_front, a->front, a->F);
         else
@@ -257,7 +257,7 @@ Status generation_next(Search *s, Err *err)
         n = n_new = choose_batch(s); /* 3, 4 */
         if (n == 0 && queue_pending(c->queue) == 0)
             return sample_again(s, err);
-        n = replication_add(c, &s->criteria, &s->batch, s->rows.importance, n);
+        n = replication_add(c, &s->criteria, &s->batch, n);
         TRY(screening_finish(&s->screening, c, &s->batch, &n, err));
     }
     TRY(evaluate(s, n_new, n, err)); /* 5 */

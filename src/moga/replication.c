@@ -105,9 +105,10 @@ static size_t pick(const Common *c, const size_t importance[])
 
 /* The front has been measured, as it is now. Extremes with a single replicate go alone: where they prove wrong there
  * are others next time, which are then replicated before anything else. */
-static size_t append(const Common *c, const Criteria *q, Batch *b, size_t importance[], size_t n, size_t limit)
+static size_t append(const Common *c, const Criteria *q, Batch *b, size_t n, size_t limit)
 {
     const Archive *a = &c->archive;
+    size_t *importance = a->scratch.row;
     int extremes_alone = 0;
     if (a->n_front == 0 || n >= limit)
         return n;
@@ -123,10 +124,10 @@ static size_t append(const Common *c, const Criteria *q, Batch *b, size_t import
     return n;
 }
 
-size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t importance[], size_t n)
+size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t n)
 {
     const size_t left = common_left(c), asked = c->archive.n + queue_pending(c->queue) + n,
                  due = replicates_due(c, asked);
     const size_t room = MIN_OF(b->size_max, left);
-    return append(c, q, b, importance, n, MIN_OF(room, n + due));
+    return append(c, q, b, n, MIN_OF(room, n + due));
 }

@@ -34,9 +34,6 @@ void screening_free(Screening *q)
         free(q->design[i].parts);
     free(q->design);
     free(q->y);
-    free(q->front);
-    free(q->is_chosen);
-    free(q->rows);
 }
 
 /* Output k, an objective or a limit, of a row of the archive; of screened design i by the cheap level; by the whole
@@ -114,9 +111,7 @@ static Status grow(Screening *q, Err *err)
     q->design = design ? design : q->design;
     double *y = realloc(q->y, n_max * q->n_out * sizeof *y);
     q->y = y ? y : q->y;
-    size_t *rows = realloc(q->rows, n_max * sizeof *rows);
-    q->rows = rows ? rows : q->rows;
-    if (!design || !y || !rows)
+    if (!design || !y)
         return fail_memory(err, n_max, "screened designs");
     q->n_max = n_max;
     return STATUS_OK;
@@ -185,13 +180,13 @@ const void *screening_parts(const Screening *q, const Common *c, const double x[
 
 /* -- what the cheap level says of the whole evaluation ------------------------------------------------------------- */
 
-/* Designs that have both levels, in q->rows. */
+/* Designs that have both levels, in scratch of the archive. */
 static size_t find_pairs(Screening *q, const Archive *a)
 {
     q->n_rows = 0;
     for (size_t i = 0; i < q->n; i++)
         if (q->design[i].finished != SIZE_MAX && a->usable[q->design[i].finished])
-            q->rows[q->n_rows++] = i;
+            a->scratch.row[q->n_rows++] = i;
     return q->n_rows;
 }
 
@@ -206,13 +201,13 @@ static Line fit_line(const Screening *q, const Archive *a, size_t k)
     Line line = {0.0, 0.0, 1.0};
     double xx = 0.0, xy = 0.0;
     for (size_t j = 0; j < q->n_rows; j++) {
-        line.from += cheap_value(q, q->rows[j], k) / n;
-        line.to += whole_value(q, a, q->rows[j], k) / n;
+        line.from += cheap_value(q, a->scratch.row[j], k) / n;
+        line.to += whole_value(q, a, a->scratch.row[j], k) / n;
     }
     for (size_t j = 0; j < q->n_rows; j++) {
-        const double x = cheap_value(q, q->rows[j], k) - line.from;
+        const double x = cheap_value(q, a->scratch.row[j], k) - line.from;
         xx += x * x;
-        xy += x * (whole_value(q, a, q->rows[j], k) - line.to);
+        xy += x * (whole_value(q, a, a->scratch.row[j], k) - line.to);
     }
     line.slope = xx > 0.0 ? xy / xx : 1.0;
     if (!isfinite(line.slope))
@@ -232,7 +227,7 @@ static double agreement_of(const Screening *q, const Archive *a, size_t k)
     double same = 0.0, pairs = 0.0;
     for (size_t j = 0; j < q->n_rows; j++)
         for (size_t i = 0; i < j; i++) {
-            const size_t x = q->rows[j], y = q->rows[i];
+            const size_t x = a->scratch.row[j], y = a->scratch.row[i];
             const int whole = order_of(whole_value(q, a, x, k), whole_value(q, a, y, k));
             same += whole * order_of(cheap_value(q, x, k), cheap_value(q, y, k));
             pairs += whole != 0;
@@ -291,30 +286,21 @@ static Status find_front(Screening *q, const Archive *a, Err *err)
     NdChange change;
     size_t n = 0;
     q->n_open = 0;
-    if (q->front_max < a->n) {
-        free(q->front);
-        free(q->is_chosen);
-        q->front_max = 2 * a->n;
-        q->front = calloc(q->front_max, sizeof *q->front);
-        q->is_chosen = calloc(q->front_max, 1);
-        if (!q->front || !q->is_chosen)
-            return fail_memory(err, q->front_max, "designs");
-    }
-    memset(q->is_chosen, 0, a->n);
+    memset(a->is_chosen, 0, a->n);
     Status status = nd_tree_create(&tree, a->n_obj, err);
     for (size_t row = 0; status == STATUS_OK && row < a->n; row++) {
-        q->front[row] = 0;
+        a->expected[row] = 0;
         if (!a->usable[row] || a->violation[row] > 0.0)
             continue;
         status = nd_tree_insert(tree, a->Y, row, &change, err);
-        q->front[row] = change.is_in;
+        a->expected[row] = change.is_in;
         for (size_t i = 0; change.is_in && i < change.n_removed; i++)
-            q->front[change.removed[i]] = 0;
+            a->expected[change.removed[i]] = 0;
     }
     for (size_t row = 0; row < a->n; row++)
-        if (q->front[row]) {
+        if (a->expected[row]) {
             q->n_open += a->kind[row] == KIND_SCREENED;
-            q->front[n++] = row;
+            a->expected[n++] = row;
         }
     q->n_front = n;
     nd_tree_free(tree);
@@ -336,9 +322,9 @@ Status screening_update(Screening *q, Archive *a, Err *err)
 
 /* -- finishing ----------------------------------------------------------------------------------------------------- */
 
-static size_t append(Screening *q, const Archive *a, Batch *b, size_t n, size_t row)
+static size_t append(const Archive *a, Batch *b, size_t n, size_t row)
 {
-    q->is_chosen[row] = 1;
+    a->is_chosen[row] = 1;
     return batch_repeat(b, a, n, row, 0);
 }
 
@@ -352,8 +338,8 @@ static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hyper
     for (size_t k = 0; k < m; k++) {
         double min = INFINITY, max = -INFINITY;
         for (size_t i = 0; i < q->n_front; i++) {
-            min = fmin(min, a->Y[q->front[i] * m + k]);
-            max = fmax(max, a->Y[q->front[i] * m + k]);
+            min = fmin(min, a->Y[a->expected[i] * m + k]);
+            max = fmax(max, a->Y[a->expected[i] * m + k]);
         }
         lower[k] = min;
         reference[k] = min + RAY_START * (max > min ? max - min : 1.0);
@@ -376,9 +362,9 @@ static Status append_best(Screening *q, Common *c, Batch *b, size_t *n, size_t l
         size_t best = SIZE_MAX;
         double most = -1.0;
         for (size_t j = 0; j < q->n_front; j++) {
-            const size_t row = q->front[j];
+            const size_t row = a->expected[j];
             const double gain =
-                a->kind[row] == KIND_SCREENED && !q->is_chosen[row] ? hypervolume_gain(h, a->Y + row * a->n_obj) : -1.0;
+                a->kind[row] == KIND_SCREENED && !a->is_chosen[row] ? hypervolume_gain(h, a->Y + row * a->n_obj) : -1.0;
             if (gain > most) {
                 most = gain;
                 best = row;
@@ -387,7 +373,7 @@ static Status append_best(Screening *q, Common *c, Batch *b, size_t *n, size_t l
         if (best == SIZE_MAX)
             break;
         hypervolume_add(h, a->Y + best * a->n_obj);
-        *n = append(q, a, b, *n, best);
+        *n = append(a, b, *n, best);
     }
     hypervolume_free(h);
     return STATUS_OK;
@@ -417,8 +403,8 @@ Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
     if (q->is_on)
         TRY(append_best(q, c, b, n, size, err));
     for (size_t i = 0; i < q->n && *n < size; i++) /* further ones in their order */
-        if (is_open(q, &c->archive, i) && !q->is_chosen[q->design[i].row])
-            *n = append(q, &c->archive, b, *n, q->design[i].row);
+        if (is_open(q, &c->archive, i) && !c->archive.is_chosen[q->design[i].row])
+            *n = append(&c->archive, b, *n, q->design[i].row);
     return STATUS_OK;
 }
 

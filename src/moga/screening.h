@@ -18,13 +18,12 @@ typedef struct {
     size_t is_on;    /* 0: the levels do not agree, or nothing is screened */
     size_t n_out;    /* objectives and constraints */
     size_t n, n_max, n_finished;
-    size_t n_open;                     /* on that front, not finished */
-    Screened *design;                  /* (n) by row */
-    double *y;                         /* (n, n_out) objectives and constraints of the cheap level */
-    double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
-    size_t n_front, front_max, *front; /* rows of the front of results and predictions */
-    unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
-    size_t *rows, n_rows;              /* (n_max) designs that have both levels */
+    size_t n_open;    /* on that front, not finished */
+    Screened *design; /* (n) by row */
+    double *y;        /* (n, n_out) objectives and constraints of the cheap level */
+    double agreement; /* Kendall's tau of the two levels; NAN: not known yet */
+    size_t n_front;   /* of the archive's expected front */
+    size_t n_rows;    /* designs that have both levels */
 } Screening;
 
 void screening_begin(Screening *q, const Common *c);

@@ -47,7 +47,7 @@ static int is_due(const Search *s)
 static Status look_for_convergence(Search *s, Err *err)
 {
     const Archive *a = &s->common.archive;
-    unsigned char *counts = s->rows.counts;
+    unsigned char *counts = a->scratch.mark;
     const size_t cuts[] = {a->n - s->common.config->stop_after, a->n};
     double h[2];
     if (!is_due(s))
@@ -123,7 +123,6 @@ static Status begin(Search *s, const SearchStart *start, StopReason *reason, Err
     if (!start)
         return STATUS_OK;
     TRY(state_restore(s, start, err));
-    TRY(state_grow_rows(s, err));
     reconsider_convergence(s);
     *reason = start->state ? reason_to_stop(s) : STOP_NONE;
     s->common.generation += start->state != NULL;
@@ -135,7 +134,6 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     TRY(begin(s, start, reason, err));
     for (; *reason == STOP_NONE; s->common.generation += *reason == STOP_NONE) {
         TRY(s->common.generation == 0 ? generation_first(s, err) : generation_next(s, err));
-        TRY(state_grow_rows(s, err));
         TRY(look_for_convergence(s, err));
         *reason = reason_to_stop(s);
         if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
@@ -145,7 +143,6 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         return STATUS_OK;
     s->common.generation++;
     TRY(generation_last(s, err));
-    TRY(state_grow_rows(s, err));
     report(s, 1, observe, user);
     return STATUS_OK;
 }

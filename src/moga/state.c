@@ -102,25 +102,7 @@ void state_free(Search *s)
     population_free(&s->offspring.members);
     population_free(&s->offspring.pool);
     free(s->state.bytes);
-    free(s->rows.importance);
-    free(s->rows.counts);
     free(s->store);
-}
-
-Status state_grow_rows(Search *s, Err *err)
-{
-    PerRow *rows = &s->rows;
-    if (s->common.archive.n <= rows->n_max)
-        return STATUS_OK;
-    free(rows->importance);
-    free(rows->counts);
-    rows->n_max = 2 * s->common.archive.n;
-    rows->importance = calloc(rows->n_max, sizeof *rows->importance);
-    rows->counts = calloc(rows->n_max, 1);
-    if (rows->importance && rows->counts)
-        return STATUS_OK;
-    rows->n_max = 0;
-    return fail_memory(err, s->common.archive.n, "designs");
 }
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */

@@ -10,13 +10,6 @@
 #include "moga/offspring.h"
 #include "moga/screening.h"
 
-/* Grows with the archive. */
-typedef struct {
-    size_t n_max;
-    size_t *importance;    /* (n_max) of designs, for replication */
-    unsigned char *counts; /* (n_max) of designs, for convergence */
-} PerRow;
-
 /* Each array has one use. */
 typedef struct {
     size_t *members; /* (pool) 0, 1, ... */
@@ -37,7 +30,6 @@ typedef struct {
     Offspring offspring;
     Batch batch;
     Screening screening;
-    PerRow rows;
     Scratch scratch;
     Pack state;                   /* as of the last report */
     double start;                 /* [s] of the clock */
@@ -54,7 +46,6 @@ static inline double search_seconds(const Search *s)
 /* state.c */
 Status state_create(Search *s, Err *err); /* for its problem and config */
 void state_free(Search *s);
-Status state_grow_rows(Search *s, Err *err); /* after every generation */
 void state_save(Search *s);
 Status state_restore(Search *s, const SearchStart *start, Err *err);
 

@@ -17,7 +17,7 @@ struct Surrogate {
     Rbf *success;       /* 1 where a design succeeded, 0 where it failed */
     int knows_failures; /* it is fitted */
     size_t n_dim;       /* coordinates */
-    size_t n_out, n_max, n_archive_max, predict_max;
+    size_t n_out, n_max, predict_max;
     size_t n, n_tuned; /* centres; size of the archive at the last tuning */
     int fitted;
     double *U, *F;          /* (n_max, n_dim) (n_max, n_out) centres */
@@ -30,8 +30,6 @@ struct Surrogate {
     double *chance;         /* (predict_max) predictions of success */
     double *u, *f, *e;      /* (predict_max, n_dim) (predict_max, n_out) twice */
     void *store;
-    size_t *centre;   /* (n_archive_max) rows of the centres; grows with the archive */
-    double *distance; /* (n_archive_max) of rows from the front */
 };
 
 static size_t descent_length(const Surrogate *s);
@@ -131,26 +129,8 @@ void surrogate_free(Surrogate *s)
         free(s->rbf);
         free(s->success);
         free(s->store);
-        free(s->centre);
-        free(s->distance);
     }
     free(s);
-}
-
-static Status grow(Surrogate *s, size_t n, Err *err)
-{
-    if (n <= s->n_archive_max)
-        return STATUS_OK;
-    free(s->centre);
-    free(s->distance);
-    s->n_archive_max = 2 * n;
-    s->centre = calloc(2 * n, sizeof *s->centre);
-    s->distance = calloc(2 * n, sizeof *s->distance);
-    if (!s->centre || !s->distance) {
-        s->n_archive_max = 0;
-        return fail(err, STATUS_NO_MEMORY, "no memory for the centres among %zu designs", n);
-    }
-    return STATUS_OK;
 }
 
 /* Rows by distance, equal ones by row. */
@@ -177,22 +157,23 @@ static int is_centre(const Archive *a, size_t i)
     return fits;
 }
 
-/* Rows of the centres; returns how many. */
-static size_t select_centres(Surrogate *s, const Archive *a, Infill *near)
+/* Rows of the centres, into the archive's scratch; returns how many. */
+static size_t select_centres(const Surrogate *s, const Archive *a, Infill *near)
 {
-    size_t n = 0;
+    size_t n = 0, *centre = a->scratch.row;
+    double *distance = a->scratch.value;
     for (size_t i = 0; i < a->n; i++)
         if (is_centre(a, i))
-            s->centre[n++] = i;
+            centre[n++] = i;
     if (n <= s->n_max)
         return n;
     for (size_t i = 0; i < n; i++)
-        s->distance[s->centre[i]] = infill_distance(near, a->F + s->centre[i] * a->n_obj);
-    qsort_r(s->centre, n, sizeof *s->centre, compare_rows, s->distance);
+        distance[centre[i]] = infill_distance(near, a->F + centre[i] * a->n_obj);
+    qsort_r(centre, n, sizeof *centre, compare_rows, distance);
     const size_t n_near = s->n_max - s->n_max / SPREAD_CENTRES_SHARE, n_rest = n - n_near, n_spread = s->n_max - n_near;
-    qsort(s->centre + n_near, n_rest, sizeof *s->centre, compare_sizes); /* the rest in the order of evaluation */
+    qsort(centre + n_near, n_rest, sizeof *centre, compare_sizes); /* the rest in the order of evaluation */
     for (size_t i = 0; i < n_spread; i++)
-        s->centre[n_near + i] = s->centre[n_near + i * n_rest / n_spread];
+        centre[n_near + i] = centre[n_near + i * n_rest / n_spread];
     return s->n_max;
 }
 
@@ -237,12 +218,11 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
     s->fitted = 0;
     if (!s->rbf || a->n_usable < 4 || a->n_usable < s->problem->n_var / 2)
         return STATUS_OK;
-    TRY(grow(s, a->n, err));
     s->n = select_centres(s, a, near);
     if (s->n < 4)
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
-        const size_t row = s->centre[i];
+        const size_t row = a->scratch.row[i];
         set_coordinates(s->problem, a->X + row * a->n_var, s->U + i * s->n_dim);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);

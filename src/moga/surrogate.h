@@ -15,7 +15,7 @@
  *
  * Dimension   more than RBF_DIM_MAX coordinates: there is no surrogate
  * Life cycle  surrogate_create -> (surrogate_fit -> surrogate_predict ...) ... -> surrogate_free
- * Memory      all in surrogate_create but the selection of centres, which grows with the archive
+ * Memory      all in surrogate_create
  * Threads     predictions and descents are shared out over OpenMP threads and stored by index */
 #pragma once
 
