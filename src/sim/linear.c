@@ -30,8 +30,10 @@ typedef struct {
     const SimModel *storeys;            /* NULL: none yields */
     int at_force;                       /* [N] of the plastic drifts in the state, behind them their rates */
     double *drift, *answer;             /* (n, 2 m) drifts of a state; (n, n) drift i at the end for a unit rate j */
+    double *change;                     /* (size, size) h d/dt of a state */
     double *spent;                      /* (n) e of sim/storey.h */
     double hysteresis;                  /* [J] */
+    FloorSet yielding;                  /* bilinear storeys in the last step */
     double *D;                          /* (m, m) [1/s] */
     double *Y_ddot;                     /* (m, size) y'' of a state */
     double *coordinates;                /* (n_building + n_core, size) modal coordinates, where forces are wanted */
@@ -88,6 +90,7 @@ static void layout(void *linear, Carve *c)
     CARVE(c, d->drift, d->storeys ? n * m : 0);
     CARVE(c, d->answer, d->storeys ? n * n : 0);
     CARVE(c, d->spent, d->storeys ? n : 0);
+    CARVE(c, d->change, d->storeys ? size * size : 0);
 }
 
 /* -- storeys that yield -------------------------------------------------------------------------------------------- */
@@ -282,6 +285,8 @@ static void set_step(Linear *d, double h, int parts)
         A[(2 * m + d->loads + l) * size + 2 * m + l] = h;
     for (int j = 0; d->storeys && j < d->s->n; j++)
         A[(d->at_force + d->s->n + j) * size + d->at_force + j] = h;
+    if (d->storeys)
+        memcpy(d->change, A, sizeof *A * (size_t)(size * size));
     linalg_exponential(size, A, d->exponential, d->work + size * size);
     raise(size, d->exponential, parts, d->whole, d->work);
     d->h = h;
@@ -368,6 +373,75 @@ static int parts_per_sample(const Linear *d, int parts, double h)
     return n;
 }
 
+/* Bilinear storeys that begin to yield on the way from z0 to z1: the shares x of the step, ascending; returns how many.
+ */
+static int find_kinks(Linear *d, const double z0[], const double z1[], double x[])
+{
+    const SimModel *b = d->storeys;
+    const FloorSet before = d->yielding;
+    double d0[FLOORS_MAX], d1[FLOORS_MAX];
+    int n = 0;
+    d->yielding = 0;
+    drifts_of(d, z0, d0);
+    drifts_of(d, z1, d1);
+    for (int j = 0; j < d->s->n && b->storey_law.kind == HYSTERESIS_BILINEAR; j++) {
+        const double f0 = z0[d->at_force + j], turned = z1[d->at_force + j] - f0;
+        if (turned == 0)
+            continue;
+        const double at = (f0 / b->yield_n_m[j] + copysign(b->yield_m[j], turned) - d0[j]) / (d1[j] - d0[j]);
+        d->yielding |= (FloorSet)1 << j;
+        if (!(at > 0) && before >> j & 1)
+            continue;
+        int i = n++;
+        for (; i > 0 && x[i - 1] > at; i--)
+            x[i] = x[i - 1];
+        x[i] = fmin(fmax(at, 0), 1);
+    }
+    return n;
+}
+
+/* Acceleration is largest where a storey begins to yield, more often than not: there the state is the Hermite cubic
+ * between z0 and z1, with the plastic drifts of the law. t: of z0. */
+static void look_at_kinks(Linear *d, double t, const double z0[], const double z1[])
+{
+    const SimModel *b = d->storeys;
+    const int n = d->s->n, size = d->size, n_q = d->run->forces ? n_coordinates(d) : 0, ground = 2 * d->s->m;
+    double x[FLOORS_MAX], d0[FLOORS_MAX], d1[FLOORS_MAX], spent = 0; /* not of bilinear storeys */
+    double *s0 = d->work, *s1 = s0 + size, *z = s1 + size, *y = z + size, *q = y + d->rows.n;
+    const int kinks = find_kinks(d, z0, z1, x);
+    if (kinks == 0)
+        return;
+    linalg_product(size, size, 1, d->change, z0, s0);
+    linalg_product(size, size, 1, d->change, z1, s1);
+    drifts_of(d, z0, d0);
+    drifts_of(d, z1, d1);
+    for (int k = 0; k < kinks; k++) {
+        const double at = x[k], left = 1 - at, rise = at * at * (3 - 2 * at);
+        for (int i = 0; i < size; i++)
+            z[i] = z0[i] + rise * (z1[i] - z0[i]) + at * left * (left * s0[i] - at * s1[i]);
+        for (int j = 0; j < n; j++)
+            if (b->yield_n_m[j] > 0)
+                z[d->at_force + j] =
+                    b->yield_n_m[j] * storey_advance(&b->storey_law, b->yield_m[j], d0[j], d0[j] + at * (d1[j] - d0[j]),
+                                                     z0[d->at_force + j] / b->yield_n_m[j], &spent);
+        linalg_product(d->rows.n, size, 1, d->outputs, z, y);
+        linalg_product(n_q, size, 1, d->coordinates, z, q);
+        look(d, t + at * d->h, z[ground], y, q);
+        peak_monitor_break(&d->peaks);
+    }
+}
+
+/* After part k of stretch i of count, which began at t; a sample `each` parts after the last one, 0: none. */
+static void show(Linear *d, double t, int i, int k, int count, int each)
+{
+    const double at = k * d->h, ground = d->load[i * d->loads] + d->load_slope[i * d->loads] * at;
+    const size_t column = (size_t)(k * count + i), n_q = d->run->forces ? (size_t)n_coordinates(d) : 0;
+    const double *y = d->Y + column * (size_t)d->rows.n;
+    look(d, t + at, ground, y, d->Q + column * n_q);
+    if (each > 0)
+        send_sample(d, t + at, each * d->h, ground, y + d->rows.u, y + d->rows.acceleration);
+}
+
 /* Columns of Z: the states where the stretches begin, with their loads; d->z goes to where the last one ends. */
 static void find_starts(Linear *d, int count)
 {
@@ -394,6 +468,8 @@ static void cross(Linear *d, double t, double length, int is_whole, int count)
     linalg_product(out, d->size, count, d->outputs, d->Z, d->Y);
     add_power(d, count, d->Z, d->Y, 0.5 * h);
     add_power_slope(d, count, d->Z, d->Y, h * h / 12);
+    if (t == 0 && d->loads > 1) /* a force may begin with a jump; Q is 0 at rest */
+        look(d, 0, d->load[0], d->Y, d->Q);
     for (int k = 1; k <= parts; k++) {
         double *Y = d->Y + (size_t)k * (size_t)(out * count), *before = d->Z;
         linalg_product(d->size, d->size, count, d->exponential, d->Z, d->Z_next);
@@ -405,21 +481,17 @@ static void cross(Linear *d, double t, double length, int is_whole, int count)
         if (d->run->forces)
             linalg_product(n_q, d->size, count, d->coordinates, d->Z, d->Q + (size_t)k * (size_t)(n_q * count));
         add_power(d, count, d->Z, Y, k < parts ? h : 0.5 * h);
+        if (d->storeys) {
+            look_at_kinks(d, t + (k - 1) * h, before, d->Z);
+            show(d, t, 0, k, count, is_whole && k % each == 0 ? each : 0);
+        }
     }
     add_power_slope(d, count, d->Z, d->Y + (size_t)parts * (size_t)(out * count), -h * h / 12);
     if (d->storeys)
         memcpy(d->z, d->Z, (size_t)d->size * sizeof *d->z);
-    if (t == 0 && d->loads > 1) /* a force may begin with a jump; Q is 0 at rest */
-        look(d, 0, d->load[0], d->Y, d->Q);
-    for (int i = 0; i < count; i++)
-        for (int k = 1; k <= parts; k++) {
-            const double *y = d->Y + (size_t)(k * count + i) * (size_t)out,
-                         ground = d->load[i * d->loads] + d->load_slope[i * d->loads] * k * h;
-            look(d, t + i * length + k * h, ground, y,
-                 d->Q + (d->run->forces ? (size_t)(k * count + i) * (size_t)n_q : 0));
-            if (is_whole && k % each == 0)
-                send_sample(d, t + i * length + k * h, each * h, ground, y + d->rows.u, y + d->rows.acceleration);
-        }
+    for (int i = 0; i < count && !d->storeys; i++)
+        for (int k = 1; k <= parts; k++)
+            show(d, t + i * length, i, k, count, is_whole && k % each == 0 ? each : 0);
     d->steps += (long)count * parts;
 }
 

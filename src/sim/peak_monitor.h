@@ -1,7 +1,8 @@
 /* sim/peak_monitor.h -- peaks over continuous time from the points of a step-by-step integration.
  *
  * A parabola through three successive points gives the peak wherever the middle one is the largest by magnitude; the
- * points need not be equidistant. Error about (w h)^4 / 400 of a component of frequency w sampled every h.
+ * points need not be equidistant. Error about (w h)^4 / 400 of a component of frequency w sampled every h. Where the
+ * motion has a kink no parabola goes through it: peak_monitor_break.
  *
  * Threads  no state */
 #ifndef IMTET_SIM_PEAK_MONITOR_H
@@ -56,12 +57,12 @@ static inline void peak_monitor_refine(PeakMonitor *p, const PeakPoint *a, const
         }
 }
 
-/* A point that is not later than the one before is dropped. */
+/* A point that is not later than the one before, or hardly, is dropped: it would give a slope of rounding errors. */
 static inline void peak_monitor_add(PeakMonitor *p)
 {
     PeakPoint *now = peak_monitor_next(p);
     const PeakPoint *before = &p->ring[(p->count + 2) % 3], *oldest = &p->ring[(p->count + 1) % 3];
-    if (p->count > 0 && !(now->t > before->t))
+    if (p->count > 0 && !(now->t > before->t * (1 + 1e-12)))
         return;
     for (int j = 0; j < p->n; j++)
         now->of[PEAK_DRIFT][j] = now->of[PEAK_DISPLACEMENT][j] - (j ? now->of[PEAK_DISPLACEMENT][j - 1] : 0.0);
@@ -72,6 +73,14 @@ static inline void peak_monitor_add(PeakMonitor *p)
     if (p->count > 1)
         peak_monitor_refine(p, oldest, before, now);
     p->count++;
+}
+
+/* A kink at the last point. */
+static inline void peak_monitor_break(PeakMonitor *p)
+{
+    if (p->count > 1)
+        p->ring[0] = p->ring[(p->count - 1) % 3];
+    p->count = p->count > 0;
 }
 
 static inline void peak_monitor_report(const PeakMonitor *p, SimResult *result)

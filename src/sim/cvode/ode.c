@@ -504,7 +504,11 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         if (sample_step(o, t_before, *t) || (o->options->sample && send_samples(o, *t)))
             return RUN_ENGINE_FAILED;
         o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
-        if (switch_flags(o, *t, &to, found) && start_anew(o, *t, t_stop))
+        if (!switch_flags(o, *t, &to, found))
+            continue;
+        if (o->model->yields)
+            peak_monitor_break(&o->account.peaks);
+        if (start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }
     return RUN_OK;

@@ -20,6 +20,7 @@
 #include "sim/fast/free_interval.inc"
 #include "sim/fast/contact_forces.inc"
 #include "sim/fast/record_contact.inc"
+#include "sim/fast/storey_peaks.inc"
 #include "sim/fast/contact_step.inc"
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
