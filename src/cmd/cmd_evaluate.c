@@ -457,9 +457,7 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
     Designs d;
     Chosen c = {.schema = &schema, .word = word};
     TRY(tower_space(s, &space, err));
-    if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(word, &s->sim, c.known, err));
-    TRY(designs_take_one(&d, word, &space, err));
+    TRY(designs_take_one(&d, word, &space, args_gives(args, "sim.accuracy") ? NULL : &s->sim, c.known, err));
     Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {
         c.x = d.x;

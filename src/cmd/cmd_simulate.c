@@ -29,16 +29,6 @@ typedef struct {
     ReplicateSummary *summary; /* (n) where there are some */
 } Job;
 
-/* A building without impacts has no replicates: asked for by name they are refused. */
-static Status choose_parts(const Args *args, const Settings *s, Job *job, Err *err)
-{
-    if (job->kind != SCENE_IMPACT && args_gives(args, "sim.replicates"))
-        return fail(err, STATUS_USAGE,
-                    "--replicates perturbs gaps: it needs a design with gaps, neither none nor --rigid");
-    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);
-    return STATUS_OK;
-}
-
 static Status choose_kind(const Args *args, Job *job, Err *err)
 {
     const char *path = args_value(args, "--design");
@@ -51,28 +41,32 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     return STATUS_OK;
 }
 
-static Status lay_out_job(const Args *args, Job *job, const DesignSpace *space, Err *err)
+/* The designs; of one that a run names also its steps, into the settings. */
+static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
 {
-    const char *path = args_value(args, "--design");
+    DesignSpace space;
+    const char *word = args_value(args, "--design");
+    const int one = args_has(args, "--horizon") || args_has(args, "--sensitivity");
     job->n = 1;
-    if (job->kind != SCENE_NO_CORE) {
-        TRY(designs_take(&job->designs, path, space, err));
-        warn_of_designs(&job->designs, path, warn_on_stderr, NULL);
-        job->n = job->designs.n;
-    }
+    if (job->kind == SCENE_NO_CORE)
+        return STATUS_OK;
+    TRY(tower_space(s, &space, err));
+    TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space,
+                                                args_gives(args, "sim.accuracy") ? NULL : &s->sim, job->known, err));
+    warn_of_designs(&job->designs, word, warn_on_stderr, NULL);
+    job->n = job->designs.n;
+    return STATUS_OK;
+}
+
+static Status lay_out_job(Job *job, Err *err)
+{
     TRY_ROOM(job->tasks, job->n, "simulations", err);
     TRY_ROOM(job->results, job->n, "simulations", err);
     TRY_ROOM(job->summary, job->n, "simulations", err);
     for (size_t i = 0; i < job->n; i++)
-        job->tasks[i] =
-            (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * (size_t)space->n_var] : NULL};
+        job->tasks[i] = (SimTask){.kind = job->kind,
+                                  .x = job->designs.x ? &job->designs.x[i * (size_t)job->designs.space.n_var] : NULL};
     return STATUS_OK;
-}
-
-/* As the run numbers it, else by its row. */
-static long number_of(const Job *job, size_t i)
-{
-    return job->designs.id ? job->designs.id[i] : (long)i + 1;
 }
 
 static Status simulate(const Problem *p, Job *job, Err *err)
@@ -81,7 +75,7 @@ static Status simulate(const Problem *p, Job *job, Err *err)
                        : tower_simulate(p, job->n, job->tasks, job->results, err));
     for (size_t i = 0; i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
-            fprintf(stderr, "design %ld failed: %s\n", number_of(job, i), job->results[i].reason);
+            fprintf(stderr, "design %ld failed: %s\n", design_number(&job->designs, i), job->results[i].reason);
     return STATUS_OK;
 }
 
@@ -105,8 +99,9 @@ static const double *row_of(const double *all, size_t i)
 
 static json_t *describe(const Job *job, size_t i, const Motion *m)
 {
-    json_t *o = json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", number_of(job, i), m->name,
-                        motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed);
+    json_t *o =
+        json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", design_number(&job->designs, i),
+                m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed);
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
         put_errors(o, row_of(job->error, i), row_of(job->sd, i));
@@ -131,7 +126,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     for (size_t i = 0; i < job->n; i++) {
         const Measured m = measured(&job->results[i]);
         json_t *row = figures_row(table);
-        json_put(row, "design=%ld", number_of(job, i));
+        json_put(row, "design=%ld", design_number(&job->designs, i));
         put_measures(row, "", m.value, NULL, NULL);
         if (job->has_parts)
             put_replicates(row, &job->summary[i]);
@@ -153,8 +148,7 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
     puts(job->kind == SCENE_RIGID ? "\nrigidly connected" : "");
     for (size_t i = 0; i < job->n; i++) {
         design_label(&job->designs, args_value(args, "--design"), i, label);
-        figures_result(table, job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i],
-                       row_of(job->error, i), row_of(job->sd, i));
+        figures_result(table, label, order, &job->results[i], row_of(job->error, i), row_of(job->sd, i));
         if (job->has_parts)
             figures_replicates(table, order, &job->summary[i], row_of(job->error, i));
     }
@@ -192,7 +186,7 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
                      .n = job->n,
                      .tasks = job->tasks,
                      .results = job->results,
-                     .id = job->designs.id};
+                     .designs = &job->designs};
     TRY(every_of(args, &times.every_s, err));
     TRY(contacts ? write_contacts(&times, contacts, err) : STATUS_OK);
     TRY(history ? write_histories(&times, history, err) : STATUS_OK);
@@ -202,11 +196,11 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
 /* Options that are wrong or would be left aside. */
 static Status check_times(const Args *args, const Job *job, Err *err)
 {
-    static const char *const WITH_GAPS[] = {"--contacts", "--horizon"};
+    static const char *const WITH_GAPS[] = {"--contacts", "--horizon", "--sensitivity", "sim.replicates"};
     double every_s;
     TRY(every_of(args, &every_s, err));
-    for (int i = 0; i < 2; i++)
-        if (args_has(args, WITH_GAPS[i]) && job->kind != SCENE_IMPACT)
+    for (size_t i = 0; i < N_OF(WITH_GAPS) && job->kind != SCENE_IMPACT; i++)
+        if (args_has(args, WITH_GAPS[i]) || args_gives(args, WITH_GAPS[i]))
             return fail(err, STATUS_USAGE, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
     if (args_has(args, "--every") && !args_has(args, "--history"))
         return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
@@ -243,20 +237,15 @@ static void print_horizon(const Scenario *w, const MeasureOrder *order, const Ho
     figures_print(table);
 }
 
-static Status find_horizon(const Args *args, const Problem *p, Err *err)
+static Status find_horizon(const Args *args, const Problem *p, const double x[], Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
-    Designs d;
     Horizon h;
     ReplicateSummary r;
     SimResult as_designed;
-    TRY(designs_take_one(&d, args_value(args, "--design"), tower_design(tower_of(p)), err));
-    Status status = horizon_find(w, d.x, HORIZON_CHANGE, &h, err);
-    if (status == STATUS_OK)
-        status = tower_replicate(p, 1, d.x, &as_designed, &r, err);
+    TRY(horizon_find(w, x, HORIZON_CHANGE, &h, err));
+    TRY(tower_replicate(p, 1, x, &as_designed, &r, err));
     r.spread = "gaps 1 um off";
-    design_free(&d);
-    TRY(status);
     if (args_has(args, "--json"))
         return print_horizon_json(&h, &r, err);
     print_horizon(w, tower_measures(tower_of(p)), &h, &r);
@@ -264,7 +253,7 @@ static Status find_horizon(const Args *args, const Problem *p, Err *err)
 }
 
 /* Replicates whose gaps differ by what nobody can measure, and nothing else: enough to find a contact that grazes. */
-static Status show_horizon(const Args *args, Settings *s, Err *err)
+static Status show_horizon(const Args *args, Settings *s, const double x[], Err *err)
 {
     Problem p;
     if (s->sim.engine != ENGINE_FAST)
@@ -273,7 +262,7 @@ static Status show_horizon(const Args *args, Settings *s, Err *err)
     s->sim.gap_tolerance_m = ESTIMATE_GAP_M;
     s->sim.uncertain = (UncertainOptions){0};
     TRY(tower_open(&p, s, TOWER_AS_SET, SIZE_MAX, err));
-    const Status status = find_horizon(args, &p, err);
+    const Status status = find_horizon(args, &p, x, err);
     problem_close(&p);
     return status;
 }
@@ -331,26 +320,11 @@ static Status give_slopes(const Args *args, size_t n, const Sensitivity list[], 
     return STATUS_OK;
 }
 
-/* For design_free. */
-static Status take_one_design(const Args *args, const Settings *s, Designs *d, Err *err)
+static Status show_sensitivities(const Args *args, const Settings *s, const double x[], Err *err)
 {
-    DesignSpace space;
-    const char *word = args_value(args, "--design");
-    if (!word || strcmp(word, "none") == 0 || args_has(args, "--rigid"))
-        return fail(err, STATUS_USAGE, "--sensitivity needs --design with gaps, neither none nor --rigid");
-    TRY(tower_space(s, &space, err));
-    return designs_take_one(d, word, &space, err);
-}
-
-static Status show_sensitivities(const Args *args, const Settings *s, size_t n_replicates, Err *err)
-{
-    Designs d = {0};
     Sensitivity *list;
     size_t n;
-    TRY(take_one_design(args, s, &d, err));
-    const Status status = sensitivity_find(s, d.x, n_replicates, &list, &n, err);
-    design_free(&d);
-    TRY(status);
+    TRY(sensitivity_find(s, x, (size_t)s->sim.replicates, &list, &n, err));
     const Status shown = give_slopes(args, n, list, err);
     free(list);
     return shown;
@@ -363,7 +337,7 @@ static Status answer(const Args *args, const Settings *s, const Problem *p, Job 
     const Scenario *w = tower_record(tower_of(p), 0);
     warn_of_settings(s, warn_on_stderr, NULL);
     building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
-    TRY(lay_out_job(args, job, scene_design(w->scene), err));
+    TRY(lay_out_job(job, err));
     TRY(simulate(p, job, err));
     if (args_has(args, "--json") || !args_has(args, "--csv")) /* the only form that has no errors */
         TRY(estimate(p, s, job, err));
@@ -374,35 +348,40 @@ static Status answer(const Args *args, const Settings *s, const Problem *p, Job 
                : fail(err, STATUS_INTERNAL, "the simulation failed: %s", job->results[0].reason);
 }
 
-static Status run(const Args *args, Err *err)
+static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
 {
-    Settings s;
     Problem p;
-    Job job = {0};
-    TRY(choose_kind(args, &job, err));
-    TRY(check_times(args, &job, err));
-    TRY(args_settings(args, &s, NULL, NULL, err));
-    if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(args_value(args, "--design"), &s.sim, job.known, err));
-    if (args_has(args, "--horizon"))
-        return show_horizon(args, &s, err);
-    if (args_has(args, "--sensitivity"))
-        return show_sensitivities(args, &s, (size_t)s.sim.replicates, err);
-    if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
+    if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
-        s.sim.forces = FORCES_YES;
-    TRY(choose_parts(args, &s, &job, err));
-    TRY(tower_open(&p, &s, job.has_parts ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err));
-    const Status status = answer(args, &s, &p, &job, err);
+        s->sim.forces = FORCES_YES;
+    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);
+    TRY(tower_open(&p, s, job->has_parts ? TOWER_AS_SET : TOWER_SINGLE, job->kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
+                   err));
+    const Status status = answer(args, s, &p, job, err);
+    problem_close(&p);
+    return status;
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Settings s;
+    Job job = {0};
+    TRY(choose_kind(args, &job, err));
+    TRY(check_times(args, &job, err));
+    TRY(args_settings(args, &s, NULL, NULL, err));
+    Status status = take_designs(args, &s, &job, err);
+    if (status == STATUS_OK)
+        status = args_has(args, "--horizon")       ? show_horizon(args, &s, job.designs.x, err)
+                 : args_has(args, "--sensitivity") ? show_sensitivities(args, &s, job.designs.x, err)
+                                                   : show_responses(args, &s, &job, err);
     free(job.tasks);
     free(job.results);
     free(job.error);
     free(job.summary);
     design_free(&job.designs);
-    problem_close(&p);
     return status;
 }
 

@@ -1,6 +1,5 @@
 #include "cmd/designs.h"
 
-#include <libgen.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,6 +33,11 @@ static Status drop_results(Table *t, const char *path, const DesignSpace *space,
     return STATUS_OK;
 }
 
+long design_number(const Designs *d, size_t i)
+{
+    return d->id ? d->id[i] : (long)i + 1;
+}
+
 /* Row `row` becomes the only one. */
 static void keep_row(Designs *d, size_t row)
 {
@@ -53,7 +57,7 @@ static Status choose_row(Designs *d, const char *path, const char *choice, Err *
         return fail(err, STATUS_BAD_DATA, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
                     d->id ? "id" : "row, from 1");
     for (size_t i = 0; i < d->n; i++)
-        if ((d->id ? d->id[i] : (long)i + 1) == wanted) {
+        if (design_number(d, i) == wanted) {
             keep_row(d, i);
             return STATUS_OK;
         }
@@ -128,7 +132,29 @@ static Status check_space(const Run *run, const char *folder, const DesignSpace 
                       folder, n_var, space->n_floors, space->n_var);
 }
 
-static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space, Err *err)
+void known_of_run(const Run *run, size_t row, Known known[])
+{
+    const Evaluation *e = &run->table.row[row];
+    const size_t n_obj = run->schema.n_obj;
+    for (size_t k = 0; run_is_unpredictable(run, row) && k < n_obj + run->schema.n_extra; k++)
+        known[run->schema.order.of[k]] = (Known){k < n_obj ? run_f(run, row)[k] : e->extra[k - n_obj], e->err[k]};
+}
+
+/* What the run knows of the design, said where it takes other steps than its settings. */
+static void take_known(const Run *run, size_t row, SimOptions *sim, Known known[])
+{
+    const Evaluation *e = &run->table.row[row];
+    const double before = sim->steps_per_contact;
+    run_steps(run, row, sim);
+    if (sim->steps_per_contact != before)
+        fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n", e->id,
+                ldexp(1.0, (int)e->level));
+    if (known)
+        known_of_run(run, row, known);
+}
+
+static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space,
+                            SimOptions *sim, Known known[], Err *err)
 {
     Run run;
     size_t row;
@@ -138,6 +164,8 @@ static Status take_from_run(Designs *d, const char *folder, const char *choice, 
         status = check_space(&run, folder, space, err);
     if (status == STATUS_OK)
         status = copy_row(d, &run, row, err);
+    if (status == STATUS_OK && sim)
+        take_known(&run, row, sim, known);
     run_free(&run);
     return status;
 }
@@ -152,11 +180,13 @@ typedef struct {
 
 int run_drop_name(char *path)
 {
-    const char *slash = strrchr(path, '/'), *folder;
-    if (strcmp(slash ? slash + 1 : path, "run.sqlite") != 0)
+    char *name = basename(path);
+    if (strcmp(name, "run.sqlite") != 0)
         return 0;
-    folder = dirname(path);
-    memmove(path, folder, strlen(folder) + 1);
+    if (name == path)
+        strcpy(path, ".");
+    else
+        name[name - path > 1 ? -1 : 0] = 0; /* of /run.sqlite the root is left */
     return 1;
 }
 
@@ -181,7 +211,7 @@ static void find_place(const char *word, Place *p)
     p->is_run = run_drop_name(p->path) || run_is_there(p->path);
 }
 
-Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err *err)
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[], Err *err)
 {
     Place p;
     struct stat s;
@@ -191,31 +221,24 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
     find_place(word, &p);
     if (!p.is_run && stat(p.path, &s) == 0 && S_ISDIR(s.st_mode))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", p.path);
-    const Status status =
-        p.is_run ? take_from_run(d, p.path, p.choice, space, err) : take_file(d, p.path, p.choice, space, err);
+    const Status status = p.is_run ? take_from_run(d, p.path, p.choice, space, sim, known, err)
+                                   : take_file(d, p.path, p.choice, space, err);
     if (status != STATUS_OK)
         design_free(d);
     return status;
 }
 
-Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err)
+Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[],
+                        Err *err)
 {
-    TRY(designs_take(d, word, space, err));
+    TRY(designs_take(d, word, space, sim, known, err));
     const size_t n = d->n;
-    const long first = d->id ? d->id[0] : 1;
+    const long first = design_number(d, 0);
     if (n == 1)
         return STATUS_OK;
     design_free(d);
     return fail(err, STATUS_USAGE, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n,
                 word, first);
-}
-
-void known_of_run(const Run *run, size_t row, Known known[])
-{
-    const Evaluation *e = &run->table.row[row];
-    const size_t n_obj = run->schema.n_obj;
-    for (size_t k = 0; run_is_unpredictable(run, row) && k < n_obj + run->schema.n_extra; k++)
-        known[run->schema.order.of[k]] = (Known){k < n_obj ? run_f(run, row)[k] : e->extra[k - n_obj], e->err[k]};
 }
 
 void known_raise(const Known known[], const SimResult *r, double sd[])
@@ -225,35 +248,12 @@ void known_raise(const Known known[], const SimResult *r, double sd[])
             sd[k] = fmax(sd[k], known[k].sd);
 }
 
-Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err)
-{
-    Place p;
-    Run run;
-    size_t row;
-    if (!word || strlen(word) >= sizeof p.path)
-        return STATUS_OK;
-    find_place(word, &p);
-    if (!p.is_run)
-        return STATUS_OK;
-    TRY(run_read(&run, p.path, err));
-    const Status status = run_pick(&run, p.choice ? p.choice : "knee", &row, err);
-    if (status == STATUS_OK) {
-        const double before = sim->steps_per_contact;
-        run_steps(&run, row, sim);
-        if (sim->steps_per_contact != before)
-            fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n",
-                    run.table.row[row].id, ldexp(1.0, (int)run.table.row[row].level));
-        if (known)
-            known_of_run(&run, row, known);
-    }
-    run_free(&run);
-    return status;
-}
-
 void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX])
 {
-    const char *slash = d->id ? NULL : strrchr(word, '/'), *name = slash ? slash + 1 : word;
-    if (d->id)
+    const char *name = d->id ? word : basename(word);
+    if (d->n == 0)
+        snprintf(label, DESIGN_LABEL_MAX, "no core");
+    else if (d->id)
         snprintf(label, DESIGN_LABEL_MAX, "design %ld", d->id[i]);
     else if (d->n == 1 && strchr(name, ':'))
         snprintf(label, DESIGN_LABEL_MAX, "%s", name);
@@ -288,7 +288,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         *elsewhere = (Designs){0};
     if (is_name(word) || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
-    TRY(designs_take_one(&d, word, &run->schema.design, err));
+    TRY(designs_take_one(&d, word, &run->schema.design, NULL, NULL, err));
     *row = row_of(run, d.x);
     if (*row == run->table.n && elsewhere) {
         *elsewhere = d;

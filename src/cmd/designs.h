@@ -18,12 +18,6 @@
 #define DESIGN_WORDS  "FILE, FILE:N (row or id), RUN:ID, RUN:knee or RUN:best_NAME"
 #define DESIGN_OF_RUN "an id of the run, knee or best_NAME; FILE:N, OTHER:ID"
 
-/* For design_free. space: of the building and the settings that they are for. */
-Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err *err);
-
-/* The same where one design is wanted: a file of several is refused. */
-Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err);
-
 /* What a run knows of a measure of a design that cannot be predicted; sd 0: nothing. */
 typedef struct {
     double value, sd;
@@ -34,15 +28,22 @@ void known_of_run(const Run *run, size_t row, Known known[]);
  * more copies than sd comes from. */
 void known_raise(const Known known[], const SimResult *r, double sd[]);
 
-/* The steps by which the run knows the design that the word names (run_steps), said on standard error: into sim; and
- * known (N_MEASURES, zeroed; NULL: not wanted). Of a file nothing is known, and of a word that is no design nothing
- * said. */
-Status designs_steps(const char *word, SimOptions *sim, Known known[], Err *err);
+/* For design_free. space: of the building and the settings that they are for. Of a design of a run also the steps by
+ * which the run knows it (run_steps), said on standard error: into sim; and known (N_MEASURES, zeroed). NULL: not
+ * wanted. */
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[], Err *err);
+
+/* The same where one design is wanted: a file of several is refused. */
+Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[],
+                        Err *err);
+
+long design_number(const Designs *d, size_t i); /* as the run numbers it, else that of its row, from 1 */
 
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
 int run_drop_name(char *path);
 
-/* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1". */
+/* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1"; without designs "no
+ * core". */
 enum { DESIGN_LABEL_MAX = 160 };
 void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX]);
 

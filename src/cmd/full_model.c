@@ -25,11 +25,6 @@ typedef struct {
     FullModel found; /* under the record at hand */
 } Job;
 
-static long number_of(const Job *job, size_t i)
-{
-    return job->designs.id ? job->designs.id[i] : (long)i + 1;
-}
-
 /* ---- what is shown ----------------------------------------------------------------------------------------------- */
 
 static double relative(double reduced, double full)
@@ -47,7 +42,7 @@ static json_t *describe(const Job *job, size_t i)
         error[k] = relative(measure_value(reduced, k), measure_value(full, k));
     put_measures(of_reduced, "", error, NULL, NULL);
     if (job->designs.x)
-        json_put(o, "design=%ld", number_of(job, i));
+        json_put(o, "design=%ld", design_number(&job->designs, i));
     return json_put(o, "record=%s pga_g=%g scale=%g stretch=%g degrees_of_freedom=%p reduced=%p full=%p error=%p",
                     m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch,
                     json_of("reduced=%d full=%d", job->found.dofs[REDUCED], job->found.dofs[FULL]),
@@ -56,9 +51,8 @@ static json_t *describe(const Job *job, size_t i)
 
 static void add_design(json_t *table, const Job *job, const char *word, size_t i)
 {
-    char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX] = "no core", text[24];
-    if (job->designs.x)
-        design_label(&job->designs, word, i, name);
+    char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX], text[24];
+    design_label(&job->designs, word, i, name);
     for (int m = 0; m < MODELS; m++) {
         snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], job->found.dofs[m]);
         figures_result(table, label, &job->order, &job->found.result[m][i],
@@ -146,9 +140,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, SimOp
         snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
         word = own;
     }
-    if (!args_gives(args, "sim.accuracy"))
-        TRY(designs_steps(word, sim, NULL, err));
-    TRY(designs_take(&job->designs, word, &job->space, err));
+    TRY(designs_take(&job->designs, word, &job->space, args_gives(args, "sim.accuracy") ? NULL : sim, NULL, err));
     job->n = job->designs.n;
     return STATUS_OK;
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
+#include "cmd/designs.h"
 #include "report/history.h"
 #include "motion/spectrum.h"
 #include "sim/floor_record.h"
@@ -26,11 +27,6 @@ static Status write_all(const TimeJob *job, const char *path, void (*write_heade
         sim_worker_free(worker);
     }
     return output_end(&o, status, err);
-}
-
-static long number_of(const TimeJob *job, size_t i)
-{
-    return job->id ? job->id[i] : (long)i + 1;
 }
 
 static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *err)
@@ -70,7 +66,7 @@ static void write_contacts_header(FILE *out, int n_floors)
 
 static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    ContactRows rows = {.out = out, .design = number_of(job, i), .wanted = job->results[i].repeated + 1};
+    ContactRows rows = {.out = out, .design = design_number(job->designs, i), .wanted = job->results[i].repeated + 1};
     sim_worker_contacts(worker, add_contact, &rows);
     return run_again(job, worker, i, err);
 }
@@ -132,7 +128,7 @@ static Status write_history_of(const TimeJob *job, SimWorker *worker, size_t i, 
 {
     HistoryRows rows = {.worker = worker,
                         .out = out,
-                        .design = number_of(job, i),
+                        .design = design_number(job->designs, i),
                         .n_floors = scene_n_floors(job->scene),
                         .wanted = job->results[i].repeated + 1};
     sim_worker_sample(worker, job->every_s, write_history_row, &rows);
@@ -210,7 +206,7 @@ static Status spectra_of(const TimeJob *job, FloorSamples *floors, SimWorker *wo
     sim_worker_sample(worker, SAMPLES_S, take_floors, floors);
     TRY(run_again(job, worker, i, err));
     TRY(find_spectra(job, floors->record, T, psa, err));
-    print_spectra(out, number_of(job, i), scene_n_floors(job->scene), T, psa);
+    print_spectra(out, design_number(job->designs, i), scene_n_floors(job->scene), T, psa);
     return STATUS_OK;
 }
 

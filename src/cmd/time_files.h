@@ -17,7 +17,7 @@ typedef struct {
     size_t n;
     const SimTask *tasks;     /* (n) */
     const SimResult *results; /* (n) */
-    const long *id;           /* (n) their numbers; NULL: 1, 2, ... */
+    const Designs *designs;   /* whose numbers they have */
     double every_s;           /* --history: [s] at most from row to row; 0: the motion's samples */
 } TimeJob;
 
