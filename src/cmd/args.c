@@ -1,8 +1,6 @@
 #include "cmd/args.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 #include "cmd/designs.h"
@@ -14,8 +12,8 @@ enum { OPTIONS_MAX = 32 };
 Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err)
 {
     const char *near = nearest_word(word, known, n);
-    return near ? fail(err, STATUS_USAGE, "unknown %s '%.60s'; did you mean %s?", what, word, near)
-                : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
+    return near ? misused(err, "unknown %s '%.60s'; did you mean %s?", what, word, near)
+                : misused(err, "unknown %s '%.60s'; %s lists them", what, word, where);
 }
 
 static const char *program_of(const Command *c)
@@ -50,12 +48,11 @@ Status args_moved(const Args *args, RecordPaths *moved, Err *err)
     for (int i = 0; (text = args_next(args, "--set", &i));) {
         const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
         if (!record && !records)
-            return fail(err, STATUS_USAGE,
-                        "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
+            return misused(err, "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
                         "be set",
                         text);
         if ((record && moved->record) || (records && moved->records))
-            return fail(err, STATUS_USAGE, "--set %s is given twice", record ? "motion.record" : "motion.records");
+            return misused(err, "--set %s is given twice", record ? "motion.record" : "motion.records");
         moved->record = record ? record : moved->record;
         moved->records = records ? records : moved->records;
     }
@@ -87,15 +84,15 @@ static Status take_option(Args *args, int argc, char *const argv[], int *i, Err 
     TRY(find_option(args->command, word, length, &o, err));
     Given given = {o, NULL};
     if (!o->value && word[length])
-        return fail(err, STATUS_USAGE, "%s takes no value", o->name);
+        return misused(err, "%s takes no value", o->name);
     if (o->value && word[length])
         given.value = word + length + 1;
     else if (o->value && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
         given.value = argv[++*i];
     if (o->value && (!given.value || !given.value[0]))
-        return fail(err, STATUS_USAGE, "%s needs a value: %s %s", o->name, o->name, o->value);
+        return misused(err, "%s needs a value: %s %s", o->name, o->name, o->value);
     if (!o->many && args_has(args, o->name))
-        return fail(err, STATUS_USAGE, "%s is given twice", o->name);
+        return misused(err, "%s is given twice", o->name);
     args->given[args->n_given++] = given;
     return STATUS_OK;
 }
@@ -114,12 +111,12 @@ static Status take_operand(Args *args, const char *word, Err *err)
 {
     const Command *c = args->command;
     if (!c->operand)
-        return fail(err, STATUS_USAGE, "%s %s takes no operand, found '%.60s'", program_of(c), c->name, word);
+        return misused(err, "%s %s takes no operand, found '%.60s'", program_of(c), c->name, word);
     if (args->operand && !strstr(c->operand, "..."))
-        return fail(err, STATUS_USAGE, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name,
+        return misused(err, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name,
                     c->operand, word, args->operand);
     if (!word[0])
-        return fail(err, STATUS_USAGE, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
+        return misused(err, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
     args->operands[args->n_operands++] = word;
     args->operand = args->operand ? args->operand : word;
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
@@ -144,7 +141,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
     if (command->operand && command->operand[0] != '[' && !args->operand)
-        return fail(err, STATUS_USAGE, "%s %s needs a %s; for example: %s", program_of(command), command->name,
+        return misused(err, "%s %s needs a %s; for example: %s", program_of(command), command->name,
                     command->operand, command->example);
     return outputs_check(args, err);
 }
@@ -183,7 +180,7 @@ Status args_number(const Args *args, const char *name, double least, double most
     *value = text ? strtod(text, &end) : otherwise;
     return !text || (end != text && !*end && *value >= least && *value <= most)
                ? STATUS_OK
-               : fail(err, STATUS_USAGE, "%s: '%.40s' is no number from %g to %g", name, text, least, most);
+               : misused(err, "%s: '%.40s' is no number from %g to %g", name, text, least, most);
 }
 
 Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err)
@@ -191,7 +188,7 @@ Status args_whole(const Args *args, const char *name, long least, long most, lon
     double number;
     TRY(args_number(args, name, (double)least, (double)most, (double)otherwise, &number, err));
     *value = (long)number;
-    return (double)*value == number ? STATUS_OK : fail(err, STATUS_USAGE, "%s: %g is no whole number", name, number);
+    return (double)*value == number ? STATUS_OK : misused(err, "%s: %g is no whole number", name, number);
 }
 
 Status args_alone(const Args *args, const char *name, const char *others, Err *err)
@@ -200,7 +197,7 @@ Status args_alone(const Args *args, const char *name, const char *others, Err *e
     int n;
     for (; args_has(args, name) && sscanf(others, " %63s%n", other, &n) == 1; others += n)
         if (args_has(args, other))
-            return fail(err, STATUS_USAGE, "%s and %s do not go together; leave one of them out", name, other);
+            return misused(err, "%s and %s do not go together; leave one of them out", name, other);
     return STATUS_OK;
 }
 

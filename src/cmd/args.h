@@ -7,8 +7,6 @@
 #ifndef IMTET_CMD_ARGS_H
 #define IMTET_CMD_ARGS_H
 
-#include <stdio.h>
-
 #include "cmd/command.h"
 #include "study/record_paths.h"
 

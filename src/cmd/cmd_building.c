@@ -1,6 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/units.h"
@@ -76,9 +73,9 @@ static Status open_model(const Args *args, Model *m, Err *err)
         TRY(option_put_path(m->s.building.model, name, err));
     TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
     if (m->s.problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower: %s has no building", name);
+        return bad_data(err, "problem.kind: is no tower: %s has no building", name);
     if (args_has(args, "--design") && !m->has_core)
-        return fail(err, STATUS_USAGE, "--design is of a CONFIG, which has a core");
+        return misused(err, "--design is of a CONFIG, which has a core");
     TRY(building_load(&m->b, &m->s.building, err));
     if (frame_is(m->s.building.model))
         TRY(frame_read(&m->frame, &m->s.building, err));

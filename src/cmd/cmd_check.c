@@ -1,6 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "analysis/ladder.h"
@@ -409,7 +406,7 @@ static Status verdict(const Args *args, const Check *c, Err *err)
     else
         list_findings(c->out);
     if (faults)
-        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
+        return bad_data(err, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
     if (!c->as_json && warnings)
         printf("%s: no fault, %d warning%s\n", args->operand, warnings, warnings == 1 ? "" : "s");
     else if (!c->as_json)
@@ -422,7 +419,7 @@ static Status run(const Args *args, Err *err)
     if (args_has(args, "--self"))
         return selftest(args_has(args, "--json"), err);
     if (!args->operand)
-        return fail(err, STATUS_USAGE, "imtet check needs a CONFIG, or --self; for example: %s", CMD_CHECK.example);
+        return misused(err, "imtet check needs a CONFIG, or --self; for example: %s", CMD_CHECK.example);
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
     Settings s;
     c.faults = json_array();

@@ -1,6 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -360,13 +357,13 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     const char *pga = args_value(args, "--pga");
     e->n_levels = 1;
     if (args_has(args, "--svg") && !(pga && strchr(pga, ':')))
-        return fail(err, STATUS_USAGE, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO");
+        return misused(err, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO");
     if (!pga)
         return STATUS_OK;
     if (strchr(pga, ':')) {
         for (size_t i = 0; i < N_OF(OTHERS); i++)
             if (args_gives(args, OTHERS[i]))
-                return fail(err, STATUS_USAGE, "--pga %.60s scales every record; %s does not go with it", pga,
+                return misused(err, "--pga %.60s scales every record; %s does not go with it", pga,
                             OTHERS[i]);
         motion_unscale(&s->motion);
         e->level = levels;
@@ -403,7 +400,7 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
     TRY(evaluations_read(e, s, err));
     if (e->n_read == 0) {
         print_refused(stderr, e);
-        return fail(err, STATUS_BAD_DATA, "%s: holds no ground motion that can be read", args_value(args, "--records"));
+        return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--records"));
     }
     TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
@@ -419,7 +416,7 @@ static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
     TRY(take_intensities(args, s, levels, &e, err));
     TRY(settings_check(s, err));
     if (e.level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
-        return fail(err, STATUS_USAGE, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
+        return misused(err, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
                     s->sim.replicates, args_value(args, "--pga"));
     e.replicates = !e.level && s->sim.replicates > 1 ? s->sim.replicates : 0;
     const Status status = run_and_give(args, s, c, &e, err);
@@ -429,7 +426,7 @@ static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
 
 static Status is_no_tower(Err *err)
 {
-    return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower but another problem: no ground motion applies");
+    return bad_data(err, "problem.kind: is no tower but another problem: no ground motion applies");
 }
 
 /* word: of the run's designs, or one from elsewhere. */
@@ -485,7 +482,7 @@ static Status run(const Args *args, Err *err)
     Settings s;
     Run r = {0};
     if (!args_has(args, "--full-model") && !args_value(args, "--design"))
-        return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+        return misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
     if (!run_is_there(args->operand))
         return evaluate_with(args, &s, NULL, err);
     TRY(run_read(&r, args->operand, err));

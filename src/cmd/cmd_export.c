@@ -1,4 +1,3 @@
-#include <stdlib.h>
 
 #include "cmd/commands.h"
 #include "store/export.h"
@@ -32,7 +31,7 @@ static Status run(const Args *args, Err *err)
 {
     Run run;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
-        return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
+        return misused(err, "--csv FILE is missing: where the table goes (or --json)");
     TRY(args_alone(args, "--all", "--select", err));
     TRY(run_read(&run, args->operand, err));
     Status status = args_has(args, "--json") ? export_json(stdout, &run, err) : STATUS_OK;

@@ -1,6 +1,4 @@
 #include <errno.h>
-#include <math.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,6 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -55,8 +52,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     const size_t needed = refine_evals_min(w->run->settings, w->config.replicates);
     if ((size_t)evals < needed)
-        return fail(err, STATUS_USAGE,
-                    "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
+        return misused(err, "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
                     "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
                     "fewer --replicates",
                     evals, needed);
@@ -68,7 +64,7 @@ static Status take_design(const Args *args, Work *w, Err *err)
 {
     const char *word = args_value(args, "--design");
     return word ? design_of_run(w->run, word, &w->row, NULL, err)
-                : fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+                : misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
 }
 
 static Status open_run(const Args *args, Work *w, Err *err)

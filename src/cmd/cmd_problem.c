@@ -1,6 +1,4 @@
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cmd/commands.h"
 #include "evaluate/textbook.h"
@@ -85,7 +83,7 @@ static Status run(const Args *args, Err *err)
     if (!known)
         return args_unknown("problem", args->operand, names, n_names, "`imtet problem --help`", err);
     if (!args_has(args, "--csv"))
-        return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
+        return misused(err, "--csv FILE is missing: where the table goes");
     settings_defaults(&s);
     TRY(settings_put(&s, "problem.kind", args->operand, err));
     TRY(args_apply(args, &s, NULL, NULL, err));

@@ -1,6 +1,4 @@
 #include <limits.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,7 +28,7 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
         r->path[r->n++] = path;
     const int is_given = r->n > 0;
     if (r->n == RECORDS_MAX)
-        return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
+        return misused(err, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
     for (size_t i = 1; i < n && !is_given && r->n < RECORDS_MAX; i++) {
         TRY(motion_record(&run->motion, i, r->own[r->n], err));
         r->path[r->n] = r->own[r->n];

@@ -1,6 +1,4 @@
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 

@@ -1,6 +1,5 @@
 #include <errno.h>
 #include <limits.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -46,11 +45,11 @@ static Status begin(const Args *args, Err *err)
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
     if (snprintf(path, sizeof path, "%s/%s", args->operand, NAME) >= (int)sizeof path)
-        return fail(err, STATUS_USAGE, "%.60s...: the path is too long", args->operand);
+        return misused(err, "%.60s...: the path is too long", args->operand);
     if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
     if (access(path, F_OK) == 0)
-        return fail(err, STATUS_USAGE, "%s: is there already; name another folder", path);
+        return misused(err, "%s: is there already; name another folder", path);
     TRY(output_open(&o, path, err));
     fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
     settings_write(&s, o.stream, SETTINGS_BASIC);

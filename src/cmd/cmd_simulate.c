@@ -1,7 +1,3 @@
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/json.h"
 #include "base/units.h"
@@ -33,10 +29,10 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
 {
     const char *path = args_value(args, "--design");
     if (!path)
-        return fail(err, STATUS_USAGE, "--design FILE is missing (--design none: the building alone)");
+        return misused(err, "--design FILE is missing (--design none: the building alone)");
     const int none = strcmp(path, "none") == 0, rigid = args_has(args, "--rigid");
     if (none && rigid)
-        return fail(err, STATUS_USAGE, "--rigid needs a core: give --design FILE instead of none");
+        return misused(err, "--rigid needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : rigid ? SCENE_RIGID : SCENE_IMPACT;
     return STATUS_OK;
 }
@@ -201,9 +197,9 @@ static Status check_times(const Args *args, const Job *job, Err *err)
     TRY(every_of(args, &every_s, err));
     for (size_t i = 0; i < N_OF(WITH_GAPS) && job->kind != SCENE_IMPACT; i++)
         if (args_has(args, WITH_GAPS[i]) || args_gives(args, WITH_GAPS[i]))
-            return fail(err, STATUS_USAGE, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
+            return misused(err, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
     if (args_has(args, "--every") && !args_has(args, "--history"))
-        return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
+        return misused(err, "--every is the spacing of --history FILE, which is not asked for");
     TRY(args_alone(args, "--horizon", "--csv --sensitivity --history --contacts --floor-spectra", err));
     return args_alone(args, "--sensitivity", "--history --contacts --floor-spectra", err);
 }
@@ -257,7 +253,7 @@ static Status show_horizon(const Args *args, Settings *s, const double x[], Err 
 {
     Problem p;
     if (s->sim.engine != ENGINE_FAST)
-        return fail(err, STATUS_USAGE, "--horizon: only the engine fast shows its states; leave sim.engine as it is");
+        return misused(err, "--horizon: only the engine fast shows its states; leave sim.engine as it is");
     s->sim.replicates = HORIZON_REPLICATES;
     s->sim.gap_tolerance_m = ESTIMATE_GAP_M;
     s->sim.uncertain = (UncertainOptions){0};
@@ -352,8 +348,7 @@ static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
 {
     Problem p;
     if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
-        return fail(err, STATUS_USAGE,
-                    "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
+        return misused(err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s->sim.forces = FORCES_YES;

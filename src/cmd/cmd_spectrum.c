@@ -1,8 +1,4 @@
 /* Spectra of ground motions: figures, histories and response spectra as text, CSV, JSON and pictures. */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/visible.h"
 #include "base/json.h"
@@ -422,7 +418,7 @@ static Status run(const Args *args, Err *err)
     TRY(args_apply(args, &settings, NULL, NULL, err));
     TRY(settings_check(&settings, err));
     if (n > 1 && args_has(args, "--history"))
-        return fail(err, STATUS_USAGE, "--history is of one motion, not of %zu", n);
+        return misused(err, "--history is of one motion, not of %zu", n);
     Spectrum *s = calloc(n, sizeof *s);
     Curve *c = calloc(n + 3, sizeof *c);
     Status status =

@@ -1,9 +1,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/json.h"
 #include "cmd/commands.h"
@@ -170,7 +167,7 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
     struct dirent **entries;
     const int n = scandir(folder, &entries, NULL, versionsort);
     if (n < 0 && errno == ENOTDIR)
-        return fail(err, STATUS_BAD_DATA, "%s: is a file, no run and no folder of runs", folder);
+        return bad_data(err, "%s: is a file, no run and no folder of runs", folder);
     if (n < 0)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
     json_t *list = json_array();

@@ -1,9 +1,5 @@
 #include "cmd/designs.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "cmd/show.h"
@@ -21,7 +17,7 @@ static Status drop_results(Table *t, const char *path, const DesignSpace *space,
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
         if (from < (int)kept)
-            return fail(err, STATUS_BAD_DATA, "%s: no column %s, which a design of %d floors has (design.variables)",
+            return bad_data(err, "%s: no column %s, which a design of %d floors has (design.variables)",
                         path, name, space->n_floors);
         for (size_t i = 0; i < t->n_rows; i++)
             t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + (size_t)from];
@@ -54,14 +50,14 @@ static Status choose_row(Designs *d, const char *path, const char *choice, Err *
     char *end;
     const long wanted = strtol(choice, &end, 10);
     if (end == choice || *end)
-        return fail(err, STATUS_BAD_DATA, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
+        return bad_data(err, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
                     d->id ? "id" : "row, from 1");
     for (size_t i = 0; i < d->n; i++)
         if (design_number(d, i) == wanted) {
             keep_row(d, i);
             return STATUS_OK;
         }
-    return fail(err, STATUS_BAD_DATA, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted,
+    return bad_data(err, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted,
                 d->n);
 }
 
@@ -122,13 +118,12 @@ static Status check_space(const Run *run, const char *folder, const DesignSpace 
     for (size_t j = 0; j < n_var && (int)j < space->n_var; j++) {
         design_variable_name(space, (int)j, name);
         if (strcmp(schema_variable(&run->schema, j)->name, name) != 0)
-            return fail(err, STATUS_BAD_DATA, "%s: variable %zu of its designs is %s, here it is %s (design.variables)",
+            return bad_data(err, "%s: variable %zu of its designs is %s, here it is %s (design.variables)",
                         folder, j + 1, schema_variable(&run->schema, j)->name, name);
     }
     return n_var == (size_t)space->n_var
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA,
-                      "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
+               : bad_data(err, "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
                       folder, n_var, space->n_floors, space->n_var);
 }
 
@@ -237,7 +232,7 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
     if (n == 1)
         return STATUS_OK;
     design_free(d);
-    return fail(err, STATUS_USAGE, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n,
+    return misused(err, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n,
                 word, first);
 }
 
@@ -295,7 +290,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         return STATUS_OK;
     }
     design_free(&d);
-    return *row < run->table.n ? STATUS_OK : fail(err, STATUS_BAD_DATA, "%s: is no design of %s", word, run->folder);
+    return *row < run->table.n ? STATUS_OK : bad_data(err, "%s: is no design of %s", word, run->folder);
 }
 
 /* -- results by name ----------------------------------------------------------------------------------------------- */
@@ -306,7 +301,7 @@ static Status split(const char *option, const char *text, double otherwise, char
     char *end;
     const size_t length = strcspn(text, "=");
     if (length >= TABLE_NAME_MAX || (!text[length] && isnan(otherwise)))
-        return fail(err, STATUS_USAGE, "%s: '%.60s' is not NAME=NUMBER", option, text);
+        return misused(err, "%s: '%.60s' is not NAME=NUMBER", option, text);
     snprintf(name, TABLE_NAME_MAX, "%.*s", (int)length, text);
     *value = text[length] ? strtod(text + length + 1, &end) : otherwise;
     if (text[length] && end > text + length + 1 && *end == '%') {
@@ -314,7 +309,7 @@ static Status split(const char *option, const char *text, double otherwise, char
         end++;
     }
     if (text[length] && (end == text + length + 1 || *end || !isfinite(*value)))
-        return fail(err, STATUS_USAGE, "%s: '%.60s' has no number behind =", option, text);
+        return misused(err, "%s: '%.60s' has no number behind =", option, text);
     return STATUS_OK;
 }
 
@@ -333,7 +328,7 @@ Status pairs_take(const Schema *schema, const char *option, const char *list, do
         size_t k;
         double value;
         if (!list_item(list, j, item, sizeof item))
-            return fail(err, STATUS_USAGE, "%s: item %zu is empty or too long", option, j + 1);
+            return misused(err, "%s: item %zu is empty or too long", option, j + 1);
         TRY(split(option, item, otherwise, name, &value, err));
         TRY(schema_pick_objective(schema, option, name, STATUS_USAGE, &k, err));
         values[k] = value;
@@ -347,11 +342,11 @@ Status weights_check(const Schema *schema, const char *option, const double weig
     double sum = 0;
     for (size_t k = 0; k < schema->n_obj; k++) {
         if (weights[k] < 0)
-            return fail(err, STATUS_USAGE, "%s: %s=%g is negative; every weight asks for more of what is good", option,
+            return misused(err, "%s: %s=%g is negative; every weight asks for more of what is good", option,
                         schema_objective(schema, k)->name, weights[k]);
         sum += weights[k];
     }
-    return sum > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "%s: all of them are 0", option);
+    return sum > 0 ? STATUS_OK : misused(err, "%s: all of them are 0", option);
 }
 
 void figures_of_run(json_t *table, const Run *run, const char *label, size_t row)

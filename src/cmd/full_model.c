@@ -1,8 +1,6 @@
 #include "cmd/full_model.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "analysis/full_model.h"
@@ -135,7 +133,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, SimOp
         return STATUS_OK;
     }
     if (!word && !folder)
-        return fail(err, STATUS_USAGE, "--design is missing: " DESIGN_WORDS "; none: the building alone");
+        return misused(err, "--design is missing: " DESIGN_WORDS "; none: the building alone");
     if (folder && (!word || (!strpbrk(word, "/:") && stat(word, &there) != 0))) {
         snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
         word = own;
@@ -150,8 +148,7 @@ static Status check_wishes(const Args *args, Settings *s, const char *folder, Er
     const char *pga = args_value(args, "--pga");
     TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
     if (!frame_is(s->building.model))
-        return fail(err, STATUS_BAD_DATA,
-                    "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
+        return bad_data(err, "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
                     "(nodes.csv) and guyan have",
                     s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);

@@ -1,8 +1,5 @@
 #include "cmd/manual.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/text.h"
 #include "cmd/commands.h"
 #include "store/provenance.h"

@@ -5,8 +5,6 @@
 #ifndef IMTET_CMD_MANUAL_H
 #define IMTET_CMD_MANUAL_H
 
-#include <stdio.h>
-
 #include "cmd/args.h"
 
 const Command *command_at(int i); /* NULL behind the last */

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -115,7 +114,7 @@ static int is_read(const char *out, const char *word)
 
 static Status refuse(const Given *out, const char *reader, Err *err)
 {
-    return fail(err, STATUS_USAGE, "%s would replace %s, which %s; name another file", out->option->name, out->value,
+    return misused(err, "%s would replace %s, which %s; name another file", out->option->name, out->value,
                 reader);
 }
 
@@ -145,7 +144,7 @@ static Status check_one(const Args *args, const Given *out, Err *err)
         if (other == out || !other->value)
             continue;
         if (is_written(other) && is_same_place(other->value, out->value))
-            return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
+            return misused(err, "%s and %s are one file, %s; name another file", out->option->name,
                         other->option->name, out->value);
         const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;
         n_readers += !is_written(other) && is_read(out->value, equals ? equals + 1 : other->value);
@@ -157,7 +156,7 @@ Status outputs_check(const Args *args, Err *err)
 {
     const char *first = outputs_standard(args, 0), *second = outputs_standard(args, 1);
     if (second)
-        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give one of them a file", first, second);
+        return misused(err, "%s and %s both want standard output; give one of them a file", first, second);
     for (int i = 0; i < args->n_given; i++)
         if (is_written(&args->given[i]))
             TRY(check_one(args, &args->given[i], err));

@@ -1,9 +1,6 @@
 #include "cmd/selftest.h"
 
-#include <math.h>
 #include <omp.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/clock.h"
 #include "cmd/show.h"

@@ -1,10 +1,5 @@
 #include "cmd/show.h"
 
-#include <math.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "analysis/estimate.h"
 #include "base/visible.h"
 #include "base/figure.h"

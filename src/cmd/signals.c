@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdatomic.h>
-#include <stddef.h>
 #include <time.h>
 
 /* A handler has no argument for its state: the one place where the program keeps some of its own. */

@@ -1,8 +1,5 @@
 #include "cmd/time_files.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "base/units.h"
 #include "cmd/designs.h"
 #include "report/history.h"

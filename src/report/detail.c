@@ -1,10 +1,5 @@
 #include "report/detail.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "analysis/estimate.h"
 #include "base/units.h"
 #include "evaluate/tower.h"
@@ -146,10 +141,10 @@ static Status check_here(const Problem *p, int n_var, const DetailOptions *optio
     d->n_floors = scene_n_floors(tower_record(tower_of(p), 0)->scene);
     d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
     if ((int)p->n_var != n_var)
-        return fail(err, STATUS_BAD_DATA, "the front has designs of %d variables, the building has %zu", n_var,
+        return bad_data(err, "the front has designs of %d variables, the building has %zu", n_var,
                     p->n_var);
     if (d->floor >= d->n_floors)
-        return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
+        return bad_data(err, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     return STATUS_OK;
 }
 

@@ -1,9 +1,7 @@
 #include "report/gnuplot.h"
 
 #include <errno.h>
-#include <math.h>
 #include <spawn.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -5,8 +5,6 @@
 #ifndef IMTET_REPORT_GNUPLOT_H
 #define IMTET_REPORT_GNUPLOT_H
 
-#include <stdio.h>
-
 #include "base/status.h"
 
 typedef void (*GnuplotScript)(FILE *script, const void *user);

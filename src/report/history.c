@@ -1,9 +1,5 @@
 #include "report/history.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 typedef struct {
     History *h;
     size_t room;

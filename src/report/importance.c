@@ -1,9 +1,5 @@
 #include "report/importance.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/carve.h"
 #include "base/random.h"
 #include "rbf/rbf.h"

@@ -1,6 +1,3 @@
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "report/report.h"

@@ -1,8 +1,6 @@
 /* Every picture is blocks of numbers and a script over them; what all scripts share stands in STYLE. */
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/hypervolume.h"

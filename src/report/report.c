@@ -1,7 +1,5 @@
 #include "report/report.h"
 
-#include <string.h>
-
 #include "motion/motion_scale.h"
 #include "settings/options.h"
 

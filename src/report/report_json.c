@@ -1,9 +1,5 @@
 #include "report/report_json.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/json.h"
 #include "base/text.h"
 #include "base/hypervolume.h"

@@ -1,8 +1,5 @@
 #include "report/words.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "motion/motion_scale.h"
 #include "settings/options.h"
 

@@ -1,9 +1,5 @@
 #include "serve/answers.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/json.h"
 #include "base/hypervolume.h"
 #include "report/report_json.h"
@@ -126,7 +122,7 @@ static Status check_pair(const Look *const look[2], Err *err)
         same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
                schema_objective(a, k)->sense == schema_objective(b, k)->sense;
     return same ? STATUS_OK
-                : fail(err, STATUS_BAD_DATA, "the two runs have other objectives: their fronts cannot be compared");
+                : bad_data(err, "the two runs have other objectives: their fronts cannot be compared");
 }
 
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */

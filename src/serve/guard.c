@@ -1,9 +1,6 @@
 #include "serve/guard.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/random.h>
 
 Status guard_token(char token[TOKEN_TEXT], Err *err)

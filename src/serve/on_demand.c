@@ -1,10 +1,7 @@
 #include "serve/on_demand.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/json.h"
 #include "base/units.h"
@@ -201,7 +198,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
     TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
     TRY(open_scene(o, &o->own, err));
     if (o->problem.n_var != run->schema.n_var)
-        return fail(err, STATUS_BAD_DATA, "%s: its building has other variables now", run->folder);
+        return bad_data(err, "%s: its building has other variables now", run->folder);
     o->own.pga_g = motion_peak(&tower_record(tower_of(&o->problem), 0)->motion) / GRAVITY;
     memcpy(o->lower, o->problem.lower, o->problem.n_var * sizeof *o->lower);
     memcpy(o->upper, o->problem.upper, o->problem.n_var * sizeof *o->upper);
@@ -258,20 +255,20 @@ static Status take_number(const json_t *o, const char *key, double least, double
     *value = json_number_value(given);
     return json_is_number(given) && *value >= least - slack && *value <= most + slack
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "%s: a number from %g to %g is wanted", key, least, most);
+               : bad_data(err, "%s: a number from %g to %g is wanted", key, least, most);
 }
 
 static Status take_design(const OnDemand *o, const json_t *question, double x[], Err *err)
 {
     const json_t *given = json_object_get(question, "x");
     if (json_array_size(given) != o->n_var)
-        return fail(err, STATUS_BAD_DATA, "x: %zu numbers are wanted", o->n_var);
+        return bad_data(err, "x: %zu numbers are wanted", o->n_var);
     for (size_t j = 0; j < o->n_var; j++) {
         const json_t *value = json_array_get(given, j);
         const double slack = 1e-9 * (o->upper[j] - o->lower[j]);
         x[j] = json_number_value(value);
         if (!json_is_number(value) || !(x[j] >= o->lower[j] - slack && x[j] <= o->upper[j] + slack))
-            return fail(err, STATUS_BAD_DATA, "x: variable %zu is not within %g and %g", j + 1, o->lower[j],
+            return bad_data(err, "x: variable %zu is not within %g and %g", j + 1, o->lower[j],
                         o->upper[j]);
     }
     return STATUS_OK;
@@ -291,7 +288,7 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
         {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
     *q = (Question){.turn = (long)json_integer_value(json_object_get(given, "turn"))};
     Status status = json_is_object(given) ? take_design(o, given, q->x, err)
-                                          : fail(err, STATUS_BAD_DATA, "the question is no JSON object");
+                                          : bad_data(err, "the question is no JSON object");
     for (size_t i = 0; status == STATUS_OK && i < N_OF(numbers); i++)
         status = take_number(given, numbers[i].key, numbers[i].least, numbers[i].most, numbers[i].otherwise,
                              numbers[i].value, err);

@@ -1,8 +1,6 @@
 #include "settings/rules.h"
 
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "base/list.h"
 #include "scene/design.h"

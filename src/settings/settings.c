@@ -2,8 +2,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/list.h"
 #include "motion/builtin.h"
@@ -352,9 +350,9 @@ static Status unknown_word(const Option *o, const char *value, Err *err)
     for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
         list[n++] = word;
     const char *near = nearest_word(value, list, n);
-    return near ? fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words,
+    return near ? bad_data(err, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words,
                        near)
-                : fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not one of %s", o->key, value, o->words);
+                : bad_data(err, "%s: '%.60s' is not one of %s", o->key, value, o->words);
 }
 
 static Status parse_number(const Option *o, const char *value, double *number, Err *err)
@@ -364,13 +362,13 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     errno = 0;
     *number = strtod(value, &end);
     if (end == value || *end)
-        return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number%s%s%s", o->key, value, *unit ? " [" : "", unit,
+        return bad_data(err, "%s: '%s' is not a number%s%s%s", o->key, value, *unit ? " [" : "", unit,
                     *unit ? "]" : "");
     if (!(*number >= o->min && *number <= o->max)) /* also rejects NaN */
-        return fail(err, STATUS_BAD_DATA, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max,
+        return bad_data(err, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max,
                     *unit ? " " : "", unit);
     if (o->kind == KIND_WHOLE && *number != (double)(long)*number)
-        return fail(err, STATUS_BAD_DATA, "%s: %s is not a whole number", o->key, value);
+        return bad_data(err, "%s: %s is not a whole number", o->key, value);
     return STATUS_OK;
 }
 
@@ -380,16 +378,16 @@ static Status assign_list(Settings *s, const Option *o, const char *value, Err *
     char item[OPTION_TEXT_MAX];
     const size_t n = list_is_given(value) ? list_count(value) : 0;
     if (n > OPTION_LIST_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu numbers; at most %d are supported", o->key, n, OPTION_LIST_MAX);
+        return bad_data(err, "%s: %zu numbers; at most %d are supported", o->key, n, OPTION_LIST_MAX);
     for (; found.n < (int)n; found.n++) {
         if (!list_item(value, (size_t)found.n, item, sizeof item))
-            return fail(err, STATUS_BAD_DATA, "%s: item %d of '%.60s' is empty", o->key, found.n + 1, value);
+            return bad_data(err, "%s: item %d of '%.60s' is empty", o->key, found.n + 1, value);
         TRY(parse_number(o, item, &found.at[found.n], err));
     }
     if (n == 0 && strcmp(o->standard, "none") != 0)
-        return fail(err, STATUS_BAD_DATA, "%s: needs a number", o->key);
+        return bad_data(err, "%s: needs a number", o->key);
     if (o->count && (found.n != 2 || !(found.at[0] < found.at[1])))
-        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not two numbers, the first below the second", o->key, value);
+        return bad_data(err, "%s: '%.60s' is not two numbers, the first below the second", o->key, value);
     *list = found;
     return STATUS_OK;
 }
@@ -427,7 +425,7 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
         const int i = equals ? word_index(o->words, item) : -1;
         double number;
         if (i < 0)
-            return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item,
+            return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item,
                         o->words);
         TRY(parse_number(o, equals + 1, &number, err));
         memcpy((char *)&shares + (size_t)i * sizeof number, &number, sizeof number);
@@ -439,15 +437,13 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
 static Status assign_text(Settings *s, const Option *o, const char *value, Err *err)
 {
     if (!value[0])
-        return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
+        return bad_data(err, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
+        return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
     const int needs_quotes = strstr(value, " #") != NULL, has_both = strchr(value, '"') && strchr(value, '\'');
     if (strpbrk(value, "\r\n") || strstr(value, " ;") || (needs_quotes && (has_both || strchr(value, '\\'))) ||
         isspace((unsigned char)value[0]) || isspace((unsigned char)value[strlen(value) - 1]))
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
+        return bad_data(err, "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
             o->key, value);
     snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
     return STATUS_OK;
@@ -500,8 +496,8 @@ Status table_find(const char *key, int *found, Err *err)
         }
     }
     const char *near = nearest_word(key, keys, N_OPTIONS);
-    return near ? fail(err, STATUS_BAD_DATA, "%s: no such setting; did you mean %s?", key, near)
-                : fail(err, STATUS_BAD_DATA, "%s: no such setting; `imtet settings` lists all", key);
+    return near ? bad_data(err, "%s: no such setting; did you mean %s?", key, near)
+                : bad_data(err, "%s: no such setting; `imtet settings` lists all", key);
 }
 
 typedef struct {
@@ -575,7 +571,7 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
     char key[128];
     const char *equals = strchr(assignment, '=');
     if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof key)
-        return fail(err, STATUS_USAGE, "--set %s: write --set section.key=value", assignment);
+        return misused(err, "--set %s: write --set section.key=value", assignment);
     snprintf(key, sizeof key, "%.*s", (int)(equals - assignment), assignment);
     return settings_put(s, key, equals + 1, err);
 }

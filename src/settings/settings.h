@@ -12,9 +12,6 @@
 #ifndef IMTET_SETTINGS_SETTINGS_H
 #define IMTET_SETTINGS_SETTINGS_H
 
-#include <stddef.h>
-#include <stdio.h>
-
 #include "base/status.h"
 #include "settings/options.h"
 

@@ -1,7 +1,5 @@
 #include "store/export.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "base/json.h"

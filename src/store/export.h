@@ -8,8 +8,6 @@
 #ifndef IMTET_STORE_EXPORT_H
 #define IMTET_STORE_EXPORT_H
 
-#include <stdio.h>
-
 #include "store/run.h"
 
 /* FRONT    id, variables, objectives (natural, means over repeats), further results that are limited; where designs are

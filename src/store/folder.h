@@ -12,7 +12,6 @@
 #define IMTET_STORE_FOLDER_H
 
 #include <limits.h>
-#include <stddef.h>
 
 #include "base/status.h"
 

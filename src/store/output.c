@@ -2,9 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -72,7 +69,7 @@ Status output_open(Output *o, const char *path, Err *err)
 {
     struct stat there;
     if (lstat(path, &there) == 0 && S_ISREG(there.st_mode) && is_database(path))
-        return fail(err, STATUS_USAGE, "%s is a database, which is not replaced; name another file", path);
+        return misused(err, "%s is a database, which is not replaced; name another file", path);
     return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
 }
 

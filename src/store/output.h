@@ -8,7 +8,6 @@
 #define IMTET_STORE_OUTPUT_H
 
 #include <limits.h>
-#include <stdio.h>
 
 #include "base/status.h"
 

@@ -6,8 +6,6 @@
 #include <jansson.h>
 #include <nlopt.h>
 #include <sqlite3.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sundials/sundials_version.h>
 #include <unistd.h>
 

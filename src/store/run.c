@@ -1,10 +1,6 @@
 #include "store/run.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "evaluate/problem.h"
@@ -309,8 +305,7 @@ Status run_why_empty(const Run *run, Err *err)
                     "%s: none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
                     run->folder, run->table.n, run->table.row[0].reason, run->folder);
     if (run->n_generations == 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: there is no front before the initial sample is complete; %zu designs are simulated",
+        return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
                     run->folder, run->table.n);
     if (strcmp(s->search.limits, "none") != 0)
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
@@ -337,7 +332,7 @@ static Status pick_id(const Run *run, long id, size_t *row, Err *err)
     if (*row < run->table.n)
         return STATUS_OK;
     return run->table.n == 0 ? run_why_empty(run, err)
-                             : fail(err, STATUS_BAD_DATA, "%s: has no design %ld; the nearest id is %ld", run->folder,
+                             : bad_data(err, "%s: has no design %ld; the nearest id is %ld", run->folder,
                                     id, nearest_id(run, id));
 }
 
@@ -351,8 +346,7 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
     if (end != word && !*end)
         return pick_id(run, id, row, err);
     if (!is_best && strcmp(word, "knee") != 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?", word,
+        return bad_data(err, "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?", word,
                     run->folder, schema_objective(&run->schema, 0)->name);
     if (is_best)
         TRY(schema_pick_objective(&run->schema, "best_NAME", word + sizeof BEST - 1, STATUS_BAD_DATA, &k, err));

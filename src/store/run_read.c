@@ -1,9 +1,6 @@
 #include "store/run_read.h"
 
 #include <jansson.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/stat.h"

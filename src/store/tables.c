@@ -1,12 +1,7 @@
 #include "store/tables.h"
 
 #include <errno.h>
-#include <math.h>
 #include <limits.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/hash.h"
@@ -158,8 +153,7 @@ Status tables_have_room(const Schema *s, Err *err)
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
     const size_t others = n_columns(ROWS_EVALUATION, s) - s->n_var;
     return s->n_var + others <= COLUMNS_MAX ? STATUS_OK
-                                            : fail(err, STATUS_BAD_DATA,
-                                                   "problem.variables = %zu: a run has room for %zu variables beside "
+                                            : bad_data(err, "problem.variables = %zu: a run has room for %zu variables beside "
                                                    "%zu objectives (SQLite: %d columns)",
                                                    s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
 }

@@ -1,8 +1,6 @@
 #include "study/differences.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 #include "base/visible.h"
@@ -82,7 +80,7 @@ static Status check_limit(const Comparison *c, size_t n_there, Err *err)
     const long was = c->run->settings->search.max_evals, now = c->used->search.max_evals;
     return now == was || now >= (long)n_there
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
+               : bad_data(err, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
                       c->run->folder, now, n_there);
 }
 
@@ -96,7 +94,7 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
     tell_kernels(c);
     if (d.n_others == 0 && (c->force || d.n_lowered == 0))
         return check_limit(c, n_there, err);
-    return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
+    return bad_data(err, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
                 n > 1 ? ", and more" : "",
                 d.n_others == 0 ? "--force-settings lowers limits" : "choose another --out, or --new");
 }

@@ -9,8 +9,6 @@
 #ifndef IMTET_STUDY_DIFFERENCES_H
 #define IMTET_STUDY_DIFFERENCES_H
 
-#include <stdio.h>
-
 #include "evaluate/adapter.h"
 #include "store/run.h"
 

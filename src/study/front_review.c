@@ -1,8 +1,5 @@
 #include "study/front_review.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "evaluate/tasks.h"
 #include "settings/options.h"

@@ -1,8 +1,5 @@
 #include "study/improvement.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "moga/convergence.h"
 #include "settings/options.h"
 

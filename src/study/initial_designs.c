@@ -1,8 +1,5 @@
 #include "study/initial_designs.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/csv.h"
@@ -13,7 +10,7 @@ static Status copy_columns(const Table *t, const char *path, const Schema *schem
     for (size_t j = 0; j < schema->n_var; j++) {
         const char *name = schema_variable(schema, j)->name;
         if (table_column(t, name) < 0)
-            return fail(err, STATUS_BAD_DATA, "search.start: %s: has no column %s", path, name);
+            return bad_data(err, "search.start: %s: has no column %s", path, name);
         for (size_t i = 0; i < t->n_rows; i++) {
             double *x = &X[i * schema->n_var + j];
             if (!schema->kinds[0] || !kinds_number(schema->kinds, j, sheet_text(t, i, name), x))
@@ -40,7 +37,7 @@ static Status copy_front(const Run *run, const Schema *schema, double **X, size_
 {
     const size_t n_var = run->schema.n_var;
     if (n_var != schema->n_var)
-        return fail(err, STATUS_BAD_DATA, "search.start: %s: its designs have %zu variables, this search has %zu",
+        return bad_data(err, "search.start: %s: its designs have %zu variables, this search has %zu",
                     run->folder, n_var, schema->n_var);
     TRY_ROOM(*X, run->n_front * n_var + 1, "designs", err);
     for (size_t i = 0; i < run->n_front; i++)

@@ -1,9 +1,5 @@
 #include "study/named.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "analysis/estimate.h"
 #include "base/stat.h"
 #include "evaluate/adapter.h"

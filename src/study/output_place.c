@@ -2,9 +2,6 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 static const char RESULTS[] = "results";
@@ -59,15 +56,12 @@ Status output_place_check(const char *out, const char *settings_file, Err *err)
     if (is_own_folder(out, settings_file))
         return STATUS_OK;
     if (!is_below(path, RESULTS) || has_step_up(path))
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
+        return bad_data(err, "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
             "one on the command line: --out %.100s",
             settings_file, out, RESULTS, out);
     if (realpath(RESULTS, results) && stat(results, &about) == 0 && S_ISDIR(about.st_mode) &&
         (!find_existing(path, there) || !is_below(there, results)))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
+        return bad_data(err, "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
                     "line: --out %.100s",
                     settings_file, out, RESULTS, out);
     return STATUS_OK;

@@ -1,9 +1,6 @@
 #include "study/progress.h"
 
 #include <limits.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <time.h>
 
 #include "settings/options.h"

@@ -1,8 +1,5 @@
 #include "study/refine.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/clock.h"
 #include "evaluate/adapter.h"
 #include "settings/options.h"
@@ -90,8 +87,7 @@ static Status begin(Refine *r, double f[], Err *err)
     Status status = simulate(r, r->x, 0, &table, f, err);
     const Evaluation *start = table.row;
     if (status == STATUS_OK && start->outcome != OUTCOME_OK)
-        status = fail(err, STATUS_BAD_DATA,
-                      "the design to be polished fails when it is simulated again, %ld times (%s%s%s): choose another "
+        status = bad_data(err, "the design to be polished fails when it is simulated again, %ld times (%s%s%s): choose another "
                       "one, or give --replicates as many as the run made",
                       r->config->replicates, outcome_word(start->outcome), start->reason[0] ? ": " : "", start->reason);
     if (status == STATUS_OK)
@@ -204,8 +200,7 @@ Status refine_allows(const Settings *s, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s))
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA,
-                "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
+    return bad_data(err, "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
                 "from noise; continue the search instead (search.max_evals, search.replicate_share)");
 }
 

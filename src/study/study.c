@@ -1,10 +1,7 @@
 #include "study/study.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <omp.h>
 
@@ -226,8 +223,7 @@ static Status check_state(const Study *study, const Run *run, Err *err)
                     study->summary->folder, study->summary->folder);
     return !goes_on || !run->state || search_state_is_current(run->state, run->n_state)
                ? STATUS_OK
-               : fail(err, STATUS_BAD_DATA,
-                      "%s: another version of the program interrupted this search, and this one cannot resume it; "
+               : bad_data(err, "%s: another version of the program interrupted this search, and this one cannot resume it; "
                       "nothing was changed. Resume it with that version, or begin anew from its front: "
                       "--new --set search.start=%s",
                       study->summary->folder, study->summary->folder);

@@ -1,7 +1,5 @@
 #include "study/study_log.h"
 
-#include <stdio.h>
-
 #include "base/json.h"
 #include "base/hypervolume.h"
 #include "store/provenance.h"
