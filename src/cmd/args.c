@@ -48,9 +48,11 @@ Status args_moved(const Args *args, RecordPaths *moved, Err *err)
     for (int i = 0; (text = args_next(args, "--set", &i));) {
         const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
         if (!record && !records)
-            return misused(err, "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
-                        "be set",
-                        text);
+            return misused(
+                err,
+                "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
+                "be set",
+                text);
         if ((record && moved->record) || (records && moved->records))
             return misused(err, "--set %s is given twice", record ? "motion.record" : "motion.records");
         moved->record = record ? record : moved->record;
@@ -113,8 +115,8 @@ static Status take_operand(Args *args, const char *word, Err *err)
     if (!c->operand)
         return misused(err, "%s %s takes no operand, found '%.60s'", program_of(c), c->name, word);
     if (args->operand && !strstr(c->operand, "..."))
-        return misused(err, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name,
-                    c->operand, word, args->operand);
+        return misused(err, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name, c->operand, word,
+                       args->operand);
     if (!word[0])
         return misused(err, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
     args->operands[args->n_operands++] = word;
@@ -141,8 +143,8 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
     if (command->operand && command->operand[0] != '[' && !args->operand)
-        return misused(err, "%s %s needs a %s; for example: %s", program_of(command), command->name,
-                    command->operand, command->example);
+        return misused(err, "%s %s needs a %s; for example: %s", program_of(command), command->name, command->operand,
+                       command->example);
     return outputs_check(args, err);
 }
 
@@ -188,7 +190,7 @@ Status args_whole(const Args *args, const char *name, long least, long most, lon
     double number;
     TRY(args_number(args, name, (double)least, (double)most, (double)otherwise, &number, err));
     *value = (long)number;
-    return (double)*value == number ? STATUS_OK : misused(err, "%s: %g is no whole number", name, number);
+    return *value == number ? STATUS_OK : misused(err, "%s: %g is no whole number", name, number);
 }
 
 Status args_alone(const Args *args, const char *name, const char *others, Err *err)

@@ -164,7 +164,7 @@ static json_t *json_shape(const BuildingModel *b, int n, int mode)
             largest = b->phi[j * b->n + mode];
     for (int j = 0; j < n; j++)
         shape[j] = b->phi[j * b->n + mode] / largest;
-    return json_numbers((size_t)n, shape);
+    return json_numbers(n, shape);
 }
 
 /* Mode by mode; those of the core as they stand in `cores`. */
@@ -172,7 +172,7 @@ static void put_core(json_t *o, const Model *m, const json_t *cores)
 {
     const BuildingModel *b = &m->b.model;
     double hz[FLOORS_MAX], shares[FLOORS_MAX];
-    const size_t n = (size_t)m->b.n;
+    const size_t n = m->b.n;
     const char *key;
     json_t *shapes = json_array(), *horizontal = json_array(), *value;
     for (size_t i = 0; i < n; i++) {

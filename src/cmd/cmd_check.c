@@ -158,7 +158,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     Designs d;
     if (!note(c, designs_take(&d, path, s, NULL, NULL, &e), "--design", &e))
         return 0;
-    memcpy(p->x, d.x, (size_t)s->n_var * sizeof *p->x);
+    memcpy(p->x, d.x, s->n_var * sizeof *p->x);
     warn_of_designs(&d, path, warn, c);
     design_free(&d);
     return 1;
@@ -264,9 +264,9 @@ static void expected_times(const CheckedScene *p, long simulations, long threads
     const SearchOptions *o = &p->s->search;
     const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
     const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
-    const double growth = sqrt((double)p->space.n_var / VARIABLES);
+    const double growth = sqrt(p->space.n_var / VARIABLES);
     *search_s = o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
-    *baselines_s = DEVICES_S * (double)p->building.n * n_records;
+    *baselines_s = DEVICES_S * p->building.n * n_records;
     if (p->building.yields)
         *baselines_s *= p->s->building.hysteresis == HYSTERESIS_BOUC_WEN ? BOUC_WEN : YIELDING;
     *all_s = all * each_s / (double)threads + *search_s + *baselines_s;
@@ -303,7 +303,7 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
     const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
                                                                : here > 0            ? here
                                                                                      : 1;
-    const long records = (long)motion_n_records(&s->motion);
+    const long records = motion_n_records(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     expected_times(p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")),
                    &search_s, &baselines_s, &all_s);

@@ -47,8 +47,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
             json_put(row, "pga_g=%g", e->level[l]);
             for (int i = 0; i < n_shown(order); i++) {
                 for (int f = 0; f < IDA_FRACTILES; f++)
-                    figure_text(ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]), NAN, NAN,
-                                value[f]);
+                    figure_text(ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]), NAN, NAN, value[f]);
                 snprintf(text, sizeof text, is_one ? "%s" : "%s (%s to %s)", value[1], value[0], value[2]);
                 json_object_set_new(row, measure(order->of[i])->name, json_string(text));
             }
@@ -78,7 +77,7 @@ static json_t *ida_json(const Evaluations *e)
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
-            json_object_set_new(one, KEYS[i], json_fractiles(e, (EvaluatedCase)c, IDA_FRACTILE[i]));
+            json_object_set_new(one, KEYS[i], json_fractiles(e, c, IDA_FRACTILE[i]));
         json_object_set_new(o, EVALUATION_CASES[c].key, one);
     }
     return o;
@@ -96,10 +95,9 @@ static void write_block(FILE *script, const Picture *p, size_t r, int which, int
     for (size_t l = 0; l < e->n_levels; l++) {
         fprintf(script, "%.6g ", e->level[l]);
         for (int k = 0; k < n_shown(p->order); k++)
-            gnuplot_number(script,
-                           fractile < 0
-                               ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
-                               : ida_fractile(e, l, (EvaluatedCase)which, p->order->of[k], IDA_FRACTILE[fractile]));
+            gnuplot_number(script, fractile < 0
+                                       ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
+                                       : ida_fractile(e, l, which, p->order->of[k], IDA_FRACTILE[fractile]));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
@@ -218,8 +216,7 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
     for (size_t c = 0; run->record->readable == STATUS_OK && c < evaluated_cases(e, run); c++) {
         const Measured m = measured(&run->result[c]);
         const double motion[] = {e->level ? e->level[i % e->n_levels] : run->pga_g, run->scale, run->stretch};
-        json_t *row =
-            begin_row(table, run->record->path, (EvaluatedCase)c, outcome_word(measure_outcome(m.outcome)), motion);
+        json_t *row = begin_row(table, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
         put_measures(row, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
             put_replicates(row, c == EVALUATED_DESIGN ? &run->replicates : NULL);
@@ -244,7 +241,7 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
         add_rows(table, e, i);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
         for (int c = 0; c < N_EVALUATED; c++)
-            add_fractiles(table, e, l, (EvaluatedCase)c);
+            add_fractiles(table, e, l, c);
     return figures_csv(table, path, err);
 }
 
@@ -363,8 +360,7 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     if (strchr(pga, ':')) {
         for (size_t i = 0; i < N_OF(OTHERS); i++)
             if (args_gives(args, OTHERS[i]))
-                return misused(err, "--pga %.60s scales every record; %s does not go with it", pga,
-                            OTHERS[i]);
+                return misused(err, "--pga %.60s scales every record; %s does not go with it", pga, OTHERS[i]);
         motion_unscale(&s->motion);
         e->level = levels;
         return ida_levels(pga, levels, &e->n_levels, err);
@@ -417,7 +413,7 @@ static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
     TRY(settings_check(s, err));
     if (e.level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
         return misused(err, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
-                    s->sim.replicates, args_value(args, "--pga"));
+                       s->sim.replicates, args_value(args, "--pga"));
     e.replicates = !e.level && s->sim.replicates > 1 ? s->sim.replicates : 0;
     const Status status = run_and_give(args, s, c, &e, err);
     evaluations_free(&e);

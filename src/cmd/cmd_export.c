@@ -11,7 +11,7 @@ static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err
     TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
     size_t *rows;
     TRY_ROOM(rows, wanted, "designs", err);
-    const Status status = export_designs(f, run, EXPORT_FRONT, run_spread_out(run, (size_t)wanted, 1, rows), rows, err);
+    const Status status = export_designs(f, run, EXPORT_FRONT, run_spread_out(run, wanted, 1, rows), rows, err);
     free(rows);
     return status;
 }

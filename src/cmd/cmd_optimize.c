@@ -83,7 +83,7 @@ static void add_baselines(json_t *table, const Schema *schema, const Baseline ba
         double natural[OBJECTIVES_MAX], extra[N_MEASURES];
         for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
             *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
-        figures_design(table, baseline_words((BaselineKind)k), 0, schema, natural, NULL, NULL, extra);
+        figures_design(table, baseline_words(k), 0, schema, natural, NULL, NULL, extra);
     }
 }
 

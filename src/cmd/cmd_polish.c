@@ -52,11 +52,13 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     const size_t needed = refine_evals_min(w->run->settings, w->config.replicates);
     if ((size_t)evals < needed)
-        return misused(err, "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
-                    "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
-                    "fewer --replicates",
-                    evals, needed);
-    w->config.max_evals = (size_t)evals;
+        return misused(
+            err,
+            "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
+            "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
+            "fewer --replicates",
+            evals, needed);
+    w->config.max_evals = evals;
     return STATUS_OK;
 }
 
@@ -170,8 +172,7 @@ static void show(const Work *w, long id)
 static Status store_better(Work *w, long *id, long *knee, Err *err)
 {
     Run now;
-    TRY(store_polished(w->store, &w->result.designs.row[1], (size_t)w->run->tried_to_polish,
-                       (size_t)w->run->polished_at, id, err));
+    TRY(store_polished(w->store, &w->result.designs.row[1], w->run->tried_to_polish, w->run->polished_at, id, err));
     if (w->run->n_sessions > 0 && w->run->session[w->run->n_sessions - 1].is_final) /* else its search goes on */
         TRY(named_simulate(w->store, w->run->settings, NULL, NULL, err));
     TRY(store_write_front(w->store, &now, err));

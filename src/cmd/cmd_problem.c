@@ -76,8 +76,8 @@ static Status run(const Args *args, Err *err)
     int n_names = 0, known = 0;
     Settings s;
     Adapter *adapter;
-    for (; textbook((size_t)n_names); n_names++) {
-        names[n_names] = textbook((size_t)n_names)->name;
+    for (; textbook(n_names); n_names++) {
+        names[n_names] = textbook(n_names)->name;
         known |= strcmp(args->operand, names[n_names]) == 0;
     }
     if (!known)

@@ -60,8 +60,8 @@ static Status lay_out_job(Job *job, Err *err)
     TRY_ROOM(job->results, job->n, "simulations", err);
     TRY_ROOM(job->summary, job->n, "simulations", err);
     for (size_t i = 0; i < job->n; i++)
-        job->tasks[i] = (SimTask){.kind = job->kind,
-                                  .x = job->designs.x ? &job->designs.x[i * (size_t)job->designs.space.n_var] : NULL};
+        job->tasks[i] =
+            (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * job->designs.space.n_var] : NULL};
     return STATUS_OK;
 }
 
@@ -320,7 +320,7 @@ static Status show_sensitivities(const Args *args, const Settings *s, const doub
 {
     Sensitivity *list;
     size_t n;
-    TRY(sensitivity_find(s, x, (size_t)s->sim.replicates, &list, &n, err));
+    TRY(sensitivity_find(s, x, s->sim.replicates, &list, &n, err));
     const Status shown = give_slopes(args, n, list, err);
     free(list);
     return shown;
@@ -348,8 +348,9 @@ static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
 {
     Problem p;
     if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
-        return misused(err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
-                    "fast");
+        return misused(
+            err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
+                 "fast");
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s->sim.forces = FORCES_YES;
     job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);

@@ -413,7 +413,7 @@ static Status open_all(const Args *args, const Settings *settings, Spectrum s[],
 static Status run(const Args *args, Err *err)
 {
     Settings settings;
-    const size_t n = (size_t)args->n_operands;
+    const size_t n = args->n_operands;
     settings_defaults(&settings);
     TRY(args_apply(args, &settings, NULL, NULL, err));
     TRY(settings_check(&settings, err));

@@ -17,10 +17,10 @@ static Status drop_results(Table *t, const char *path, const DesignSpace *space,
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
         if (from < (int)kept)
-            return bad_data(err, "%s: no column %s, which a design of %d floors has (design.variables)",
-                        path, name, space->n_floors);
+            return bad_data(err, "%s: no column %s, which a design of %d floors has (design.variables)", path, name,
+                            space->n_floors);
         for (size_t i = 0; i < t->n_rows; i++)
-            t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + (size_t)from];
+            t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + from];
         snprintf(t->names[kept++], TABLE_NAME_MAX, "%s", name);
     }
     for (size_t i = 0; i < t->n_rows; i++)
@@ -37,7 +37,7 @@ long design_number(const Designs *d, size_t i)
 /* Row `row` becomes the only one. */
 static void keep_row(Designs *d, size_t row)
 {
-    const size_t n_var = (size_t)d->space.n_var;
+    const size_t n_var = d->space.n_var;
     memmove(d->x, d->x + row * n_var, n_var * sizeof *d->x);
     d->line[0] = d->line[row];
     if (d->id)
@@ -51,14 +51,13 @@ static Status choose_row(Designs *d, const char *path, const char *choice, Err *
     const long wanted = strtol(choice, &end, 10);
     if (end == choice || *end)
         return bad_data(err, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
-                    d->id ? "id" : "row, from 1");
+                        d->id ? "id" : "row, from 1");
     for (size_t i = 0; i < d->n; i++)
         if (design_number(d, i) == wanted) {
             keep_row(d, i);
             return STATUS_OK;
         }
-    return bad_data(err, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted,
-                d->n);
+    return bad_data(err, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted, d->n);
 }
 
 /* The column id, of (t->n_rows) for the caller to free; NULL: there is none. */
@@ -70,7 +69,7 @@ static Status take_ids(const Table *t, long **ids, Err *err)
         return STATUS_OK;
     TRY_ROOM(*ids, t->n_rows + 1, "designs", err);
     for (size_t i = 0; i < t->n_rows; i++)
-        (*ids)[i] = (long)t->values[i * t->n_cols + (size_t)column];
+        (*ids)[i] = (long)t->values[i * t->n_cols + column];
     return STATUS_OK;
 }
 
@@ -118,13 +117,15 @@ static Status check_space(const Run *run, const char *folder, const DesignSpace 
     for (size_t j = 0; j < n_var && (int)j < space->n_var; j++) {
         design_variable_name(space, (int)j, name);
         if (strcmp(schema_variable(&run->schema, j)->name, name) != 0)
-            return bad_data(err, "%s: variable %zu of its designs is %s, here it is %s (design.variables)",
-                        folder, j + 1, schema_variable(&run->schema, j)->name, name);
+            return bad_data(err, "%s: variable %zu of its designs is %s, here it is %s (design.variables)", folder,
+                            j + 1, schema_variable(&run->schema, j)->name, name);
     }
     return n_var == (size_t)space->n_var
                ? STATUS_OK
-               : bad_data(err, "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
-                      folder, n_var, space->n_floors, space->n_var);
+               : bad_data(
+                     err,
+                     "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
+                     folder, n_var, space->n_floors, space->n_var);
 }
 
 void known_of_run(const Run *run, size_t row, Known known[])
@@ -200,7 +201,7 @@ static void find_place(const char *word, Place *p)
     const char *colon = strrchr(word, ':');
     p->choice = NULL;
     if (!is_there(word, strlen(word), p) && colon && colon > word) {
-        is_there(word, (size_t)(colon - word), p);
+        is_there(word, (colon - word), p);
         p->choice = colon + 1;
     }
     p->is_run = run_drop_name(p->path) || run_is_there(p->path);
@@ -232,8 +233,7 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
     if (n == 1)
         return STATUS_OK;
     design_free(d);
-    return misused(err, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n,
-                word, first);
+    return misused(err, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n, word, first);
 }
 
 void known_raise(const Known known[], const SimResult *r, double sd[])
@@ -343,7 +343,7 @@ Status weights_check(const Schema *schema, const char *option, const double weig
     for (size_t k = 0; k < schema->n_obj; k++) {
         if (weights[k] < 0)
             return misused(err, "%s: %s=%g is negative; every weight asks for more of what is good", option,
-                        schema_objective(schema, k)->name, weights[k]);
+                           schema_objective(schema, k)->name, weights[k]);
         sum += weights[k];
     }
     return sum > 0 ? STATUS_OK : misused(err, "%s: all of them are 0", option);

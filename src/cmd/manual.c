@@ -82,7 +82,7 @@ void usage_write(FILE *out)
             "\n`imtet help COMMAND` shows an example and every option, `imtet --version --json` what this program\n"
             "was built from.\n\nexit status\n");
     for (int s = 0; s < STATUS_COUNT; s++)
-        fprintf(out, "  %3d  %s\n", status_exit_code((Status)s), status_words((Status)s));
+        fprintf(out, "  %3d  %s\n", status_exit_code(s), status_words(s));
 }
 
 /* ---- for man --------------------------------------------------------------------------------------------------- */

@@ -156,7 +156,7 @@ static double distance_to(const SearchView *view, const double w[N_DTLZ2])
     for (size_t i = 0; i < view->n; i++) {
         double square = 0;
         for (int k = 0; k < N_DTLZ2; k++) {
-            const double worse = fmax(view->F[i * N_DTLZ2 + (size_t)k] - w[k] / sqrt(norm), 0);
+            const double worse = fmax(view->F[i * N_DTLZ2 + k] - w[k] / sqrt(norm), 0);
             square += worse * worse;
         }
         if (view->on_front[i])

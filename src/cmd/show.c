@@ -311,7 +311,7 @@ static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
     const double *of = at;
     const long *counts = at;
     const int *whole = at;
-    const size_t n = (size_t)r->n_floors;
+    const size_t n = r->n_floors;
     switch (kind) {
     case OF_NUMBER:
         return json_number(*of);
@@ -326,7 +326,7 @@ static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
     case OF_FLOORS:
         return json_numbers(n, of);
     case OF_MODES:
-        return json_numbers((size_t)r->n_modes, of);
+        return json_numbers(r->n_modes, of);
     case OF_SIDES: /* [u > v, u < v][floor] */
         return json_pair(n, of, of + FLOORS_MAX);
     case OF_COUNTS:
@@ -353,7 +353,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     for (int k = 0; k < N_MEASURES; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
-             r->filtered_known ? json_numbers((size_t)r->n_floors, r->peak_filtered_g) : json_null());
+             r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
     for (size_t i = 0; i < N_OF(FIELDS); i++)
         if (!(FIELDS[i].needs & ~has))
             json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
@@ -531,9 +531,8 @@ void show_verdicts(const Schema *schema, const double natural[], const Baseline 
 {
     char device[DEVICE_TEXT_MAX];
     for (int k = 0; k < N_BASELINES; k++) {
-        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
-        printf("against %s%s%s%s: impacts ", baseline_words((BaselineKind)k), *device ? " (" : "", device,
-               *device ? ")" : "");
+        baseline_device_text(k, &baseline[k].device, device);
+        printf("against %s%s%s%s: impacts ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "");
         print_better("win in ", schema, 1, natural, &baseline[k]);
         print_better("; lose in ", schema, -1, natural, &baseline[k]);
         putchar('\n');
@@ -579,7 +578,7 @@ void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user
     char name[TABLE_NAME_MAX], text[900], line[16] = "";
     for (size_t i = 0; i < d->n; i++)
         for (int j = 0; j < s->n_gaps; j++) {
-            const double gap = d->x[i * (size_t)s->n_var + (size_t)j];
+            const double gap = d->x[i * s->n_var + j];
             if (!(gap > GAP_MAX_M))
                 continue;
             if (d->line && !d->id)

@@ -101,7 +101,7 @@ static void write_history_row(const SimSample *s, void *user)
     HistoryRows *rows = user;
     FloorMotion f;
     double drift[FLOORS_MAX], energy[N_ENERGIES], unknown[FLOORS_MAX];
-    const size_t n = (size_t)rows->n_floors;
+    const size_t n = rows->n_floors;
     rows->attempt += s->t == 0;
     if (rows->attempt != rows->wanted)
         return;

@@ -77,17 +77,17 @@ static void write_json(json_t *all, FILE *out)
 
 static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
 {
-    const char *mark = memmem(start, (size_t)(end - start), MARK, sizeof MARK - 1);
+    const char *mark = memmem(start, (end - start), MARK, sizeof MARK - 1);
     if (!mark)
         return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
-    fwrite(start, 1, (size_t)(mark - start), out); /* a failed write is seen on closing */
+    fwrite(start, 1, (mark - start), out); /* a failed write is seen on closing */
     fputs("<script type=\"application/json\" id=\"run\">", out);
     write_json(report_json(r), out);
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
     TRY(export_designs(out, r->run, EXPORT_PAGE, r->n_shown, r->shown, err));
     fputs("</script>\n", out);
     mark += sizeof MARK - 1;
-    fwrite(mark, 1, (size_t)(end - mark), out);
+    fwrite(mark, 1, (end - mark), out);
     return STATUS_OK;
 }
 

@@ -27,7 +27,7 @@ static json_t *json_of_settings(const Settings *s)
 
 json_t *result_json(const SimResult *r, const MeasureOrder *order)
 {
-    const size_t n = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
+    const size_t n = r->n_floors, n_modes = r->n_modes;
     if (r->outcome != RUN_OK)
         return json_of("reason=%s", r->reason);
     json_t *objectives = json_array();
@@ -78,11 +78,11 @@ static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const Mea
         for (int i = 0; i < order->n_obj; i++)
             values[i] = baseline[k].value[order->of[i]];
         char device[DEVICE_TEXT_MAX];
-        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
+        baseline_device_text(k, &baseline[k].device, device);
         const int ok = baseline[k].outcome == OUTCOME_OK;
-        json_array_append_new(list, json_of("key=%s words=%s device=%s objectives=%p", baseline_key((BaselineKind)k),
-                                            baseline_words((BaselineKind)k), device,
-                                            ok ? json_numbers((size_t)order->n_obj, values) : json_null()));
+        json_array_append_new(list,
+                              json_of("key=%s words=%s device=%s objectives=%p", baseline_key(k), baseline_words(k),
+                                      device, ok ? json_numbers(order->n_obj, values) : json_null()));
     }
     return list;
 }
@@ -146,7 +146,7 @@ static json_t *json_of_loads(const Detail *d)
         for (int k = 0; k < n; k++)
             values[k] = words_of_measure(LOADS[k]).factor * measure_value(&d->result[scene], LOADS[k]);
         if (d->result[scene].outcome == RUN_OK)
-            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers((size_t)n, values)));
+            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers(n, values)));
     }
     return json_of("columns=%p rows=%p", columns, rows);
 }
@@ -156,7 +156,7 @@ static json_t *json_of_loads(const Detail *d)
 static json_t *json_of_forces(const SimResult *r)
 {
     const SimForces *f = &r->forces;
-    const size_t n = (size_t)r->n_floors;
+    const size_t n = r->n_floors;
     if (r->outcome != RUN_OK || !r->forces_known)
         return json_null();
     return json_of("contact_n=%p stress_pa=%p buckling_pa=%p",
@@ -183,7 +183,7 @@ static json_t *json_of_band(const Detail *d)
                 high[j] = fmax(high[j], v);
             }
         }
-        const size_t n = (size_t)d->n_floors;
+        const size_t n = d->n_floors;
         json_object_set_new(band, KEYS[k], json_pair(n, low, high));
     }
     return band;
@@ -192,7 +192,7 @@ static json_t *json_of_band(const Detail *d)
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     static const char *const KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
-    const size_t n = (size_t)d->n_floors;
+    const size_t n = d->n_floors;
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];

@@ -89,7 +89,7 @@ static size_t *rows_by_generation(const Run *run, size_t n)
 /* Volume of the box after every generation: designs join when they come onto the front. */
 static Status growth_in(const Run *run, const double lower[], const double reference[], json_t *out, Err *err)
 {
-    const size_t n = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
+    const size_t n = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
     Hypervolume *h;
     json_t *simulated = json_array(), *volume = json_array();
     double f[OBJECTIVES_MAX];
@@ -121,8 +121,7 @@ static Status check_pair(const Look *const look[2], Err *err)
     for (size_t k = 0; same && k < a->n_obj; k++)
         same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
                schema_objective(a, k)->sense == schema_objective(b, k)->sense;
-    return same ? STATUS_OK
-                : bad_data(err, "the two runs have other objectives: their fronts cannot be compared");
+    return same ? STATUS_OK : bad_data(err, "the two runs have other objectives: their fronts cannot be compared");
 }
 
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */

@@ -268,8 +268,7 @@ static Status take_design(const OnDemand *o, const json_t *question, double x[],
         const double slack = 1e-9 * (o->upper[j] - o->lower[j]);
         x[j] = json_number_value(value);
         if (!json_is_number(value) || !(x[j] >= o->lower[j] - slack && x[j] <= o->upper[j] + slack))
-            return bad_data(err, "x: variable %zu is not within %g and %g", j + 1, o->lower[j],
-                        o->upper[j]);
+            return bad_data(err, "x: variable %zu is not within %g and %g", j + 1, o->lower[j], o->upper[j]);
     }
     return STATUS_OK;
 }
@@ -286,9 +285,9 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
         {"pga_g", own->pga_g / PGA_SHARE, own->pga_g * PGA_SHARE, 0, &q->ground.pga_g},
         {"stretch", own->stretch / STRETCH_SHARE, own->stretch * STRETCH_SHARE, own->stretch, &q->ground.stretch},
         {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
-    *q = (Question){.turn = (long)json_integer_value(json_object_get(given, "turn"))};
-    Status status = json_is_object(given) ? take_design(o, given, q->x, err)
-                                          : bad_data(err, "the question is no JSON object");
+    *q = (Question){.turn = json_integer_value(json_object_get(given, "turn"))};
+    Status status =
+        json_is_object(given) ? take_design(o, given, q->x, err) : bad_data(err, "the question is no JSON object");
     for (size_t i = 0; status == STATUS_OK && i < N_OF(numbers); i++)
         status = take_number(given, numbers[i].key, numbers[i].least, numbers[i].most, numbers[i].otherwise,
                              numbers[i].value, err);
@@ -328,13 +327,12 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
     for (int k = 0; k < order->n_obj; k++)
         natural[k] = measure_value(r, order->of[k]);
     const int ok = r->outcome == RUN_OK;
-    json_t *answer =
-        json_of("turn=%ld outcome=%s reason=%s objectives=%p gap_m=%p peaks=%p no_core=%p beyond_law=%c seconds=%g",
-                q->turn, outcome_word(measure_outcome(r->outcome)), r->reason,
-                ok ? json_numbers((size_t)order->n_obj, natural) : json_null(),
-                json_numbers((size_t)tower_n_floors(tower), gap_m), ok ? result_json(r, order) : json_null(),
-                o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), beyond_contact_law(r),
-                r->seconds);
+    json_t *answer = json_of(
+        "turn=%ld outcome=%s reason=%s objectives=%p gap_m=%p peaks=%p no_core=%p beyond_law=%c seconds=%g", q->turn,
+        outcome_word(measure_outcome(r->outcome)), r->reason, ok ? json_numbers(order->n_obj, natural) : json_null(),
+        json_numbers(tower_n_floors(tower), gap_m), ok ? result_json(r, order) : json_null(),
+        o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), beyond_contact_law(r),
+        r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
     if (ok && o->is_single && same_ground)

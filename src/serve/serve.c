@@ -238,9 +238,9 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     json_t *both;
     if (number >= (long)watch_n(w))
         return fail(err, STATUS_MISSING, "there is no run %ld", number);
-    TRY(watch_take(w, (size_t)number, PAGE_S, &other, err));
+    TRY(watch_take(w, number, PAGE_S, &other, err));
     const Look *const look[2] = {v->view.look, other.look};
-    const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
+    const char *const name[2] = {watch_name(w, v->run), watch_name(w, number)};
     const Status status = answer_against(look, name, &both, err);
     watch_give(&other);
     TRY(status);
@@ -367,7 +367,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
 {
     const Route *route = r->route;
     const ShowFn show = strcmp(method, "POST") == 0 ? route->post : route->get;
-    Visit v = {.server = s, .request = r, .run = route->has_run ? (size_t)r->path.run : 0};
+    Visit v = {.server = s, .request = r, .run = route->has_run ? r->path.run : 0};
     Answer a = {0};
     Err err = {0};
     set_waiting(s, socket_of(c), 0);
@@ -476,8 +476,8 @@ static Status listen_on(Server *s, int port, Err *err)
                                      MHD_USE_ERROR_LOG,
                                  (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
                                  MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here,
-                                 MHD_OPTION_CONNECTION_LIMIT, n, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S,
-                                 MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION,
+                                 MHD_OPTION_CONNECTION_LIMIT, n, MHD_OPTION_CONNECTION_TIMEOUT, STALL_S,
+                                 MHD_OPTION_CONNECTION_MEMORY_LIMIT, HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION,
                                  note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed, s, MHD_OPTION_END);
     if (!s->daemon)
         return fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", port, strerror(errno));

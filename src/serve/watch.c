@@ -276,7 +276,7 @@ View watch_next(Watch *w, size_t i, long seen, double seconds)
         if (watch_take(w, i, seconds, &view, &(Err){0}) == STATUS_OK && view.version > seen)
             return view;
         watch_give(&view);
-        nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * POLL_S)}, NULL);
+        nanosleep(&(struct timespec){.tv_nsec = (1e9 * POLL_S)}, NULL);
     }
     return (View){.version = seen};
 }

@@ -296,8 +296,8 @@ enum { N_OPTIONS = N_OF(OPTIONS) };
 
 _Static_assert(sizeof(UncertainOptions) == 6 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
-_Static_assert((int)N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
-_Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
+_Static_assert(N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
+_Static_assert(OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
 
 const char *settings_key(int i)
 {
@@ -350,8 +350,7 @@ static Status unknown_word(const Option *o, const char *value, Err *err)
     for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
         list[n++] = word;
     const char *near = nearest_word(value, list, n);
-    return near ? bad_data(err, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words,
-                       near)
+    return near ? bad_data(err, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words, near)
                 : bad_data(err, "%s: '%.60s' is not one of %s", o->key, value, o->words);
 }
 
@@ -363,11 +362,11 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     *number = strtod(value, &end);
     if (end == value || *end)
         return bad_data(err, "%s: '%s' is not a number%s%s%s", o->key, value, *unit ? " [" : "", unit,
-                    *unit ? "]" : "");
+                        *unit ? "]" : "");
     if (!(*number >= o->min && *number <= o->max)) /* also rejects NaN */
-        return bad_data(err, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max,
-                    *unit ? " " : "", unit);
-    if (o->kind == KIND_WHOLE && *number != (double)(long)*number)
+        return bad_data(err, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max, *unit ? " " : "",
+                        unit);
+    if (o->kind == KIND_WHOLE && *number != (long)*number)
         return bad_data(err, "%s: %s is not a whole number", o->key, value);
     return STATUS_OK;
 }
@@ -380,7 +379,7 @@ static Status assign_list(Settings *s, const Option *o, const char *value, Err *
     if (n > OPTION_LIST_MAX)
         return bad_data(err, "%s: %zu numbers; at most %d are supported", o->key, n, OPTION_LIST_MAX);
     for (; found.n < (int)n; found.n++) {
-        if (!list_item(value, (size_t)found.n, item, sizeof item))
+        if (!list_item(value, found.n, item, sizeof item))
             return bad_data(err, "%s: item %d of '%.60s' is empty", o->key, found.n + 1, value);
         TRY(parse_number(o, item, &found.at[found.n], err));
     }
@@ -425,10 +424,9 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
         const int i = equals ? word_index(o->words, item) : -1;
         double number;
         if (i < 0)
-            return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item,
-                        o->words);
+            return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item, o->words);
         TRY(parse_number(o, equals + 1, &number, err));
-        memcpy((char *)&shares + (size_t)i * sizeof number, &number, sizeof number);
+        memcpy((char *)&shares + i * sizeof number, &number, sizeof number);
     }
     memcpy(field_of(s, o), &shares, sizeof shares);
     return STATUS_OK;
@@ -443,7 +441,9 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
     const int needs_quotes = strstr(value, " #") != NULL, has_both = strchr(value, '"') && strchr(value, '\'');
     if (strpbrk(value, "\r\n") || strstr(value, " ;") || (needs_quotes && (has_both || strchr(value, '\\'))) ||
         isspace((unsigned char)value[0]) || isspace((unsigned char)value[strlen(value) - 1]))
-        return bad_data(err, "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
+        return bad_data(
+            err,
+            "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
             o->key, value);
     snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
     return STATUS_OK;
@@ -611,7 +611,7 @@ static void format_shares(const Settings *s, const Option *o, char text[OPTION_T
             continue;
         format_word(name, o->words, (int)i);
         format_real(share[i], number);
-        n += (size_t)snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=%s", n ? " " : "", name, number);
+        n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=%s", n ? " " : "", name, number);
     }
 }
 
@@ -622,7 +622,7 @@ static void format_list(const NumberList *list, char text[OPTION_TEXT_MAX])
     snprintf(text, OPTION_TEXT_MAX, "none");
     for (int i = 0; i < list->n && n < OPTION_TEXT_MAX; i++) {
         format_real(list->at[i], number);
-        n += (size_t)snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", number);
+        n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", number);
     }
 }
 

@@ -95,7 +95,7 @@ static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
         if (!is_there)
             return value;
         strip_quotes(item, text);
-        used += (size_t)snprintf(plain + used, OPTION_TEXT_MAX - used, "%s%s", used ? ", " : "", text);
+        used += snprintf(plain + used, OPTION_TEXT_MAX - used, "%s%s", used ? ", " : "", text);
         if (used >= OPTION_TEXT_MAX)
             return value;
     }
@@ -209,14 +209,14 @@ static void report_broken(const char *text, void *user)
 static char *whole_line(char *line, char *stop, char *end, int *n_more)
 {
     const char *begin = skip_blanks(line);
-    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', (size_t)(stop - line));
+    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', (stop - line));
     char *value = equals ? skip_blanks(equals + 1) : stop;
     *n_more = 0;
     if (*value != '[' || !toml_end(value, end, 0))
         return stop;
     for (const char *c = value, *close = toml_end(value, end, 0); c < close; c++)
         *n_more += *c == '\n';
-    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', (size_t)(end - close));
+    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', (end - close));
     return last ? last : end;
 }
 
@@ -224,7 +224,7 @@ static char *whole_line(char *line, char *stop, char *end, int *n_more)
 static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 {
     for (char *next = text, *line = text, *end = text + length; next < end; line = next) {
-        char *stop = memchr(line, '\n', (size_t)(end - line));
+        char *stop = memchr(line, '\n', (end - line));
         int n_more;
         stop = whole_line(line, stop ? stop : end, end, &n_more);
         next = stop + 1;

@@ -49,7 +49,7 @@ double column_number(sqlite3_stmt *row, int column)
 
 long column_whole(sqlite3_stmt *row, int column, long otherwise)
 {
-    return sqlite3_column_type(row, column) == SQLITE_NULL ? otherwise : (long)sqlite3_column_int64(row, column);
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? otherwise : sqlite3_column_int64(row, column);
 }
 
 /* -- faults -------------------------------------------------------------------------------------------------------- */
@@ -350,7 +350,7 @@ static Status open_without_locks(Database **out, const char *path, Err *err)
     char real[PATH_MAX], journal[PATH_MAX + 8], uri[3 * PATH_MAX + 40] = "file:";
     size_t n = strlen(uri);
     for (const char *c = real_path(path, real); *c; c++)
-        n += (size_t)sprintf(uri + n, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned)(unsigned char)*c);
+        n += sprintf(uri + n, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned char)*c);
     snprintf(journal, sizeof journal, "%s-wal", path);
     strcpy(uri + n, access(journal, F_OK) == 0 ? "?vfs=unix-none" : "?immutable=1");
     TRY(open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err));

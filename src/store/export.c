@@ -98,7 +98,7 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
         else
             print_cells(f, 1, n.value ? &n.value[n.of ? n.of[i] : i] : &none);
     if (part == PART_SD && n.n > 0)
-        print_cells(f, 1, e->replicates > 0 ? &(double){(double)e->replicates} : &none);
+        print_cells(f, 1, e->replicates > 0 ? &(double){e->replicates} : &none);
 }
 
 static void put_list(FILE *f, const char *key, size_t n, const double values[])

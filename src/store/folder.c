@@ -117,7 +117,7 @@ static Status write_holder(int fd, size_t n_stored)
     char host[65] = "", text[128];
     gethostname(host, sizeof host - 1);
     const int n = snprintf(text, sizeof text, "%ld %s %-12zu\n", (long)getpid(), host, n_stored);
-    return pwrite(fd, text, (size_t)n, 0) == n && ftruncate(fd, n) == 0 ? STATUS_OK : STATUS_IO;
+    return pwrite(fd, text, n, 0) == n && ftruncate(fd, n) == 0 ? STATUS_OK : STATUS_IO;
 }
 
 static Status lock_take(Folder *folder, const char *path, Err *err)

@@ -148,7 +148,7 @@ static void put_each(FILE *stream, size_t n, const double values[], const char *
     for (size_t j = 0; j < n; j++) {
         fputs_unlocked(j == 0 ? before : ",", stream);
         if (isfinite(values[j]))
-            fwrite_unlocked(text, 1, (size_t)(digits_of(text, text + sizeof text, values[j]) - text), stream);
+            fwrite_unlocked(text, 1, (digits_of(text, text + sizeof text, values[j]) - text), stream);
         else
             fputs_unlocked(missing, stream);
     }

@@ -47,7 +47,7 @@ static json_t *libraries(void)
 {
     char sundials[32] = "unknown", nlopt[32];
     int major, minor, fix;
-    SUNDIALSGetVersion(sundials, (int)sizeof sundials);
+    SUNDIALSGetVersion(sundials, sizeof sundials);
     nlopt_version(&major, &minor, &fix);
     snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
     return json_of("sqlite=%s sundials=%s nlopt=%s openblas=%s jansson=%s random123=%s", sqlite3_libversion(), sundials,

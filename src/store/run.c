@@ -150,7 +150,7 @@ int run_is_screened(const Run *run)
 /* As in the search, whose simulations of one replicate are one here. */
 static LevelCosts costs_of(const Run *run)
 {
-    const size_t whole = (size_t)run->settings->sim.replicates;
+    const size_t whole = run->settings->sim.replicates;
     return (LevelCosts){1, whole - 1, whole};
 }
 
@@ -306,7 +306,7 @@ Status run_why_empty(const Run *run, Err *err)
                     run->folder, run->table.n, run->table.row[0].reason, run->folder);
     if (run->n_generations == 0)
         return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
-                    run->folder, run->table.n);
+                        run->folder, run->table.n);
     if (strcmp(s->search.limits, "none") != 0)
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
                     s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
@@ -331,9 +331,9 @@ static Status pick_id(const Run *run, long id, size_t *row, Err *err)
     *row = run_find(run, id);
     if (*row < run->table.n)
         return STATUS_OK;
-    return run->table.n == 0 ? run_why_empty(run, err)
-                             : bad_data(err, "%s: has no design %ld; the nearest id is %ld", run->folder,
-                                    id, nearest_id(run, id));
+    return run->table.n == 0
+               ? run_why_empty(run, err)
+               : bad_data(err, "%s: has no design %ld; the nearest id is %ld", run->folder, id, nearest_id(run, id));
 }
 
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
@@ -346,8 +346,9 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
     if (end != word && !*end)
         return pick_id(run, id, row, err);
     if (!is_best && strcmp(word, "knee") != 0)
-        return bad_data(err, "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?", word,
-                    run->folder, schema_objective(&run->schema, 0)->name);
+        return bad_data(err,
+                        "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?",
+                        word, run->folder, schema_objective(&run->schema, 0)->name);
     if (is_best)
         TRY(schema_pick_objective(&run->schema, "best_NAME", word + sizeof BEST - 1, STATUS_BAD_DATA, &k, err));
     if (run->n_front == 0)

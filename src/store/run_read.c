@@ -57,7 +57,7 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
     Run *run = l->run;
-    const size_t n = (size_t)sqlite3_column_bytes(row, 1);
+    const size_t n = sqlite3_column_bytes(row, 1);
     const void *bytes = sqlite3_column_blob(row, 1);
     if (run->state && !run->state_is_damaged)
         return STATUS_OK;
@@ -97,7 +97,7 @@ static Status load_head(Loading *l, Err *err)
     TRY(records_read(l->d, TABLE_FRONT, &run->mark, &run->n_marks, err));
     TRY(database_each(l->d, "SELECT generation, bytes, digest FROM state ORDER BY copy", take_state, l, err));
     if (run->n_generations > 0)
-        run->n_finished = (size_t)run->generation[run->n_generations - 1].simulated;
+        run->n_finished = run->generation[run->n_generations - 1].simulated;
     run->state_is_damaged |= run->n_generations > 0 && !run->state;
     return check_front(l, err);
 }
@@ -109,7 +109,7 @@ static Status take_row(const Evaluation *e, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
-    const long expected = (long)(run->table.n + l->polished.n) + 1;
+    const long expected = (run->table.n + l->polished.n) + 1;
     if (e->kind == KIND_POLISHED)
         return evaluation_table_append(&l->polished, e, err);
     return run->table.n >= run->n_finished || e->id == expected
@@ -153,7 +153,7 @@ static Status insert_row(Archive *a, const Run *run, size_t i, Err *err)
     for (size_t k = 0; k < m; k++)
         f[k] = schema_objective(&run->schema, k)->sense * run->table.f[i * m + k];
     return pareto_archive_insert(a, 1, run_x(run, i), f, NULL, &(unsigned char){run->place[i].ok != 0},
-                                 (unsigned char)run->table.row[i].kind, (size_t)run->table.row[i].generation, err);
+                                 (unsigned char)run->table.row[i].kind, run->table.row[i].generation, err);
 }
 
 /* Row i of the run is row `at` of the archive. */
@@ -163,7 +163,7 @@ static void take_design(Run *run, size_t i, const Archive *a, size_t at)
     Evaluation *r = &run->table.row[i];
     if (a->replicates[at] == 0)
         return;
-    r->replicates = (int)((long)a->replicates[at] * run->schema.replicates);
+    r->replicates = (int)(a->replicates[at] * run->schema.replicates);
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         run->F[i * m + k] = schema_objective(&run->schema, k)->sense * a->F[at * m + k];
         if (a->n_replicates > 0)

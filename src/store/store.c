@@ -276,7 +276,7 @@ Status store_flush(RunStore *store, Err *err)
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
     Evaluation row = *e;
-    row.id = id_of(store, (size_t)e->id - 1);
+    row.id = id_of(store, e->id - 1);
     return rows_insert(store->db, ROWS_EVALUATION, store->schema, &row, err);
 }
 
@@ -315,9 +315,9 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
     RunSession *s = &store->session;
     const size_t n = store->run.n_sessions;
     *s = (RunSession){.number = n > 0 ? store->run.session[n - 1].number + 1 : 1,
-                      .pid = (long)getpid(),
+                      .pid = getpid(),
                       .threads = threads,
-                      .simulated_before = (long)n_simulated,
+                      .simulated_before = n_simulated,
                       .search_s = NAN,
                       .waited_s = NAN,
                       .surrogate_s = NAN};
@@ -418,7 +418,7 @@ static Status measure_front(RunStore *store, const SearchView *v, Err *err)
 static Status store_rows(RunStore *store, const SearchView *v, Err *err)
 {
     for (size_t i = store->n_known; i < v->n; i++)
-        TRY(rows_finish(store->db, id_of(store, i), (EvaluationKind)v->kind[i], (long)v->generation[i], err));
+        TRY(rows_finish(store->db, id_of(store, i), v->kind[i], v->generation[i], err));
     if (v->is_asynchronous)
         return STATUS_OK;
     /* what another program or machine had asked for in this generation before it was cut short */
@@ -429,7 +429,7 @@ static Status store_rows(RunStore *store, const SearchView *v, Err *err)
 
 static Status store_front_change(RunStore *store, const SearchView *v, size_t i, Err *err)
 {
-    const long id = id_of(store, i), generation = (long)v->generation_now;
+    const long id = id_of(store, i), generation = v->generation_now;
     store->front ^= digest_member(id);
     if (v->on_front[i])
         return database_do(store->db, err,
@@ -462,14 +462,14 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
 
 static Status store_moment(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
-    RunGeneration g = {.number = (long)v->generation_now,
-                       .simulated = (long)v->n,
-                       .failed = (long)v->n_failed,
-                       .front = (long)v->n_front,
+    RunGeneration g = {.number = v->generation_now,
+                       .simulated = v->n,
+                       .failed = v->n_failed,
+                       .front = v->n_front,
                        .surrogate_error = v->surrogate_error,
                        .hypervolume = store_hypervolume(store),
                        .seconds = seconds,
-                       .members = (long)store->front};
+                       .members = store->front};
     utc_now(g.finished);
     return record_put(store->db, TABLE_GENERATION, &g, err);
 }
@@ -477,7 +477,7 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
 /* Twice: one that the disk has damaged gives way to its copy. */
 static Status store_state(RunStore *store, const SearchView *v, Err *err)
 {
-    const long generation = (long)v->generation_now;
+    const long generation = v->generation_now;
     for (long copy = 1; copy <= 2; copy++)
         TRY(database_do(store->db, err, "INSERT OR REPLACE INTO state VALUES (?, ?, ?, ?)", "iibi", copy, generation,
                         v->state, v->n_state, state_digest(generation, v->state, v->n_state)));
@@ -626,8 +626,8 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
     TRY(begin(store, err));
     Status status = better ? insert_polished(store, better, id, err) : STATUS_OK;
     if (status == STATUS_OK)
-        status = database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", (long)n_tried,
-                             (long)n_simulated);
+        status = database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", n_tried,
+                             n_simulated);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }
 

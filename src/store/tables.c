@@ -152,10 +152,12 @@ Status tables_have_room(const Schema *s, Err *err)
 {
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
     const size_t others = n_columns(ROWS_EVALUATION, s) - s->n_var;
-    return s->n_var + others <= COLUMNS_MAX ? STATUS_OK
-                                            : bad_data(err, "problem.variables = %zu: a run has room for %zu variables beside "
-                                                   "%zu objectives (SQLite: %d columns)",
-                                                   s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
+    return s->n_var + others <= COLUMNS_MAX
+               ? STATUS_OK
+               : bad_data(err,
+                          "problem.variables = %zu: a run has room for %zu variables beside "
+                          "%zu objectives (SQLite: %d columns)",
+                          s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
 }
 
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
@@ -262,7 +264,7 @@ uint64_t digest_member(long id)
 
 long state_digest(long generation, const void *bytes, size_t n)
 {
-    return (long)hash_fnv1a(bytes, n, digest_whole(generation, HASH_SEED));
+    return hash_fnv1a(bytes, n, digest_whole(generation, HASH_SEED));
 }
 
 /* Kind and generation of an evaluation change after it is written: their part is joined to the rest by exclusive or. */
@@ -289,8 +291,7 @@ static char *settings_text(const Settings *s)
 
 static long digest_of_head(const char *settings, const char *provenance, long planned_evals, long n_var)
 {
-    return (long)digest_whole(n_var,
-                              digest_whole(planned_evals, digest_text(provenance, digest_text(settings, HASH_SEED))));
+    return digest_whole(n_var, digest_whole(planned_evals, digest_text(provenance, digest_text(settings, HASH_SEED))));
 }
 
 int tables_head_is_whole(sqlite3_stmt *row)
@@ -313,8 +314,8 @@ static Status fill_new_database(Database *db, const Schema *schema, const char *
         status = database_do(db, err,
                              "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created, digest) "
                              "VALUES (1, ?, ?, ?, ?, ?, ?)",
-                             "ttiiti", text, provenance, used->search.max_evals, (long)schema->n_var, created,
-                             digest_of_head(text, provenance, used->search.max_evals, (long)schema->n_var));
+                             "ttiiti", text, provenance, used->search.max_evals, schema->n_var, created,
+                             digest_of_head(text, provenance, used->search.max_evals, schema->n_var));
     if (status == STATUS_OK)
         status = database_do(db, err, "COMMIT", "");
     free(text);
@@ -348,9 +349,8 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
     char *text = settings_text(used);
     if (!text)
         return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
-    const Status status =
-        database_do(db, err, "UPDATE run SET settings = ?, digest = ?", "ti", text,
-                    digest_of_head(text, run->provenance, run->planned_evals, (long)run->schema.n_var));
+    const Status status = database_do(db, err, "UPDATE run SET settings = ?, digest = ?", "ti", text,
+                                      digest_of_head(text, run->provenance, run->planned_evals, run->schema.n_var));
     free(text);
     return status;
 }
@@ -430,7 +430,7 @@ static void take_field(Row *r, const Field *f, char *record)
     switch (f->type) {
     case WHOLE:
     case MOVED:
-        *(long *)at = (long)sqlite3_column_int64(r->s, r->at++);
+        *(long *)at = sqlite3_column_int64(r->s, r->at++);
         r->digest = digest_whole(f->type == WHOLE ? *(long *)at : 0, r->digest);
         break;
     case MARK:
@@ -475,9 +475,9 @@ Status record_put(Database *db, RecordTable table, const void *record, Err *err)
 {
     const TableColumns *t = &RECORDS[table];
     Row r;
-    TRY(begin_insert(db, t, t->n + (size_t)t->has_digest, record, &r, err));
+    TRY(begin_insert(db, t, t->n + t->has_digest, record, &r, err));
     if (t->has_digest)
-        sqlite3_bind_int64(r.s, r.at + 1, (long)r.digest);
+        sqlite3_bind_int64(r.s, r.at + 1, r.digest);
     return database_run(db, r.s, err);
 }
 
@@ -537,14 +537,14 @@ Status rows_insert(Database *db, RowTable table, const Schema *schema, const Eva
     for (size_t k = 0; k < N_NUMBERS; k++)
         for (size_t i = 0; i < list[k].n; i++)
             put_number(&r, array_of(&row, &list[k])[i]);
-    sqlite3_bind_int64(r.s, digest_at, (long)(r.digest ^ digest_kind(e->kind, e->generation)));
+    sqlite3_bind_int64(r.s, digest_at, (r.digest ^ digest_kind(e->kind, e->generation)));
     return database_run(db, r.s, err);
 }
 
 /* The exclusive or that SQL lacks is (a | b) - (a & b). */
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err)
 {
-    const long digest = (long)digest_kind(kind, generation);
+    const long digest = digest_kind(kind, generation);
     TRY(database_do(db, err,
                     "UPDATE evaluation SET kind = ?, generation = ?, digest = (digest | ?) - (digest & ?) WHERE id = ?",
                     "tiiii", kind_word(kind), generation, digest, digest, id));

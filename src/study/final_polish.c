@@ -10,7 +10,7 @@ enum { REPLICATES_MIN = 4, EVALS_MIN = 40, SHARE = 10, DESIGNS_MAX = 32 };
 
 static size_t n_designs(const Settings *s)
 {
-    return (size_t)(s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
+    return (s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
 }
 
 /* Of a tower; other problems are simulated once. */
@@ -22,10 +22,10 @@ static long replicates(const Settings *s)
 /* Simulations for each design; 0: not worth it. */
 static size_t evals_each(const Settings *s)
 {
-    const long n = (long)n_designs(s);
+    const long n = n_designs(s);
     const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (SHARE * n) : 0;
     const int is_possible = refine_allows(s, &(Err){0}) == STATUS_OK;
-    return is_possible && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s)) ? (size_t)each : 0;
+    return is_possible && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s)) ? each : 0;
 }
 
 /* In all objectives at once, each of which may lose one deviation. */
@@ -59,7 +59,7 @@ static Status polish_chosen(RunStore *store, const FinalPolish *p, const Run *ru
 {
     size_t rows[DESIGNS_MAX];
     const size_t n = run_spread_out(run, n_designs(p->used), 0, rows);
-    for (size_t i = run->polished_at == (long)p->n_simulated ? (size_t)run->tried_to_polish : 0; i < n; i++) {
+    for (size_t i = run->polished_at == (long)p->n_simulated ? run->tried_to_polish : 0; i < n; i++) {
         Refined refined;
         Err why = {0};
         Status status = refine(p, run, rows[i], &refined, &why);

@@ -66,7 +66,7 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         for (int j = 0; j < results[i].n_floors; j++)
             out->closes[j] += results[i].closings[j] > 0;
-    out->n_floors = n > 0 ? (size_t)results[0].n_floors : 0;
+    out->n_floors = n > 0 ? results[0].n_floors : 0;
     out->n_simulated = n;
     free(results);
     return status;

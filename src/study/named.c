@@ -118,7 +118,7 @@ static Status simulate(Work *w, size_t level, size_t n, Err *err)
 
 static double answer(const Evaluation *e, const Schema *s, size_t k)
 {
-    return e->outcome != OUTCOME_OK ? (double)NAN : k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
+    return e->outcome != OUTCOME_OK ? NAN : k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
 }
 
 static double promised(const Schema *s, size_t k, double value)
@@ -245,7 +245,7 @@ static Evaluation record_of(const Work *w, Named *d)
     }
     return (Evaluation){.id = w->run.table.row[d->row].id,
                         .kind = KIND_UNFINISHED,
-                        .level = (long)d->level,
+                        .level = d->level,
                         .reason = is_predictable ? "" : "unpredictable",
                         .seconds = d->seconds,
                         .violation = d->violation,

@@ -145,8 +145,8 @@ static Status descend(Polish *p, double step)
     nlopt_set_upper_bounds1(p->opt, 1.0);
     for (unsigned d = 0; d < n_var; d++) /* whole numbers and choices stay */
         if (problem_is_discrete(p->problem, d)) {
-            nlopt_set_lower_bound(p->opt, (int)d, p->at[d]);
-            nlopt_set_upper_bound(p->opt, (int)d, p->at[d]);
+            nlopt_set_lower_bound(p->opt, d, p->at[d]);
+            nlopt_set_upper_bound(p->opt, d, p->at[d]);
         }
     nlopt_set_initial_step1(p->opt, step);
     nlopt_set_xtol_rel(p->opt, 1e-6);

@@ -73,7 +73,7 @@ static void count(Standing *out, const Run *run)
 /* Thread-seconds of a session's simulations. */
 static double simulated_seconds(const Run *run, size_t number)
 {
-    const size_t n = run_first_polished(run), first = (size_t)run->session[number].simulated_before;
+    const size_t n = run_first_polished(run), first = run->session[number].simulated_before;
     const size_t next = number + 1 < run->n_sessions ? (size_t)run->session[number + 1].simulated_before : n;
     double seconds = 0.0;
     for (size_t i = first; i < next && i < n; i++)
@@ -143,7 +143,7 @@ static void take_session(Standing *out, const Run *run, const RunSession *last)
     p->session_s = is_running ? seconds_since(last->started) : stored;
     out->seconds += is_running ? fmax(p->session_s - stored, 0.0) : 0.0;
     p->all_s = out->seconds;
-    p->session_simulated = run_evaluations(run, (size_t)last->simulated_before);
+    p->session_simulated = run_evaluations(run, last->simulated_before);
     for (size_t g = 0; g < run->n_generations; g++)
         p->session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
 }

@@ -46,7 +46,7 @@ static void count(Refine *r, size_t n_evaluated, size_t n_failed, long replicate
 {
     r->out->n_evaluated += n_evaluated;
     r->out->n_failed += n_failed;
-    r->out->n_simulated += n_evaluated * (size_t)replicates;
+    r->out->n_simulated += n_evaluated * replicates;
 }
 
 /* A design by all replicates: its record into the table, its minimised objectives into f. */
@@ -87,9 +87,11 @@ static Status begin(Refine *r, double f[], Err *err)
     Status status = simulate(r, r->x, 0, &table, f, err);
     const Evaluation *start = table.row;
     if (status == STATUS_OK && start->outcome != OUTCOME_OK)
-        status = bad_data(err, "the design to be polished fails when it is simulated again, %ld times (%s%s%s): choose another "
-                      "one, or give --replicates as many as the run made",
-                      r->config->replicates, outcome_word(start->outcome), start->reason[0] ? ": " : "", start->reason);
+        status =
+            bad_data(err,
+                     "the design to be polished fails when it is simulated again, %ld times (%s%s%s): choose another "
+                     "one, or give --replicates as many as the run made",
+                     r->config->replicates, outcome_word(start->outcome), start->reason[0] ? ": " : "", start->reason);
     if (status == STATUS_OK)
         set_goal(r, start, f);
     evaluation_table_free(&table);
@@ -107,18 +109,18 @@ static int has_finer(const Settings *s)
 size_t refine_evals_min(const Settings *s, long replicates)
 {
     const long each = s->problem.kind == PROBLEM_TOWER ? replicates : 1;
-    return (size_t)(each * (has_finer(s) ? 6 : 4));
+    return (each * (has_finer(s) ? 6 : 4));
 }
 
 /* From the design itself, whose minimised objectives are f; the best is left in r->x. */
 static Status improve(Refine *r, double f[], Err *err)
 {
     const long finer = has_finer(r->run->settings) ? r->replicates : 0;
-    const size_t kept = r->out->n_simulated + 2 * (size_t)(r->config->replicates + finer);
+    const size_t kept = r->out->n_simulated + 2 * (r->config->replicates + finer);
     Polished best = {.x = r->x, .f = f};
     if (r->config->max_evals <= kept)
         return STATUS_OK;
-    const size_t n = (r->config->max_evals - kept) / (size_t)r->replicates;
+    const size_t n = (r->config->max_evals - kept) / r->replicates;
     const Status status =
         polish_run(r->queue, &(PolishGoal){r->config->weight, r->box.span, r->bound, n, REFINE_GAIN_MIN}, &best, err);
     count(r, best.n_evaluated, best.n_failed, r->replicates);
@@ -200,8 +202,9 @@ Status refine_allows(const Settings *s, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s))
         return STATUS_OK;
-    return bad_data(err, "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
-                "from noise; continue the search instead (search.max_evals, search.replicate_share)");
+    return bad_data(
+        err, "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
+             "from noise; continue the search instead (search.max_evals, search.replicate_share)");
 }
 
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err)

@@ -136,7 +136,7 @@ static Status evaluation_done(const Evaluation *e, void *user, Err *err)
     if (isfinite(e->seconds))
         study->summary->busy_s += e->seconds;
     Evaluation row = *e; /* of a generation that is not finished */
-    row.generation = (long)study->generation;
+    row.generation = study->generation;
     row.kind = KIND_UNFINISHED;
     const Status status = store_evaluation(study->store, &row, err);
     show_beginning(study);
@@ -194,8 +194,8 @@ static void sum_up(StudySummary *sum, const Run *run, size_t n_later, size_t n_f
 {
     const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
     sum->n_simulated = sum->n_before = run->n_finished + n_later;
-    sum->n_failed = n_failed + (last ? (size_t)last->failed : 0);
-    sum->n_front = last ? (size_t)last->front : 0;
+    sum->n_failed = n_failed + (last ? last->failed : 0);
+    sum->n_front = last ? last->front : 0;
     for (size_t i = 0; i < run->n_sessions; i++)
         sum->seconds += isfinite(run->session[i].seconds) ? run->session[i].seconds : 0.0;
 }
@@ -223,10 +223,11 @@ static Status check_state(const Study *study, const Run *run, Err *err)
                     study->summary->folder, study->summary->folder);
     return !goes_on || !run->state || search_state_is_current(run->state, run->n_state)
                ? STATUS_OK
-               : bad_data(err, "%s: another version of the program interrupted this search, and this one cannot resume it; "
-                      "nothing was changed. Resume it with that version, or begin anew from its front: "
-                      "--new --set search.start=%s",
-                      study->summary->folder, study->summary->folder);
+               : bad_data(err,
+                          "%s: another version of the program interrupted this search, and this one cannot resume it; "
+                          "nothing was changed. Resume it with that version, or begin anew from its front: "
+                          "--new --set search.start=%s",
+                          study->summary->folder, study->summary->folder);
 }
 
 /* Of search.max_evals. */
@@ -260,7 +261,7 @@ static Status resume(Study *study, Err *err)
                           study->evaluations_before, &study->has_new_limits, err));
     TRY(check_state(study, run, err));
     study->seconds_before = sum->seconds;
-    study->generation = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
+    study->generation = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", run->settings->run.out);
     return store_resume(study->store, adapter_schema(study->adapter), &study->used, study->has_new_limits, err);
@@ -290,19 +291,19 @@ SearchConfig study_search_config(const Settings *s)
     const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
     return (SearchConfig){
         .seed = (uint32_t)s->search.seed,
-        .population = (size_t)s->search.population,
-        .initial = (size_t)initial,
-        .generations = (size_t)s->search.generations,
-        .max_evals = (size_t)s->search.max_evals,
+        .population = s->search.population,
+        .initial = initial,
+        .generations = s->search.generations,
+        .max_evals = s->search.max_evals,
         .surrogate_max = SEARCH_CENTRES,
         .surrogate = s->search.surrogate,
         .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
-        .stop_after = (size_t)s->search.stop_after,
+        .stop_after = s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,
         .replicate_share = s->search.replicate_share,
-        .replicates_max = (size_t)s->search.replicates_max,
+        .replicates_max = s->search.replicates_max,
     };
 }
 
@@ -351,8 +352,8 @@ static Status run_search(Study *study, Err *err)
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (run) {
         const long initial = study->used.search.initial;
-        config.planned_evals = (size_t)run->planned_evals;
-        config.initial = (size_t)(initial < run->planned_evals ? initial : run->planned_evals);
+        config.planned_evals = run->planned_evals;
+        config.initial = (initial < run->planned_evals ? initial : run->planned_evals);
     }
     omp_set_num_threads(search_threads(study));
     TRY(initial_designs_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
