@@ -52,7 +52,7 @@ static Status run_command(int argc, char *argv[], Err *err)
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);
     else if (status == STATUS_OK)
-        status = command->run(&args, err);
+        status = command_run(&args, err);
     args_free(&args);
     return status;
 }

@@ -56,6 +56,11 @@ Status status_of_errno(int why, Status otherwise)
     return why == ENOMEM ? STATUS_NO_MEMORY : otherwise;
 }
 
+Status fail_errno(Err *err, const char *path, const char *what)
+{
+    return fail(err, status_of_errno(errno, STATUS_IO), "%s: %s: %s", path, what, strerror(errno));
+}
+
 static const struct {
     int exit_code;
     const char *words;

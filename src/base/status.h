@@ -65,6 +65,9 @@ Status fail_memory(Err *err, size_t n, const char *what);
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */
 Status status_of_errno(int why, Status otherwise);
 
+/* "PATH: WHAT: CAUSE", by errno: STATUS_IO, or where memory was refused STATUS_NO_MEMORY. */
+Status fail_errno(Err *err, const char *path, const char *what);
+
 const char *status_words(Status code);
 int status_exit_code(Status code);
 

@@ -6,6 +6,7 @@
 #include "cmd/designs.h"
 #include "cmd/outputs.h"
 #include "settings/settings.h"
+#include "store/run_read.h"
 
 enum { OPTIONS_MAX = 32 };
 
@@ -106,7 +107,7 @@ static Status take_run_folder(Args *args, Err *err)
     if (snprintf(path, sizeof path, "%s", args->operand) >= (int)sizeof path || !run_drop_name(path))
         return STATUS_OK;
     args->operand = args->folder = strdup(path);
-    return args->folder ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a path");
+    return args->folder ? STATUS_OK : fail_memory(err, 1, "a path");
 }
 
 static Status take_operand(Args *args, const char *word, Err *err)
@@ -146,6 +147,17 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         return misused(err, "%s %s needs a %s; for example: %s", program_of(command), command->name, command->operand,
                        command->example);
     return outputs_check(args, err);
+}
+
+Status command_run(const Args *args, Err *err)
+{
+    Run run;
+    if (args->command->run)
+        return args->command->run(args, err);
+    TRY(run_read(&run, args->operand, err));
+    const Status status = args->command->run_of(args, &run, err);
+    run_free(&run);
+    return status;
 }
 
 const char *args_value(const Args *args, const char *name)

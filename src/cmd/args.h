@@ -18,6 +18,9 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
 
+/* What the command does: its run, or run_of with the run of its operand. */
+Status command_run(const Args *args, Err *err);
+
 /* The values of an option that may be repeated, one call after the other; i begins at 0, NULL: no more. */
 const char *args_next(const Args *args, const char *name, int *i);
 
@@ -44,18 +47,24 @@ Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults,
 /* Only the options, over what s holds. */
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
-/* Options of several commands. */
+/* Rows of a command's options: without a value, with one, with one each time, with one that is a setting. */
 /* clang-format off */
-#define OPTION_MOVED {"--set", "motion.record=PATH", NULL, 1, "where the run's record is, if moved; motion.records too"}
-#define OPTION_SET {"--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"}
-#define OPTION_RECORD {"--record", "FILE", "motion.record", 0, "ground motion file or builtin:NAME"}
-#define OPTION_PGA {"--pga", "G", "motion.pga_g", 0, "scale the motion to this peak [g]; 0: as recorded"}
-#define OPTION_UNIT {"--unit", "UNIT", "motion.unit", 0, "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say"}
+#define SWITCH(name_, help_)                   {.name = name_, .help = help_}
+#define VALUE(name_, value_, help_)            {.name = name_, .value = value_, .help = help_}
+#define VALUES(name_, value_, help_)           {.name = name_, .value = value_, .many = 1, .help = help_}
+#define SETTING(name_, value_, setting_, help_) {.name = name_, .value = value_, .setting = setting_, .help = help_}
+
+/* Options of several commands. */
+#define OPTION_MOVED VALUES("--set", "motion.record=PATH", "where the run's record is, if moved; motion.records too")
+#define OPTION_SET VALUES("--set", "SECTION.KEY=VALUE", "any setting; may be repeated (`imtet settings` lists them)")
+#define OPTION_RECORD SETTING("--record", "FILE", "motion.record", "ground motion file or builtin:NAME")
+#define OPTION_PGA SETTING("--pga", "G", "motion.pga_g", "scale the motion to this peak [g]; 0: as recorded")
+#define OPTION_UNIT SETTING("--unit", "UNIT", "motion.unit", "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say")
 #define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_UNIT
-#define OPTION_CHANNEL {"--channel", "NAME", "motion.channel", 0, "component by name or number, of a file with several"}
-#define OPTION_JSON {"--json", NULL, NULL, 0, "everything, as JSON, on standard output"}
-#define OPTION_CSV {"--csv", "FILE", NULL, 0, "the table as CSV into FILE; -: standard output"}
-#define OPTION_END {NULL, NULL, NULL, 0, NULL}
+#define OPTION_CHANNEL SETTING("--channel", "NAME", "motion.channel", "component by name or number, of a file with several")
+#define OPTION_JSON SWITCH("--json", "everything, as JSON, on standard output")
+#define OPTION_CSV VALUE("--csv", "FILE", "the table as CSV into FILE; -: standard output")
+#define OPTION_END {.name = NULL}
 /* clang-format on */
 
 #endif

@@ -245,8 +245,8 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, "of a CONFIG: take the core's thickness from it: " DESIGN_WORDS},
-    {"--svg", "FILE", NULL, 0, "draw it: frame or storeys to scale, first ten mode shapes"},
+    VALUE("--design", "FILE", "of a CONFIG: take the core's thickness from it: " DESIGN_WORDS),
+    VALUE("--svg", "FILE", "draw it: frame or storeys to scale, first ten mode shapes"),
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,

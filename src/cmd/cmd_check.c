@@ -104,12 +104,12 @@ static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
     int n = 0;
     FILE *f = text_open(&lines, &length);
     if (!f)
-        return fail(err, STATUS_NO_MEMORY, "check: out of memory");
+        return fail_memory(err, 1, "faults");
     const Status status = args_settings(args, s, f, &n, err);
     const int is_whole = text_close(f) == 0;
     if (!is_whole || (status != STATUS_OK && n == 0)) { /* no faults of settings: they could not be read */
         free(lines);
-        return is_whole ? status : fail(err, STATUS_NO_MEMORY, "check: out of memory");
+        return is_whole ? status : fail_memory(err, 1, "faults");
     }
     take_lines(c, lines);
     free(lines);
@@ -442,11 +442,11 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
-    {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
-    {"--ladder", NULL, NULL, 0, "which effects the first of them needs: what leaving out each one changes"},
+    VALUE("--design", "FILE", "check these designs too, and time the first one"),
+    SWITCH("--ladder", "which effects the first of them needs: what leaving out each one changes"),
     OPTION_JSON,
     OPTION_SET,
-    {"--self", NULL, NULL, 0, "does this build give the stored answers? Exit status 70 where one differs"},
+    SWITCH("--self", "does this build give the stored answers? Exit status 70 where one differs"),
     OPTION_END,
 };
 

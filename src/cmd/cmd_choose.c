@@ -4,7 +4,6 @@
 #include "cmd/show.h"
 #include "store/export.h"
 #include "store/output.h"
-#include "store/run_read.h"
 
 typedef struct {
     const Run *run;
@@ -12,20 +11,13 @@ typedef struct {
     unsigned char *allowed; /* (run->table.n) */
 } Choice;
 
-/* Objective k, or from n_obj on a further measure; NAN: not known. */
-static double result_of(const Run *run, size_t row, size_t k)
-{
-    const size_t n_obj = run->schema.n_obj;
-    return k < n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - n_obj];
-}
-
 static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
 {
     size_t k, n_known = 0;
     double limit;
     TRY(pair_take(&c->run->schema, option, text, &k, &limit, err));
     for (size_t i = 0; i < c->run->n_front; i++) {
-        const double f = result_of(c->run, c->run->front[i], k);
+        const double f = run_result(c->run, c->run->front[i], k);
         n_known += !isnan(f);
         if (!(is_max ? f <= limit : f >= limit))
             c->allowed[c->run->front[i]] = 0;
@@ -263,23 +255,14 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
     return status;
 }
 
-static Status run(const Args *args, Err *err)
-{
-    Run r;
-    TRY(run_read(&r, args->operand, err));
-    const Status status = choose_of(args, &r, err);
-    run_free(&r);
-    return status;
-}
-
 static const ArgOption OPTIONS[] = {
-    {"--max", "NAME=VALUE", NULL, 1,
-     "only designs whose NAME, an objective or another result, is no larger; may be repeated"},
-    {"--min", "NAME=VALUE", NULL, 1, "the same, no smaller"},
-    {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
-    {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
-    {"--csv", "FILE", NULL, 0, "the designs chosen, as rows of front.csv, into FILE; -: standard output"},
-    {"--json", NULL, NULL, 0, "the designs chosen with their names, objectives and variables, on standard output"},
+    VALUES("--max", "NAME=VALUE",
+           "only designs whose NAME, an objective or another result, is no larger; may be repeated"),
+    VALUES("--min", "NAME=VALUE", "the same, no smaller"),
+    VALUE("--weights", "NAME=W,...", "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"),
+    VALUE("--reference", "NAME=VALUE,...", "reference point: the design nearest to these values"),
+    VALUE("--csv", "FILE", "the designs chosen, as rows of front.csv, into FILE; -: standard output"),
+    SWITCH("--json", "the designs chosen with their names, objectives and variables, on standard output"),
     OPTION_END,
 };
 
@@ -295,6 +278,6 @@ const Command CMD_CHOOSE = {
         "the one nearest to a reference point. Other commands take a design by its id, RUN:417, and those of the\n"
         "whole front by name: RUN:knee, RUN:best_j1_m.",
     .options = OPTIONS,
-    .run = run,
+    .run_of = choose_of,
     .only_reads = 1,
 };

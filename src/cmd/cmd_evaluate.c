@@ -43,8 +43,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
         printf(is_one ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word,
                e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
-            json_t *row = figures_row(table);
-            json_put(row, "pga_g=%g", e->level[l]);
+            json_t *row = json_put(figures_row(table), "pga_g=%g", e->level[l]);
             for (int i = 0; i < n_shown(order); i++) {
                 for (int f = 0; f < IDA_FRACTILES; f++)
                     figure_text(ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]), NAN, NAN, value[f]);
@@ -72,8 +71,7 @@ static json_t *json_fractiles(const Evaluations *e, EvaluatedCase which, double 
 static json_t *ida_json(const Evaluations *e)
 {
     static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
-    json_t *o = json_object();
-    json_put(o, "pga_g=%p", json_numbers(e->n_levels, e->level));
+    json_t *o = json_of("pga_g=%p", json_numbers(e->n_levels, e->level));
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
@@ -164,8 +162,8 @@ static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const ch
 
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
-    json_t *o = json_object();
-    json_put(o, "record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
+    json_t *o =
+        json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
     for (size_t c = 0; c < evaluated_cases(e, run); c++)
         json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_cases(e, run) == N_WITH_DEVICES) {
@@ -203,8 +201,8 @@ static json_t *begin_row(json_t *table, const char *record, EvaluatedCase which,
                          const double motion[3])
 {
     static const char *const KEYS[] = {"pga_g", "scale", "stretch"};
-    json_t *row = figures_row(table);
-    json_put(row, "record=%s scene=%s outcome=%s", record, EVALUATION_CASES[which].key, outcome);
+    json_t *row =
+        json_put(figures_row(table), "record=%s scene=%s outcome=%s", record, EVALUATION_CASES[which].key, outcome);
     for (int i = 0; i < 3; i++)
         json_object_set_new(row, KEYS[i], json_number(motion[i]));
     return row;
@@ -489,22 +487,23 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, DESIGN_OF_RUN "; with --full-model also none: the building alone"},
-    {"--record", "FILE", NULL, 1, "ground motion; may be repeated"},
-    {"--records", "FOLDER", NULL, 0, "every ground motion in it, sorted, in one table"},
+    VALUE("--design", "ID", DESIGN_OF_RUN "; with --full-model also none: the building alone"),
+    VALUES("--record", "FILE", "ground motion; may be repeated"),
+    VALUE("--records", "FOLDER", "every ground motion in it, sorted, in one table"),
     OPTION_CHANNEL,
-    {"--pga", "G", NULL, 0,
-     "scaled to this peak; FROM:STEP:TO: incremental dynamic analysis, every record at each of these"},
+    VALUE("--pga", "G",
+          "scaled to this peak; FROM:STEP:TO: incremental dynamic analysis, every record at each of these"),
     OPTION_UNIT,
     OPTION_SET,
-    {"--threads", "N", "search.threads", 0, "0: one per processor"},
-    {"--replicates", "N", "sim.replicates", 0,
-     "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"},
+    SETTING("--threads", "N", "search.threads", "0: one per processor"),
+    SETTING(
+        "--replicates", "N", "sim.replicates",
+        "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"),
     OPTION_JSON,
-    {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
-    {"--svg", "FILE", NULL, 0,
-     "of --pga FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %"},
-    {"--full-model", NULL, NULL, 0, "on all degrees of freedom of the building's frame, beside the reduced model"},
+    VALUE("--csv", "FILE", "a row per record, intensity and scene as CSV into FILE; -: standard output"),
+    VALUE("--svg", "FILE",
+          "of --pga FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %"),
+    SWITCH("--full-model", "on all degrees of freedom of the building's frame, beside the reduced model"),
     OPTION_END,
 };
 

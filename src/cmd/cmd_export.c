@@ -2,7 +2,6 @@
 #include "cmd/commands.h"
 #include "store/export.h"
 #include "store/output.h"
-#include "store/run_read.h"
 
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
 static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
@@ -27,25 +26,20 @@ static Status write_table(const Args *args, const Run *run, Err *err)
     return output_end(&o, status, err);
 }
 
-static Status run(const Args *args, Err *err)
+static Status export_run(const Args *args, const Run *run, Err *err)
 {
-    Run run;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return misused(err, "--csv FILE is missing: where the table goes (or --json)");
     TRY(args_alone(args, "--all", "--select", err));
-    TRY(run_read(&run, args->operand, err));
-    Status status = args_has(args, "--json") ? export_json(stdout, &run, err) : STATUS_OK;
-    if (status == STATUS_OK && args_has(args, "--csv"))
-        status = write_table(args, &run, err);
-    run_free(&run);
-    return status;
+    TRY(args_has(args, "--json") ? export_json(stdout, run, err) : STATUS_OK);
+    return args_has(args, "--csv") ? write_table(args, run, err) : STATUS_OK;
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--csv", "FILE", NULL, 0, "where it goes; -: standard output"},
-    {"--all", NULL, NULL, 0, "every design that was evaluated, with its outcome, instead of the front"},
-    {"--select", "N", NULL, 0, "N designs of the front that are spread over it, the knee first, instead of all of it"},
-    {"--json", NULL, NULL, 0, "settings, columns, every design and every generation, as JSON on standard output"},
+    VALUE("--csv", "FILE", "where it goes; -: standard output"),
+    SWITCH("--all", "every design that was evaluated, with its outcome, instead of the front"),
+    VALUE("--select", "N", "N designs of the front that are spread over it, the knee first, instead of all of it"),
+    SWITCH("--json", "settings, columns, every design and every generation, as JSON on standard output"),
     OPTION_END,
 };
 
@@ -62,6 +56,6 @@ const Command CMD_EXPORT = {
         "variables; kind is `unfinished` for those of a generation that is under way or was cut short.\n"
         "results/README.md explains every column. The run may still be going on.",
     .options = OPTIONS,
-    .run = run,
+    .run_of = export_run,
     .only_reads = 1,
 };

@@ -282,15 +282,14 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
-    {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds is resumed"},
-    {"--new", NULL, NULL, 0, "a new run in any case: a number is added to a folder that holds one"},
-    {"--force-settings", NULL, NULL, 0,
-     "resume with lower limits (simulations, generations, hours); greater ones need no word"},
-    {"--seed", "N", "search.seed", 0, "same seed, same settings: same front"},
-    {"--threads", "N", "search.threads", 0, "0: one per processor"},
-    {"--max-evals", "N", "search.max_evals", 0, "stop after so many simulations"},
-    {"--max-hours", "H", "search.max_hours", 0,
-     "stop after so long; it can be resumed later; auto: before the Slurm job ends"},
+    SETTING("--out", "DIR", "run.out", "the run's folder; a run that it holds is resumed"),
+    SWITCH("--new", "a new run in any case: a number is added to a folder that holds one"),
+    SWITCH("--force-settings", "resume with lower limits (simulations, generations, hours); greater ones need no word"),
+    SETTING("--seed", "N", "search.seed", "same seed, same settings: same front"),
+    SETTING("--threads", "N", "search.threads", "0: one per processor"),
+    SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),
+    SETTING("--max-hours", "H", "search.max_hours",
+            "stop after so long; it can be resumed later; auto: before the Slurm job ends"),
     OPTION_SET,
     OPTION_END,
 };

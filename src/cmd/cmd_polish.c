@@ -207,15 +207,15 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
-    {"--improve", "NAME[=W],...", NULL, 0,
-     "objectives to improve, with weights in ranges of the front, or all; the first"},
-    {"--keep", "NAME[=S],...", NULL, 0,
-     "these may lose no more than their deviation, or the share S of their value; all if not given"},
-    {"--evals", "N", NULL, 0, "simulate at most so often; 300 if not given"},
-    {"--replicates", "N", NULL, 0, "simulations of a noisy design (the tower's), whose mean counts; 4"},
-    {"--csv", "FILE", NULL, 0,
-     "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard output"},
+    VALUE("--design", "ID", DESIGN_OF_RUN),
+    VALUE("--improve", "NAME[=W],...", "objectives to improve, with weights in ranges of the front, or all; the first"),
+    VALUE("--keep", "NAME[=S],...",
+          "these may lose no more than their deviation, or the share S of their value; all if not given"),
+    VALUE("--evals", "N", "simulate at most so often; 300 if not given"),
+    VALUE("--replicates", "N", "simulations of a noisy design (the tower's), whose mean counts; 4"),
+    VALUE("--csv", "FILE",
+          "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard "
+          "output"),
     OPTION_MOVED,
     OPTION_END,
 };

@@ -96,9 +96,9 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--max-evals", "N", "search.max_evals", 0, "stop after so many evaluations"},
-    {"--seed", "N", "search.seed", 0, "same seed, same settings: same bytes"},
-    {"--threads", "N", "search.threads", 0, "0: one per processor"},
+    SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
+    SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
+    SETTING("--threads", "N", "search.threads", "0: one per processor"),
     OPTION_CSV,
     OPTION_SET,
     OPTION_END,

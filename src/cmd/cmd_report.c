@@ -8,7 +8,6 @@
 #include "motion/motion_scale.h"
 #include "report/report.h"
 #include "settings/options.h"
-#include "store/run_read.h"
 
 enum { RECORDS_MAX = 32 };
 
@@ -79,31 +78,27 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
     return STATUS_OK;
 }
 
-static Status run(const Args *args, Err *err)
+static Status report(const Args *args, const Run *run, Err *err)
 {
     char path[PATH_MAX];
-    Run run;
     Report r = {0};
-    TRY(run_read(&run, args->operand, err));
-    Status status = take_target(args, path, err);
-    if (status == STATUS_OK)
-        status = open_report(args, &run, &r, err);
+    TRY(take_target(args, path, err));
+    Status status = open_report(args, run, &r, err);
     if (status == STATUS_OK)
         status = args_has(args, "--pictures") ? report_pictures(&r, path, err) : report_page(&r, path, err);
     report_close(&r);
-    run_free(&run);
     if (status == STATUS_OK && strcmp(path, "-") != 0)
         printf("%s\n", path);
     return status;
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--out", "FILE", NULL, 0, "where the page goes (default: RUN/report.html); -: standard output"},
-    {"--pictures", "DIR", NULL, 0, "instead of the page pictures for a paper into DIR, SVG and PNG, by gnuplot"},
-    {"--design", "ID", NULL, 0, "the design shown in detail: an id of the run, knee (default) or best_NAME"},
-    {"--record", "FILE", NULL, 1,
-     "another earthquake for it; may be repeated (default: motion.records, else the built-in ones)"},
-    {"--floor", "N", NULL, 0, "whose displacement is shown over time (default: the middle one)"},
+    VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
+    VALUE("--pictures", "DIR", "instead of the page pictures for a paper into DIR, SVG and PNG, by gnuplot"),
+    VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
+    VALUES("--record", "FILE",
+           "another earthquake for it; may be repeated (default: motion.records, else the built-in ones)"),
+    VALUE("--floor", "N", "whose displacement is shown over time (default: the middle one)"),
     OPTION_MOVED,
     OPTION_CHANNEL,
     OPTION_PGA,
@@ -130,5 +125,5 @@ const Command CMD_REPORT = {
                "they are scaled as the run's own. `imtet serve` shows the same page live.",
     .options = OPTIONS,
     .is_alone = 1,
-    .run = run,
+    .run_of = report,
 };

@@ -34,7 +34,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--port", "N", NULL, 0, "on this port (default: one that is free)"},
+    VALUE("--port", "N", "on this port (default: one that is free)"),
     OPTION_MOVED,
     OPTION_END,
 };

@@ -20,7 +20,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--basic", NULL, NULL, 0, "only those that a first study touches"},
+    SWITCH("--basic", "only those that a first study touches"),
     OPTION_END,
 };
 

@@ -46,6 +46,10 @@ static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
     job->n = 1;
     if (job->kind == SCENE_NO_CORE)
         return STATUS_OK;
+    if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
+        return misused(
+            err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
+                 "fast");
     TRY(tower_space(s, &space, err));
     TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space,
                                                 args_gives(args, "sim.accuracy") ? NULL : &s->sim, job->known, err));
@@ -121,8 +125,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     json_t *table = json_array();
     for (size_t i = 0; i < job->n; i++) {
         const Measured m = measured(&job->results[i]);
-        json_t *row = figures_row(table);
-        json_put(row, "design=%ld", design_number(&job->designs, i));
+        json_t *row = json_put(figures_row(table), "design=%ld", design_number(&job->designs, i));
         put_measures(row, "", m.value, NULL, NULL);
         if (job->has_parts)
             put_replicates(row, &job->summary[i]);
@@ -278,8 +281,8 @@ static json_t *rows_of(size_t n, const Sensitivity list[])
 {
     json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
-        json_t *row = figures_row(table);
-        json_put(row, "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
+        json_t *row =
+            json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
         put_measures(row, "_slope", list[i].slope, "_error", list[i].error);
     }
     return table;
@@ -292,8 +295,7 @@ static void print_slopes(size_t n, const Sensitivity list[])
     json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];
-        json_t *row = figures_row(table);
-        json_put(row, "parameter=%s value=%g step=%g", s->name, s->value, s->step);
+        json_t *row = json_put(figures_row(table), "parameter=%s value=%g step=%g", s->name, s->value, s->step);
         for (size_t k = 0; k < N_OF(SHOWN); k++)
             figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step, NAN);
     }
@@ -347,10 +349,6 @@ static Status answer(const Args *args, const Settings *s, const Problem *p, Job 
 static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
 {
     Problem p;
-    if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
-        return misused(
-            err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
-                 "fast");
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s->sim.forces = FORCES_YES;
     job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);
@@ -382,24 +380,25 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, DESIGN_WORDS "; none: the building alone"},
-    {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
-    {"--replicates", "N", "sim.replicates", 0,
-     "N replicates as a study simulates them, under motion.record and motion.records: mean and standard deviation"},
-    {"--sensitivity", NULL, NULL, 0,
-     "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
-     "smaller"},
-    {"--horizon", NULL, NULL, 0,
-     "predictability horizon: the time until two runs that hardly differ diverge; standard deviation of every "
-     "result with gaps 1 um off"},
+    VALUE("--design", "FILE", DESIGN_WORDS "; none: the building alone"),
+    SWITCH("--rigid", "floors and core rigidly connected (zero gap): a linear building"),
+    SETTING(
+        "--replicates", "N", "sim.replicates",
+        "N replicates as a study simulates them, under motion.record and motion.records: mean and standard deviation"),
+    SWITCH("--sensitivity",
+           "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
+           "smaller"),
+    SWITCH("--horizon",
+           "predictability horizon: the time until two runs that hardly differ diverge; standard deviation of every "
+           "result with gaps 1 um off"),
     OPTIONS_MOTION,
     OPTION_JSON,
     OPTION_CSV,
-    {"--contacts", "FILE", NULL, 0, "one row per contact: time, floor, side, speeds, force, duration, energy lost"},
-    {"--history", "FILE", NULL, 0,
-     "time histories: floors, nodes of the core, contact forces, energies; - is standard output"},
-    {"--every", "DT", NULL, 0, "of --history: a row every DT s at most, by halving the record's step"},
-    {"--floor-spectra", "FILE", NULL, 0, "response spectra of every floor's acceleration, 5 % damped"},
+    VALUE("--contacts", "FILE", "one row per contact: time, floor, side, speeds, force, duration, energy lost"),
+    VALUE("--history", "FILE",
+          "time histories: floors, nodes of the core, contact forces, energies; - is standard output"),
+    VALUE("--every", "DT", "of --history: a row every DT s at most, by halving the record's step"),
+    VALUE("--floor-spectra", "FILE", "response spectra of every floor's acceleration, 5 % damped"),
     OPTION_SET,
     OPTION_END,
 };

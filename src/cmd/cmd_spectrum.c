@@ -101,12 +101,6 @@ static void average(size_t n, const Spectrum s[], double mean[N_PERIODS])
     }
 }
 
-static const char *name_of(const Spectrum *s) /* the last part of its path */
-{
-    const char *slash = strrchr(s->motion.name, '/');
-    return slash ? slash + 1 : s->motion.name;
-}
-
 /* ---- columns ----------------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -143,7 +137,7 @@ static void curves_of_all(size_t n, const Spectrum s[], const double mean[N_PERI
     c[2] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
     for (size_t k = 0; k < n; k++) {
         c[3 + k] = (Curve){.unit = GRAVITY, .x = s[k].psa};
-        cell_text(c[3 + k].name, 128, name_of(&s[k]));
+        cell_text(c[3 + k].name, 128, basename(s[k].motion.name));
         strcat(c[3 + k].name, " psa_m_s2");
         snprintf(c[3 + k].title, sizeof c->title, "%zu", k + 1);
     }
@@ -269,7 +263,7 @@ static void draw_all(FILE *script, const void *user)
                     "set key outside right top noenhanced\nplot ");
     for (size_t k = 3; k < p->n; k++) {
         fprintf(script, "$S using 1:%zu with lines title ", k + 1);
-        gnuplot_quote(script, name_of(&p->s[k - 3]));
+        gnuplot_quote(script, basename(p->s[k - 3].motion.name));
         fputs(", ", script);
     }
     fprintf(script, "$S using 1:2 with lines lw 3 lc 'black' title 'mean'%s\n",
@@ -421,8 +415,7 @@ static Status run(const Args *args, Err *err)
         return misused(err, "--history is of one motion, not of %zu", n);
     Spectrum *s = calloc(n, sizeof *s);
     Curve *c = calloc(n + 3, sizeof *c);
-    Status status =
-        s && c ? open_all(args, &settings, s, err) : fail(err, STATUS_NO_MEMORY, "no memory for %zu motions", n);
+    Status status = s && c ? open_all(args, &settings, s, err) : fail_memory(err, n, "motions");
     if (status == STATUS_OK)
         status = n == 1 ? give_one(args, s, err) : give_all(args, n, s, c, err);
     for (size_t k = 0; s && k < n; k++)
@@ -439,8 +432,8 @@ static const ArgOption OPTIONS[] = {
     OPTION_SET,
     OPTION_JSON,
     OPTION_CSV,
-    {"--history", "FILE", NULL, 0, "acceleration, velocity, displacement and Husid's curve as CSV; -: standard output"},
-    {"--svg", "FILE", NULL, 0, "a picture of all of it, drawn by gnuplot"},
+    VALUE("--history", "FILE", "acceleration, velocity, displacement and Husid's curve as CSV; -: standard output"),
+    VALUE("--svg", "FILE", "a picture of all of it, drawn by gnuplot"),
     OPTION_END,
 };
 

@@ -130,8 +130,7 @@ static void add_run(json_t *list, const char *folder)
     Run run;
     Standing s;
     Err err = {0};
-    json_t *row = figures_row(list);
-    json_put(row, "run=%s", folder);
+    json_t *row = json_put(figures_row(list), "run=%s", folder);
     if (run_read(&run, folder, &err) != STATUS_OK) {
         json_put(row, "state=%s reason=%s", "unreadable", err.text);
         return;
@@ -150,13 +149,11 @@ static void print_runs(json_t *list)
     json_t *row;
     json_array_foreach(list, i, row)
     {
-        const char *slash = strrchr(json_string_value(json_object_get(row, "run")), '/');
         json_object_del(row, "hypervolume");
         if (json_object_get(row, "reason"))
             json_object_set(row, " ", json_object_get(row, "reason"));
         json_object_del(row, "reason");
-        if (slash)
-            json_put(row, "run=%s", slash + 1);
+        json_put(row, "run=%s", basename(json_string_value(json_object_get(row, "run"))));
     }
     figures_print(list);
 }

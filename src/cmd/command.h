@@ -5,6 +5,7 @@
 #include "base/status.h"
 
 typedef struct Settings Settings;
+struct Run;
 
 typedef struct {
     const char *name;    /* "--record" */
@@ -25,9 +26,10 @@ typedef struct {
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
-    const char *program; /* of which it is a command; NULL: imtet */
-    int only_reads;      /* runs and files: no linear algebra, nothing to evaluate */
-    int is_alone;        /* nothing to evaluate: all ranks of imtet_mpi but the first end */
+    Status (*run_of)(const Args *args, const struct Run *run, Err *err); /* run NULL: of the operand, which is read */
+    const char *program;                                                 /* of which it is a command; NULL: imtet */
+    int only_reads; /* runs and files: no linear algebra, nothing to evaluate */
+    int is_alone;   /* nothing to evaluate: all ranks of imtet_mpi but the first end */
 } Command;
 
 typedef struct {

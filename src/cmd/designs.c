@@ -130,10 +130,9 @@ static Status check_space(const Run *run, const char *folder, const DesignSpace 
 
 void known_of_run(const Run *run, size_t row, Known known[])
 {
-    const Evaluation *e = &run->table.row[row];
-    const size_t n_obj = run->schema.n_obj;
-    for (size_t k = 0; run_is_unpredictable(run, row) && k < n_obj + run->schema.n_extra; k++)
-        known[run->schema.order.of[k]] = (Known){k < n_obj ? run_f(run, row)[k] : e->extra[k - n_obj], e->err[k]};
+    const Schema *s = &run->schema;
+    for (size_t k = 0; run_is_unpredictable(run, row) && k < s->n_obj + s->n_extra; k++)
+        known[s->order.of[k]] = (Known){run_result(run, row, k), run->table.row[row].err[k]};
 }
 
 /* What the run knows of the design, said where it takes other steps than its settings. */

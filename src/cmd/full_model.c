@@ -56,8 +56,7 @@ static void add_design(json_t *table, const Job *job, const char *word, size_t i
         figures_result(table, label, &job->order, &job->found.result[m][i],
                        job->found.error ? job->found.error + i * N_MEASURES : NULL, NULL);
     }
-    json_t *row = figures_row(table);
-    json_put(row, "=%s", "  error of the reduced");
+    json_t *row = json_put(figures_row(table), "=%s", "  error of the reduced");
     for (int o = 0; o < job->order.n_obj; o++) {
         const int k = job->order.of[o];
         snprintf(text, sizeof text, "%.3f %%",
@@ -148,9 +147,10 @@ static Status check_wishes(const Args *args, Settings *s, const char *folder, Er
     const char *pga = args_value(args, "--pga");
     TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
     if (!frame_is(s->building.model))
-        return bad_data(err, "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
-                    "(nodes.csv) and guyan have",
-                    s->building.model);
+        return bad_data(err,
+                        "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
+                        "(nodes.csv) and guyan have",
+                        s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));
     return !folder || args_has(args, "--record") ? STATUS_OK

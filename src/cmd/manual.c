@@ -109,7 +109,7 @@ Status manual_write(const Command *c, FILE *out, Err *err)
     size_t size;
     FILE *help = text_open(&text, &size);
     if (!help)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a manual page");
+        return fail_memory(err, 1, "a manual page");
     if (c)
         command_help(c, help);
     else
@@ -124,5 +124,5 @@ Status manual_write(const Command *c, FILE *out, Err *err)
     roff(out, text);
     fprintf(out, ".fi\n.SH SEE ALSO\n.BR imtet%s (1)\n", c ? "" : "\\-optimize");
     free(text);
-    return is_whole ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a manual page");
+    return is_whole ? STATUS_OK : fail_memory(err, 1, "a manual page");
 }

@@ -8,6 +8,7 @@
 #include "scene/building_read.h"
 #include "settings/settings.h"
 #include "store/folder.h"
+#include "store/output.h"
 
 /* Options whose value is a file that is written. */
 static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra", "--out"};
@@ -31,18 +32,6 @@ const char *outputs_standard(const Args *args, int i)
     return NULL;
 }
 
-static void folder_of(const char *path, char folder[PATH_MAX])
-{
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-}
-
-static const char *name_in(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* The same name in the same folder, there or not, however it was typed. */
 static int is_same_place(const char *one, const char *other)
 {
@@ -50,7 +39,7 @@ static int is_same_place(const char *one, const char *other)
     char folder[2][PATH_MAX];
     folder_of(one, folder[0]);
     folder_of(other, folder[1]);
-    return strcmp(name_in(one), name_in(other)) == 0 && stat(folder[0], &a) == 0 && stat(folder[1], &b) == 0 &&
+    return strcmp(basename(one), basename(other)) == 0 && stat(folder[0], &a) == 0 && stat(folder[1], &b) == 0 &&
            a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
@@ -80,7 +69,7 @@ static void compare(const char *key, const char *path, void *user)
     Looking *l = user;
     struct stat is;
     const int is_folder = stat(path, &is) == 0 && S_ISDIR(is.st_mode);
-    if (is_read_from(l->out, path) && (!is_folder || building_reads(name_in(l->out))))
+    if (is_read_from(l->out, path) && (!is_folder || building_reads(basename(l->out))))
         snprintf(l->reader, sizeof l->reader, "%s names", key);
 }
 
@@ -114,8 +103,7 @@ static int is_read(const char *out, const char *word)
 
 static Status refuse(const Given *out, const char *reader, Err *err)
 {
-    return misused(err, "%s would replace %s, which %s; name another file", out->option->name, out->value,
-                reader);
+    return misused(err, "%s would replace %s, which %s; name another file", out->option->name, out->value, reader);
 }
 
 /* Is there a folder that takes it? The folder of --out may be made by the command. */
@@ -124,7 +112,7 @@ static Status check_place(const Given *out, Err *err)
     char folder[PATH_MAX];
     folder_of(out->value, folder);
     if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
-        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", out->value, strerror(errno));
+        return fail_errno(err, out->value, "cannot be written");
     return STATUS_OK;
 }
 
@@ -144,8 +132,8 @@ static Status check_one(const Args *args, const Given *out, Err *err)
         if (other == out || !other->value)
             continue;
         if (is_written(other) && is_same_place(other->value, out->value))
-            return misused(err, "%s and %s are one file, %s; name another file", out->option->name,
-                        other->option->name, out->value);
+            return misused(err, "%s and %s are one file, %s; name another file", out->option->name, other->option->name,
+                           out->value);
         const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;
         n_readers += !is_written(other) && is_read(out->value, equals ? equals + 1 : other->value);
     }

@@ -432,15 +432,22 @@ const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
     return text;
 }
 
+/* What there is of errors and deviations; NULL: nothing. */
+static void put_objectives(json_t *row, const MeasureOrder *order, const double value[], const double error[],
+                           const double sd[])
+{
+    for (int i = 0; i < order->n_obj; i++) {
+        const int k = order->of[i];
+        figures_put(row, measure(k)->name, value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
+    }
+}
+
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
                        const double error[], const double sd[])
 {
     char note[NOTE_MAX] = "";
-    json_t *row = figures_row(table);
-    json_put(row, "=%s", label);
-    for (int i = 0; i < order->n_obj; i++)
-        figures_put(row, measure(order->of[i])->name, measure_value(r, order->of[i]), error ? error[order->of[i]] : NAN,
-                    sd ? sd[order->of[i]] : NAN);
+    json_t *row = json_put(figures_row(table), "=%s", label);
+    put_objectives(row, order, measured(r).value, error, sd);
     json_put(row, "impacts=%ld", r->impacts);
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
@@ -463,7 +470,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[])
 {
     char label[96];
-    const int has_sd = r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]);
+    const double *sd = r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]) ? r->sd : NULL;
     json_t *row = figures_row(table);
     if (r->n_failed)
         snprintf(label, sizeof label, "  %zu of its simulations failed: no mean", r->n_failed);
@@ -471,21 +478,19 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
         snprintf(label, sizeof label, "  %s, %zu records x %zu", r->rule, r->n_records, r->n_replicates);
     else
         snprintf(label, sizeof label, "  %s of %zu", r->rule, r->n_replicates);
-    if (has_sd && !r->n_failed)
+    if (sd && !r->n_failed)
         snprintf(label + strlen(label), sizeof label - strlen(label), ", sd %s", r->spread);
     json_put(row, "=%s", label);
-    for (int i = 0; i < order->n_obj && !r->n_failed; i++)
-        figures_put(row, measure(order->of[i])->name, r->mean[order->of[i]], error ? error[order->of[i]] : NAN,
-                    has_sd ? r->sd[order->of[i]] : NAN);
-    if (!r->n_failed)
-        figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, has_sd ? r->sd[MEASURE_IMPACTS] : NAN);
+    if (r->n_failed)
+        return;
+    put_objectives(row, order, r->mean, error, sd);
+    figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, sd ? sd[MEASURE_IMPACTS] : NAN);
 }
 
 void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
                     const double error[], const double sd[], const double extra[])
 {
-    json_t *row = figures_row(table);
-    json_put(row, "=%s design=%p", label, id > 0 ? json_integer(id) : json_string("-"));
+    json_t *row = json_put(figures_row(table), "=%s design=%p", label, id > 0 ? json_integer(id) : json_string("-"));
     for (size_t k = 0; k < schema->n_obj; k++)
         figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
     for (size_t k = 0; k < schema->n_limited; k++)

@@ -141,8 +141,7 @@ static Status check_here(const Problem *p, int n_var, const DetailOptions *optio
     d->n_floors = scene_n_floors(tower_record(tower_of(p), 0)->scene);
     d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
     if ((int)p->n_var != n_var)
-        return bad_data(err, "the front has designs of %d variables, the building has %zu", n_var,
-                    p->n_var);
+        return bad_data(err, "the front has designs of %d variables, the building has %zu", n_var, p->n_var);
     if (d->floor >= d->n_floors)
         return bad_data(err, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     return STATUS_OK;
@@ -204,7 +203,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     if (status == STATUS_OK && options->n_records > 0) {
         out->elsewhere = calloc(options->n_records, sizeof *out->elsewhere);
         if (!out->elsewhere)
-            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu earthquakes", options->n_records);
+            status = fail_memory(err, options->n_records, "earthquakes");
     }
     for (; status == STATUS_OK && out->n_elsewhere < options->n_records; out->n_elsewhere++)
         status = take_elsewhere(options->other, options->records[out->n_elsewhere], x,

@@ -122,13 +122,13 @@ Status report_live(const Run *run, char **text, Err *err)
         return run_why_empty(run, err);
     FILE *out = text_open(text, &length);
     if (!out)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a page");
+        return fail_memory(err, 1, "a page");
     r.knee = r.chosen = run_knee(run);
     r.n_shown = run->n_front;
     r.shown = run->front;
     Status status = write_page(&r, _binary_build_web_live_html_start, _binary_build_web_live_html_end, out, err);
     if (text_close(out) && status == STATUS_OK)
-        status = fail(err, STATUS_NO_MEMORY, "no memory for a page");
+        status = fail_memory(err, 1, "a page");
     if (status != STATUS_OK) {
         free(*text);
         *text = NULL;

@@ -368,12 +368,11 @@ static const char DISPLACEMENT[] =
 /* The file's name; of a built-in motion that it is synthetic. */
 static void write_motion_name(FILE *out, const char *record)
 {
-    const char *slash = strrchr(record, '/');
     char text[160];
     if (builtin_name(record))
         snprintf(text, sizeof text, "%s (synthetic)", builtin_name(record));
     else
-        snprintf(text, sizeof text, "%s", slash ? slash + 1 : record);
+        snprintf(text, sizeof text, "%s", basename(record));
     gnuplot_quote(out, text);
 }
 
@@ -447,7 +446,7 @@ static int is_there(const Report *r, Condition wanted)
 Status report_pictures(const Report *r, const char *folder, Err *err)
 {
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return fail(err, STATUS_IO, "%s: cannot be made a folder: %s", folder, strerror(errno));
+        return fail_errno(err, folder, "cannot be made a folder");
     for (size_t i = 0; i < N_OF(PICTURES); i++)
         for (int is_png = 0; is_png < 2 && is_there(r, PICTURES[i].wants); is_png++) {
             const Drawing drawing = {r, &PICTURES[i], is_png};

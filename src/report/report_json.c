@@ -1,7 +1,6 @@
 #include "report/report_json.h"
 
 #include "base/json.h"
-#include "base/text.h"
 #include "base/hypervolume.h"
 #include "report/words.h"
 #include "settings/settings.h"
@@ -12,15 +11,10 @@ enum { HISTORY_POINTS = 3000 };
 /* Every setting of the run. */
 static json_t *json_of_settings(const Settings *s)
 {
-    char *text = NULL;
-    size_t length;
-    FILE *stream = text_open(&text, &length);
-    if (!stream)
-        return NULL;
-    settings_write(s, stream, SETTINGS_PLAIN);
-    json_t *string = text_close(stream) == 0 ? json_words(text) : NULL;
+    char *text = settings_text(s);
+    json_t *words = text ? json_words(text) : NULL;
     free(text);
-    return string;
+    return words;
 }
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */

@@ -200,7 +200,7 @@ static Status show_page(Visit *v, Answer *a, Err *err)
     return asprintf(&a->text, NO_FRONT, look->standing.progress.simulated, look->standing.n_failed,
                     is_over ? "no design meets search.limits" : "no design is on a front yet") > 0
                ? STATUS_OK
-               : fail(err, STATUS_NO_MEMORY, "no memory for a page");
+               : fail_memory(err, 1, "a page");
 }
 
 static Status show_front(Visit *v, Answer *a, Err *err)

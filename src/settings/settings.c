@@ -4,6 +4,7 @@
 #include <errno.h>
 
 #include "base/list.h"
+#include "base/text.h"
 #include "motion/builtin.h"
 #include "settings/rules.h"
 #include "settings/table.h"
@@ -726,6 +727,19 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
         const char *quote = !strstr(value, " #") ? "" : strchr(value, '"') ? "'" : "\"";
         fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }
+}
+
+char *settings_text(const Settings *s)
+{
+    size_t length;
+    char *text = NULL;
+    FILE *f = text_open(&text, &length);
+    if (f)
+        settings_write(s, f, SETTINGS_PLAIN);
+    if (f && text_close(f) == 0)
+        return text;
+    free(text);
+    return NULL;
 }
 
 int settings_screens(const Settings *s)

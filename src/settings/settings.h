@@ -67,4 +67,7 @@ const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path 
 typedef enum { SETTINGS_PLAIN, SETTINGS_DESCRIBED, SETTINGS_BASIC } SettingsForm;
 void settings_write(const Settings *s, FILE *out, SettingsForm form);
 
+/* The plain form as text, to be freed; NULL: no memory. */
+char *settings_text(const Settings *s);
+
 #endif

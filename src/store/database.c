@@ -7,6 +7,8 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
+#include "store/output.h"
+
 /* Between machines a reader holds the writer up, and the other way round, over a network. */
 enum { BUSY_MS = 3000, SHARED_BUSY_MS = 60000, KEPT_STATEMENTS = 12 };
 
@@ -362,8 +364,7 @@ static Status open_without_locks(Database **out, const char *path, Err *err)
 static int may_write_beside(const char *path)
 {
     char folder[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    folder_of(path, folder);
     return access(path, W_OK) == 0 && access(folder, W_OK) == 0;
 }
 
@@ -424,8 +425,7 @@ static Status put_back(Database *d, Err *err)
     TRY(database_do(d, err, "VACUUM INTO ?", "t", temporary));
     database_remove_journal(d->path);
     if (rename(temporary, d->path) != 0)
-        return fail(err, STATUS_IO, "%s: was removed while the run went on, and cannot be put back: %s", d->path,
-                    strerror(errno));
+        return fail_errno(err, d->path, "was removed while the run went on, and cannot be put back");
     return fail(err, STATUS_IO,
                 "%s: was removed while the run went on; what it held was put back: the same command resumes the run",
                 d->path);

@@ -73,7 +73,7 @@ static Status make_folders(const char *folder, Err *err)
             continue;
         snprintf(part, sizeof part, "%.*s", (int)(end - folder), folder);
         if (mkdir(part, 0777) != 0 && errno != EEXIST)
-            return fail(err, STATUS_IO, "%s: cannot be made a folder: %s", part, strerror(errno));
+            return fail_errno(err, part, "cannot be made a folder");
         if (!*end)
             return STATUS_OK;
     }
@@ -125,7 +125,7 @@ static Status lock_take(Folder *folder, const char *path, Err *err)
     LockHolder holder;
     const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (fd < 0)
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+        return fail_errno(err, path, "cannot be written");
     const int cause = try_lock(fd);
     read_holder(fd, &holder);
     if (cause != 0) {
@@ -135,9 +135,9 @@ static Status lock_take(Folder *folder, const char *path, Err *err)
                    : fail(err, STATUS_IO, "%s: cannot be locked: %s", path, strerror(cause));
     }
     if (write_holder(fd, holder.n_stored) != STATUS_OK) {
-        const int why = errno;
+        fail_errno(err, path, "cannot be written");
         close(fd);
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(why));
+        return err->code;
     }
     folder->lock = fd;
     folder->n_stored = holder.n_stored;
@@ -227,10 +227,9 @@ Status folder_append(const Folder *folder, const char *name, const char *text, E
     const size_t n = strlen(text);
     const int fd = open(path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
     errno = fd < 0 ? errno : ENOSPC; /* of a line that is written in part */
-    const ssize_t written = fd < 0 ? -1 : write(fd, text, n);
-    if (written != (ssize_t)n)
-        fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
+    const int is_whole = fd >= 0 && write(fd, text, n) == (ssize_t)n;
+    const Status status = is_whole ? STATUS_OK : fail_errno(err, path, "cannot be written");
     if (fd >= 0)
         close(fd);
-    return written == (ssize_t)n ? STATUS_OK : STATUS_IO;
+    return status;
 }

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static void folder_of(const char *path, char folder[PATH_MAX])
+void folder_of(const char *path, char folder[PATH_MAX])
 {
     const char *slash = strrchr(path, '/');
     snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
@@ -34,7 +34,7 @@ static Status give_name(const Output *o, Err *err)
         return STATUS_OK;
     return linkat(AT_FDCWD, own, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW) == 0
                ? STATUS_OK
-               : fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
+               : fail_errno(err, o->path, "cannot be written");
 }
 
 static Status open_at(Output *o, const char *path, int in_place, Err *err)
@@ -50,7 +50,7 @@ static Status open_at(Output *o, const char *path, int in_place, Err *err)
     /* Not /dev/stdout: opening that again would cut off what a file behind it holds already. */
     o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : in_place ? fopen(o->path, "w") : open_new(o->temporary);
     if (!o->stream)
-        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
+        return fail_errno(err, path, "cannot be written");
     return STATUS_OK;
 }
 
@@ -87,8 +87,7 @@ static Status output_sync(FILE *stream, const char *path, Err *err)
                     errno ? strerror(errno) : "an earlier write failed, as on a full disk");
     /* A pipe or a terminal has no disk to wait for. */
     if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
-        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be brought to the disk: %s", path,
-                    strerror(errno));
+        return fail_errno(err, path, "cannot be brought to the disk");
     return STATUS_OK;
 }
 
@@ -109,13 +108,12 @@ Status output_close(Output *o, Err *err)
     if (status == STATUS_OK)
         status = give_name(o, err);
     if (fclose(o->stream) != 0 && status == STATUS_OK)
-        status = fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
+        status = fail_errno(err, o->path, "cannot be written");
     o->stream = NULL;
     if (!o->temporary[0])
         return status;
     if (status == STATUS_OK && rename(o->temporary, o->path) != 0)
-        status =
-            fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be put in place: %s", o->path, strerror(errno));
+        status = fail_errno(err, o->path, "cannot be put in place");
     if (status == STATUS_OK)
         output_sync_folder(o->path);
     else

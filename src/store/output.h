@@ -11,6 +11,9 @@
 
 #include "base/status.h"
 
+/* The folder that a path is in, with its slash; . where it names none. */
+void folder_of(const char *path, char folder[PATH_MAX]);
+
 typedef struct {
     FILE *stream;
     char path[PATH_MAX], temporary[PATH_MAX]; /* temporary: empty when written in place */

@@ -39,6 +39,12 @@ const double *run_f(const Run *run, size_t row)
     return run->F + row * run->schema.n_obj;
 }
 
+double run_result(const Run *run, size_t row, size_t k)
+{
+    const size_t n_obj = run->schema.n_obj;
+    return k < n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - n_obj];
+}
+
 int run_likely(const Run *run, size_t row, double error[])
 {
     const double *err = run->table.row[row].err;
@@ -99,8 +105,7 @@ static Status form_again(Run *run, Err *err)
     NdTree *tree;
     NdChange change;
     double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
-    Status status =
-        F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    Status status = F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail_memory(err, 1, "the front");
     for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
         RunPlace *p = &run->place[i];
         const int is_candidate =

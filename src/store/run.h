@@ -59,7 +59,7 @@ typedef struct {
     int is_final;                           /* there was nothing more to do */
 } RunSession;
 
-typedef struct {
+typedef struct Run {
     char folder[PATH_MAX];
     char *provenance; /* JSON */
     Settings *settings;
@@ -87,6 +87,7 @@ void run_free(Run *run);
 
 const double *run_x(const Run *run, size_t row);           /* (n_var) */
 const double *run_f(const Run *run, size_t row);           /* (n_obj) */
+double run_result(const Run *run, size_t row, size_t k);   /* objective k, from n_obj on a further measure; NAN: none */
 void run_minimise(const Run *run, size_t row, double f[]); /* the same, minimised */
 
 /* Likely errors (n_obj) of the integration that are stored with the design; NAN where there is none. Returns whether

@@ -124,7 +124,7 @@ static Status take_open_row(const Evaluation *e, void *user, Err *err)
         return STATUS_OK;
     long *wider = realloc(store->polished, (store->n_polished + 1) * sizeof *wider);
     if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", store->n_polished + 1);
+        return fail_memory(err, store->n_polished + 1, "designs");
     store->polished = wider;
     wider[store->n_polished++] = e->id;
     return STATUS_OK;
@@ -192,9 +192,7 @@ Status store_forget_empty(RunStore *store, Err *err)
     store->has_run = 0;
     folder_path(&store->folder, "run.sqlite", path);
     database_remove_journal(path);
-    return unlink(path) == 0 || errno == ENOENT
-               ? STATUS_OK
-               : fail(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
+    return unlink(path) == 0 || errno == ENOENT ? STATUS_OK : fail_errno(err, path, "cannot be removed");
 }
 
 static Status write_origin(const RunStore *store, const Settings *used, const char *provenance, Err *err)
@@ -444,7 +442,7 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     enum { BLOCK = 64 };
     unsigned char *flags = realloc(store->was_on_front, v->n + 1);
     if (!flags)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
+        return fail_memory(err, v->n, "designs");
     store->was_on_front = flags;
     memset(flags + store->n_known, 0, v->n - store->n_known);
     store->n_known = v->n;
@@ -487,7 +485,7 @@ static Status store_state(RunStore *store, const SearchView *v, Err *err)
 static Status put_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
     if (!v->state)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
+        return fail_memory(err, 1, "the state of the search");
     TRY(store_rows(store, v, err));
     TRY(store_front_changes(store, v, err));
     TRY(database_do(store->db, err, "DELETE FROM finer", "")); /* what the search named before is another front's */
@@ -541,7 +539,7 @@ Status store_event(RunStore *store, json_t *event, Err *err)
     const int n = asprintf(&line, "%s\n", words);
     free(words);
     if (n < 0)
-        return fail(err, STATUS_NO_MEMORY, "log.jsonl: no memory for a line");
+        return fail_memory(err, 1, "a line of log.jsonl");
     const Status status = store->is_ready ? folder_append(&store->folder, "log.jsonl", line, err) : STATUS_OK;
     free(line);
     return status;

@@ -187,7 +187,7 @@ static Status tables_text(const Schema *s, char **text, Err *err)
     *text = NULL;
     FILE *f = text_open(text, &length);
     if (!f)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
+        return fail_memory(err, 1, "the names of the columns");
     fputs(OTHERS, f);
     for (RecordTable t = 0; t < N_RECORD_TABLES; t++) {
         put_table(f, &RECORDS[t]);
@@ -201,7 +201,7 @@ static Status tables_text(const Schema *s, char **text, Err *err)
                 put_column(f, list[k].begin, s->column[list[k].first + c].name, list[k].end);
         fputs(");", f);
     }
-    return text_close(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
+    return text_close(f) == 0 ? STATUS_OK : fail_memory(err, 1, "the names of the columns");
 }
 
 typedef struct {
@@ -275,20 +275,6 @@ static uint64_t digest_kind(EvaluationKind kind, long generation)
 
 /* -- a new database ------------------------------------------------------------------------------------------------ */
 
-/* The caller's; NULL: no memory. */
-static char *settings_text(const Settings *s)
-{
-    size_t length;
-    char *text = NULL;
-    FILE *f = text_open(&text, &length);
-    if (f)
-        settings_write(s, f, SETTINGS_PLAIN);
-    if (f && text_close(f) == 0)
-        return text;
-    free(text);
-    return NULL;
-}
-
 static long digest_of_head(const char *settings, const char *provenance, long planned_evals, long n_var)
 {
     return digest_whole(n_var, digest_whole(planned_evals, digest_text(provenance, digest_text(settings, HASH_SEED))));
@@ -305,7 +291,7 @@ static Status fill_new_database(Database *db, const Schema *schema, const char *
 {
     char created[24], *text = settings_text(used);
     if (!text)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
+        return fail_memory(err, 1, "the settings");
     utc_now(created);
     Status status = database_do(db, err, "BEGIN", "");
     if (status == STATUS_OK)
@@ -339,7 +325,7 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
     TRY(status);
     database_remove_journal(path);
     if (rename(temporary, path) != 0)
-        return fail(err, STATUS_IO, "%s: cannot be put in place: %s", path, strerror(errno));
+        return fail_errno(err, path, "cannot be put in place");
     output_sync_folder(path);
     return STATUS_OK;
 }
@@ -348,7 +334,7 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
 {
     char *text = settings_text(used);
     if (!text)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the settings");
+        return fail_memory(err, 1, "the settings");
     const Status status = database_do(db, err, "UPDATE run SET settings = ?, digest = ?", "ti", text,
                                       digest_of_head(text, run->provenance, run->planned_evals, run->schema.n_var));
     free(text);

@@ -17,13 +17,12 @@ static int is_gap(const Run *run, size_t j)
 }
 
 /* NAN: not known. */
-static double result_of(const Run *run, size_t row, MeasureId id)
+static double measure_of(const Run *run, size_t row, MeasureId id)
 {
-    const MeasureOrder *order = &run->schema.order;
-    int k = 0;
-    while (order->of[k] != (int)id)
+    size_t k = 0;
+    while (run->schema.order.of[k] != (int)id)
         k++;
-    return k < order->n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - order->n_obj];
+    return run_result(run, row, k);
 }
 
 static void count_bounds(const Run *run, size_t row, FrontReview *r)
@@ -47,7 +46,7 @@ FrontReview front_review(const Run *run)
     FrontReview r = {.n_front = run->n_front};
     for (size_t i = 0; i < run->n_front && run->schema.order.n_obj > 0; i++) {
         count_bounds(run, run->front[i], &r);
-        r.n_beyond += result_of(run, run->front[i], MEASURE_BEYOND_LAW) > 0.0;
+        r.n_beyond += measure_of(run, run->front[i], MEASURE_BEYOND_LAW) > 0.0;
     }
     return r;
 }

@@ -27,8 +27,7 @@ static Status read_table(const char *path, const Schema *schema, double **X, siz
     TRY(table_read(&t, path, TABLE_WORDS, err));
     *X = calloc(t.n_rows * schema->n_var + 1, sizeof **X);
     *n = t.n_rows;
-    const Status status = *X ? copy_columns(&t, path, schema, *X, err)
-                             : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", t.n_rows);
+    const Status status = *X ? copy_columns(&t, path, schema, *X, err) : fail_memory(err, t.n_rows, "designs");
     table_free(&t);
     return status;
 }
@@ -37,8 +36,8 @@ static Status copy_front(const Run *run, const Schema *schema, double **X, size_
 {
     const size_t n_var = run->schema.n_var;
     if (n_var != schema->n_var)
-        return bad_data(err, "search.start: %s: its designs have %zu variables, this search has %zu",
-                    run->folder, n_var, schema->n_var);
+        return bad_data(err, "search.start: %s: its designs have %zu variables, this search has %zu", run->folder,
+                        n_var, schema->n_var);
     TRY_ROOM(*X, run->n_front * n_var + 1, "designs", err);
     for (size_t i = 0; i < run->n_front; i++)
         memcpy(*X + i * n_var, run_x(run, run->front[i]), n_var * sizeof **X);

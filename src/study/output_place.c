@@ -4,6 +4,8 @@
 #include <limits.h>
 #include <sys/stat.h>
 
+#include "store/output.h"
+
 static const char RESULTS[] = "results";
 
 static int has_step_up(const char *path)
@@ -40,8 +42,7 @@ static int is_below(const char *path, const char *folder)
 static int is_own_folder(const char *out, const char *settings_file)
 {
     char own[PATH_MAX], place[PATH_MAX];
-    const char *slash = strrchr(settings_file, '/');
-    snprintf(own, sizeof own, "%.*s", slash ? (int)(slash - settings_file + 1) : 1, slash ? settings_file : ".");
+    folder_of(settings_file, own);
     char *folder = realpath(own, NULL);
     const int is_own = folder && realpath(out, place) && strcmp(folder, place) == 0;
     free(folder);
@@ -56,13 +57,17 @@ Status output_place_check(const char *out, const char *settings_file, Err *err)
     if (is_own_folder(out, settings_file))
         return STATUS_OK;
     if (!is_below(path, RESULTS) || has_step_up(path))
-        return bad_data(err, "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
+        return bad_data(
+            err,
+            "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
             "one on the command line: --out %.100s",
             settings_file, out, RESULTS, out);
     if (realpath(RESULTS, results) && stat(results, &about) == 0 && S_ISDIR(about.st_mode) &&
         (!find_existing(path, there) || !is_below(there, results)))
-        return bad_data(err, "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
-                    "line: --out %.100s",
-                    settings_file, out, RESULTS, out);
+        return bad_data(
+            err,
+            "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
+            "line: --out %.100s",
+            settings_file, out, RESULTS, out);
     return STATUS_OK;
 }

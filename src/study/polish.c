@@ -166,7 +166,7 @@ Status polish_run(Queue *queue, const PolishGoal *goal, Polished *best, Err *err
     best->n_evaluated = best->n_failed = 0;
     p.first = p.least = value_of(&p, best->f);
     p.store = carve_all(layout, &p);
-    Status status = p.store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    Status status = p.store ? STATUS_OK : fail_memory(err, 1, "polishing");
     double step = STEP;
     int idle = 0;
     while (status == STATUS_OK && !is_spent(&p) && step > STEP_MIN && IDLE_MAX > idle) {
