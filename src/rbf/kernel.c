@@ -40,7 +40,7 @@ static inline double exp_down(double x)
 }
 
 CLONED void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
-                           double s[])
+                        double s[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
 #pragma omp simd
@@ -48,8 +48,8 @@ CLONED void kernel_warp(size_t n, const double log_u[], const double log_v[], do
         s[i] = half * (exp_down(a * log_u[i]) + 1.0 - exp_down(b * log_v[i]));
 }
 
-CLONED void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta,
-                                  const double warp[2], double by_a[], double by_b[])
+CLONED void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                               double by_a[], double by_b[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
 #pragma omp simd
@@ -219,8 +219,8 @@ CLONED void kernel_weigh(size_t n, const double slope[], const double w[], doubl
         v[i] = (w[i] * w_j / s2 - v[i]) * slope[i];
 }
 
-CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first,
-                               size_t count, double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK])
+CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first, size_t count,
+                            double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK])
 {
     const double each = share / (double)n_dim, by_reach = 1.0 / reach;
     for (size_t p = 0; p < RBF_BLOCK; p++) {

@@ -36,7 +36,7 @@ static void layout(void *interpolant, Carve *c)
         CARVE(c, w->by_a, n);
         CARVE(c, w->by_b, n);
         CARVE(c, w->A, n * n);
-        CARVE(c, w->K, tuned * tuned);
+        CARVE(c, w->K, n * n);
         CARVE(c, w->slope, tuned * tuned);
         CARVE(c, w->P, n * (t + 1));
         CARVE(c, w->M, t * t);
@@ -118,32 +118,25 @@ void model_additive(const Rbf *m, size_t n, const double C[], double reach, doub
     }
 }
 
-void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
-                  const double K[], double A[], double slope[])
+void model_matrix(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm form, double slope[])
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX];
-    double factor[RBF_BLOCK][KERNEL_CHUNK];
-    const int is_made = K || form.reach == 0.0;
+    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, S, j, n, x);
-        if (!is_made)
-            model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = MIN_OF(n - i, KERNEL_CHUNK);
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
-            if (!is_made)
-                kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
+            for (size_t p = 0, at = j * n + i; p < RBF_BLOCK && j + p < n; p++, at += n) {
                 if (slope)
-                    kernel_values_and_slopes(form.kernel, count, r2[p], A + (j + p) * n + i, slope + (j + p) * n + i);
+                    kernel_values_and_slopes(form.kernel, count, r2[p], k->A + at, slope + at);
                 else
-                    kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
+                    kernel_values(form.kernel, count, r2[p], k->A + at);
                 if (form.reach > 0.0)
-                    kernel_multiply(count, K ? K + (j + p) * n + i : factor[p], A + (j + p) * n + i);
+                    kernel_multiply(count, k->K + at, k->A + at);
             }
         }
-        for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
-            A[(j + p) * n + j + p] += form.nugget * noise[j + p];
+        for (size_t p = j; p < j + RBF_BLOCK && p < n; p++)
+            k->A[p * n + p] += form.nugget * k->noise[p];
     }
 }
 
@@ -165,10 +158,10 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }
 
-int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], const double K[], RbfForm *form)
+int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, n, C, S, *form, k->noise, K, k->A, NULL);
+        model_matrix(m, k, n, S, *form, NULL);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= 1.0)
@@ -252,7 +245,7 @@ static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
     RbfForm form = o->form;
-    if (!model_factor(m, k, n, m->C, o->S, NULL, &form))
+    if (!model_factor(m, k, n, o->S, &form))
         return 0;
     o->n_tail = model_weights(m, k, n, m->C, model_tail(tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
@@ -288,6 +281,8 @@ static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], con
         k->y[i] = (f[i] - o->mean) / o->scale;
     o->is_left_out = 0;
     model_scale(m, m->n, m->C, &o->shape, o->S);
+    if (o->form.reach > 0.0)
+        model_additive(m, m->n, m->C, o->form.reach, k->K);
     if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
         leave_out(m, o, f);
 }

@@ -98,7 +98,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
                          double *s2, double gradient[])
 {
     model_scale(m, n, k->C, shape, k->S);
-    model_matrix(m, n, k->C, k->S, form, k->noise, k->K, k->A, k->slope);
+    model_matrix(m, k, n, k->S, form, k->slope);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
     k->n_tail = model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
@@ -161,7 +161,7 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
 {
     if (!is_at_hand) {
         model_scale(m, n, k->C, shape, k->S);
-        if (!model_factor(m, k, n, k->C, k->S, k->K, form))
+        if (!model_factor(m, k, n, k->S, form))
             return INFINITY;
         k->n_tail = model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim));
     }
