@@ -30,7 +30,7 @@ typedef struct {
 } Lines;
 
 /* bad_data of "PATH:LINE: what", where l is. */
-#define fail_at(err, l, what, ...) bad_data(err, "%s:%d: " what, (l)->path, (l)->number __VA_OPT__(, ) __VA_ARGS__)
+#define fail_at(err, l, what, ...) bad_data(err, "%s:%d: " what, (l)->path, (l)->number, ##__VA_ARGS__)
 
 Status lines_open(Lines *l, const char *path, const char *text, size_t length, Err *err);
 int lines_next(Lines *l); /* 0: no further line */
