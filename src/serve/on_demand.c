@@ -121,7 +121,8 @@ static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_d
     s.search.threads = 1;
     TRY(record_paths_find(&s, run->provenance, o->moved, err));
     run_steps(run, row, &s.sim);
-    const DetailOptions options = {.floor = -1, .moved = *o->moved, .without_devices = !with_devices};
+    const DetailOptions options = {
+        .floor = -1, .moved = *o->moved, .without_devices = !with_devices, .with_ladder = with_devices};
     TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
     *text = text_of(run, row, &d);
     detail_free(&d);
