@@ -257,19 +257,21 @@ static void scene_json(Check *c, const CheckedScene *p)
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 4, BOUC_WEN = 12;
 enum { CLOSING_SIMULATIONS = 24 };
 
-/* Wall times [s] of a study: search and baselines beside the simulations, and all of it. */
-static void expected_times(const CheckedScene *p, long simulations, long threads, double each_s, size_t n_obj,
-                           double *search_s, double *baselines_s, double *all_s)
+/* Wall times [s] of a study: search and baselines beside the simulations, of each_s, and all of it. */
+static void put_times(json_t *study, const CheckedScene *p, long simulations, long threads, double each_s, size_t n_obj)
 {
     const SearchOptions *o = &p->s->search;
     const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
     const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
     const double growth = sqrt(p->space.n_var / VARIABLES);
-    *search_s = o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
-    *baselines_s = DEVICES_S * p->building.n * n_records;
-    if (p->building.yields)
-        *baselines_s *= p->s->building.hysteresis == HYSTERESIS_BOUC_WEN ? BOUC_WEN : YIELDING;
-    *all_s = all * each_s / (double)threads + *search_s + *baselines_s;
+    const double search_s =
+        o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
+    const double dearer = !p->building.yields                                ? 1
+                          : p->s->building.hysteresis == HYSTERESIS_BOUC_WEN ? BOUC_WEN
+                                                                             : YIELDING;
+    const double baselines_s = DEVICES_S * p->building.n * n_records * dearer;
+    json_put(study, "search_s=%g baselines_s=%g seconds=%g", search_s, baselines_s,
+             all * each_s / (double)threads + search_s + baselines_s);
 }
 
 static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
@@ -293,7 +295,6 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
     Err e = {0};
     SimResult r;
     char text[NOTE_MAX];
-    double search_s, baselines_s, all_s;
     const Settings *s = p->s;
     const SimTask task = {.kind = SCENE_IMPACT, .x = p->x};
     if (!note(c, tower_simulate(problem, 1, &task, &r, &e), "simulation", &e))
@@ -305,13 +306,12 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
                                                                                      : 1;
     const long records = motion_n_records(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
-    expected_times(p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")),
-                   &search_s, &baselines_s, &all_s);
-    json_put(c->out, "study=%p",
-             json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%ld "
-                     "search_s=%g baselines_s=%g seconds=%g",
-                     p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
-                     simulations, threads, r.seconds, r.impacts, search_s, baselines_s, all_s));
+    json_t *study =
+        json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%ld",
+                p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
+                simulations, threads, r.seconds, r.impacts);
+    put_times(study, p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")));
+    json_put(c->out, "study=%p", study);
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */

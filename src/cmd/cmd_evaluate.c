@@ -153,11 +153,6 @@ static void write_script(FILE *script, const void *user)
     fputs("unset multiplot\n", script);
 }
 
-static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const char *path, Err *err)
-{
-    return gnuplot_draw(path, write_script, &(Picture){e, order}, err);
-}
-
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
@@ -313,7 +308,7 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
     if (args_has(args, "--csv"))
         TRY(write_csv(e, args_value(args, "--csv"), err));
     if (args_has(args, "--svg"))
-        TRY(ida_draw(e, &c->schema->order, args_value(args, "--svg"), err));
+        TRY(gnuplot_draw(args_value(args, "--svg"), write_script, &(Picture){e, &c->schema->order}, err));
     if (args_has(args, "--json"))
         return show_as_json(args, c, e, err);
     if (!args_has(args, "--csv") && !args_has(args, "--svg"))

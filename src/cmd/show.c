@@ -163,43 +163,39 @@ void figures_list(int indent, json_t *o)
     }
 }
 
-static void write_cell(FILE *out, const json_t *cell)
+/* row NULL: the names. */
+static void write_row(FILE *out, json_t *columns, const json_t *row)
 {
+    const char *name, *comma = "";
     char text[CELL_MAX], safe[CELL_MAX];
-    if (json_is_real(cell)) {
-        print_number(out, json_real_value(cell));
-    } else if (cell && !json_is_null(cell)) {
-        cell_words(cell, text);
-        cell_text(safe, sizeof safe, text);
-        fputs(safe, out);
+    json_t *unused;
+    json_object_foreach(columns, name, unused)
+    {
+        const json_t *cell = json_object_get(row, name);
+        fputs(comma, out);
+        comma = ",";
+        if (json_is_real(cell)) {
+            print_number(out, json_real_value(cell));
+        } else if (cell && !json_is_null(cell)) {
+            cell_words(cell, text);
+            cell_text(safe, sizeof safe, text);
+            fputs(safe, out);
+        } else if (!row) {
+            fputs(name, out);
+        }
     }
+    fputc('\n', out);
 }
 
 Status figures_csv(json_t *table, const char *path, Err *err)
 {
     Output o;
     size_t i;
-    const char *name, *comma = "";
-    json_t *row, *cell, *columns = columns_of(table);
+    json_t *row, *columns = columns_of(table);
     Status status = output_open(&o, path, err);
     if (status == STATUS_OK) {
-        json_object_foreach(columns, name, cell)
-        {
-            fprintf(o.stream, "%s%s", comma, name);
-            comma = ",";
-        }
-        fputc('\n', o.stream);
-        json_array_foreach(table, i, row)
-        {
-            comma = "";
-            json_object_foreach(columns, name, cell)
-            {
-                fputs(comma, o.stream);
-                write_cell(o.stream, json_object_get(row, name));
-                comma = ",";
-            }
-            fputc('\n', o.stream);
-        }
+        write_row(o.stream, columns, NULL);
+        json_array_foreach(table, i, row) write_row(o.stream, columns, row);
         status = output_close(&o, err);
     }
     json_decref(columns);
@@ -502,12 +498,12 @@ json_t *json_review(const FrontReview *r)
 {
     json_t *smallest = json_array(), *largest = json_array(), *never = json_array();
     for (size_t j = 0; j < r->n_gaps; j++) {
-        json_array_append_new(smallest, json_integer((json_int_t)r->at_smallest[j]));
-        json_array_append_new(largest, json_integer((json_int_t)r->at_largest[j]));
+        json_array_append_new(smallest, json_integer(r->at_smallest[j]));
+        json_array_append_new(largest, json_integer(r->at_largest[j]));
     }
     for (size_t j = 0; j < r->n_floors; j++)
         if (r->closes[j] == 0)
-            json_array_append_new(never, json_integer((json_int_t)j + 1));
+            json_array_append_new(never, json_integer(j + 1));
     json_t *o =
         json_of("beyond_contact_law=%ld gaps_on_smallest=%p gaps_on_largest=%p", r->n_beyond, smallest, largest);
     if (r->n_simulated > 0)
