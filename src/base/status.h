@@ -55,7 +55,8 @@ typedef struct {
 __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
 __attribute__((format(printf, 4, 5))) Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...);
 
-/* Of a file or a setting that holds something that cannot be used: STATUS_BAD_DATA; of the command line: STATUS_USAGE. */
+/* Of a file or a setting that holds something that cannot be used: STATUS_BAD_DATA; of the command line:
+ * STATUS_USAGE. */
 #define bad_data(err, ...) fail(err, STATUS_BAD_DATA, __VA_ARGS__)
 #define misused(err, ...)  fail(err, STATUS_USAGE, __VA_ARGS__)
 

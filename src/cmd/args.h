@@ -49,9 +49,9 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 
 /* Rows of a command's options: without a value, with one, with one each time, with one that is a setting. */
 /* clang-format off */
-#define SWITCH(name_, help_)                   {.name = name_, .help = help_}
-#define VALUE(name_, value_, help_)            {.name = name_, .value = value_, .help = help_}
-#define VALUES(name_, value_, help_)           {.name = name_, .value = value_, .many = 1, .help = help_}
+#define SWITCH(name_, help_) {.name = name_, .help = help_}
+#define VALUE(name_, value_, help_) {.name = name_, .value = value_, .help = help_}
+#define VALUES(name_, value_, help_) {.name = name_, .value = value_, .many = 1, .help = help_}
 #define SETTING(name_, value_, setting_, help_) {.name = name_, .value = value_, .setting = setting_, .help = help_}
 
 /* Options of several commands. */
@@ -59,9 +59,11 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_SET VALUES("--set", "SECTION.KEY=VALUE", "any setting; may be repeated (`imtet settings` lists them)")
 #define OPTION_RECORD SETTING("--record", "FILE", "motion.record", "ground motion file or builtin:NAME")
 #define OPTION_PGA SETTING("--pga", "G", "motion.pga_g", "scale the motion to this peak [g]; 0: as recorded")
-#define OPTION_UNIT SETTING("--unit", "UNIT", "motion.unit", "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say")
+#define OPTION_UNIT \
+    SETTING("--unit", "UNIT", "motion.unit", "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say")
 #define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_UNIT
-#define OPTION_CHANNEL SETTING("--channel", "NAME", "motion.channel", "component by name or number, of a file with several")
+#define OPTION_CHANNEL \
+    SETTING("--channel", "NAME", "motion.channel", "component by name or number, of a file with several")
 #define OPTION_JSON SWITCH("--json", "everything, as JSON, on standard output")
 #define OPTION_CSV VALUE("--csv", "FILE", "the table as CSV into FILE; -: standard output")
 #define OPTION_END {.name = NULL}

@@ -81,7 +81,7 @@ static Status check_limit(const Comparison *c, size_t n_there, Err *err)
     return now == was || now >= (long)n_there
                ? STATUS_OK
                : bad_data(err, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
-                      c->run->folder, now, n_there);
+                          c->run->folder, now, n_there);
 }
 
 Status differences_check(const Comparison *c, size_t n_there, int *has_new_limits, Err *err)
@@ -95,6 +95,6 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
     if (d.n_others == 0 && (c->force || d.n_lowered == 0))
         return check_limit(c, n_there, err);
     return bad_data(err, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
-                n > 1 ? ", and more" : "",
-                d.n_others == 0 ? "--force-settings lowers limits" : "choose another --out, or --new");
+                    n > 1 ? ", and more" : "",
+                    d.n_others == 0 ? "--force-settings lowers limits" : "choose another --out, or --new");
 }

@@ -37,14 +37,18 @@ Status job_seconds(double *seconds, Err *err)
     if (is_number(end))
         end_s = strtod(end, NULL);
     else if (!is_number(job))
-        return bad_data(err, "search.max_hours = auto: this is no job of Slurm (there is no SLURM_JOB_ID); give hours instead");
+        return bad_data(
+            err, "search.max_hours = auto: this is no job of Slurm (there is no SLURM_JOB_ID); give hours instead");
     else if (!ask_slurm(job, &end_s))
-        return bad_data(err, "search.max_hours = auto: `scontrol show job %.20s` does not say when the job ends; give hours instead",
+        return bad_data(
+            err,
+            "search.max_hours = auto: `scontrol show job %.20s` does not say when the job ends; give hours instead",
             job);
     *seconds = end_s - (double)time(NULL) - JOB_MARGIN_S;
     return *seconds > 0.0
                ? STATUS_OK
-               : bad_data(err, "search.max_hours = auto: the job ends in %.0f s, of which the last %g s are needed to store "
-                      "the run; give it more time (sbatch --time)",
-                      end_s - (double)time(NULL), JOB_MARGIN_S);
+               : bad_data(err,
+                          "search.max_hours = auto: the job ends in %.0f s, of which the last %g s are needed to store "
+                          "the run; give it more time (sbatch --time)",
+                          end_s - (double)time(NULL), JOB_MARGIN_S);
 }

@@ -65,10 +65,9 @@ Status record_paths_find(Settings *s, const char *provenance, const RecordPaths 
         return STATUS_OK;
     TRY(hash_all(s, &record, &records, err));
     if (moved->record && provenance_hash(provenance, "record_fnv1a") != record)
-        return bad_data(err, "%s: does not hold what the run's record %.200s held", moved->record,
-                    was.motion.record);
+        return bad_data(err, "%s: does not hold what the run's record %.200s held", moved->record, was.motion.record);
     if (moved->records && provenance_hash(provenance, "records_fnv1a") != records)
         return bad_data(err, "%.200s: do not hold what the run's records %.200s held", moved->records,
-                    was.motion.records);
+                        was.motion.records);
     return STATUS_OK;
 }
