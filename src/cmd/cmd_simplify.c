@@ -1,7 +1,3 @@
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/list.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -27,7 +23,7 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
     char *end;
     const double mm = strtod(text, &end);
     if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm > 0.0 && mm <= 1e4))
-        return fail(err, STATUS_USAGE, "%s: '%.40s' is no length in mm, as 5 or 5mm", option, text);
+        return misused(err, "%s: '%.40s' is no length in mm, as 5 or 5mm", option, text);
     *value = 1e-3 * mm;
     return STATUS_OK;
 }
@@ -37,14 +33,13 @@ static Status take_plates(const char *list, SimplifyConfig *c, Err *err)
     char item[32];
     c->n_plates = list_count(list);
     if (c->n_plates > PLATES_MAX)
-        return fail(err, STATUS_USAGE, "--plates: more than %d", PLATES_MAX);
+        return misused(err, "--plates: more than %d", PLATES_MAX);
     for (size_t i = 0; i < c->n_plates; i++) {
         if (!list_item(list, i, item, sizeof item))
-            return fail(err, STATUS_USAGE, "--plates: item %zu is empty or too long", i + 1);
+            return misused(err, "--plates: item %zu is empty or too long", i + 1);
         TRY(take_mm("--plates", item, &c->plate[i], err));
         if (i > 0 && c->plate[i] <= c->plate[i - 1])
-            return fail(err, STATUS_USAGE, "--plates: give them in ascending order: %s stands behind a thicker one",
-                        item);
+            return misused(err, "--plates: give them in ascending order: %s stands behind a thicker one", item);
     }
     return STATUS_OK;
 }
@@ -139,11 +134,12 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
-    {"--gap-step", "MM", NULL, 0, "gaps become multiples of it; they stay if not given"},
-    {"--plates", "MM,MM,...", NULL, 0, "walls become one of these; they stay if not given"},
-    {"--keep", "NAME[=S],...", NULL, 0,
-     "these may lose the share S of their value, 2% where none is given; if not given the first 2%, all others 10%"},
+    VALUE("--design", "ID", DESIGN_OF_RUN),
+    VALUE("--gap-step", "MM", "gaps become multiples of it; they stay if not given"),
+    VALUE("--plates", "MM,MM,...", "walls become one of these; they stay if not given"),
+    VALUE(
+        "--keep", "NAME[=S],...",
+        "these may lose the share S of their value, 2% where none is given; if not given the first 2%, all others 10%"),
     OPTION_MOVED,
     OPTION_END,
 };

@@ -1,8 +1,5 @@
 #include "study/simplify.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "analysis/estimate.h"
 #include "base/clock.h"
 #include "evaluate/adapter.h"
@@ -85,8 +82,8 @@ static Status note(Simplify *s, Simplification what, Err *err)
     TRY(queue_ask(s->queue, &(Asked){.x = s->x}, err));
     TRY(queue_next(s->queue, &done, err));
     if (done.evaluation->outcome != OUTCOME_OK)
-        return fail(err, STATUS_BAD_DATA, "the design fails when it is simulated again (%s %s): choose another one",
-                    outcome_word(done.evaluation->outcome), done.evaluation->reason);
+        return bad_data(err, "the design fails when it is simulated again (%s %s): choose another one",
+                        outcome_word(done.evaluation->outcome), done.evaluation->reason);
     if (what == SIMPLIFY_START)
         memcpy(s->first, done.f, s->n_obj * sizeof *done.f);
     out->loss[what] = loss_of(s, done.f);
@@ -268,7 +265,7 @@ Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config,
     for (size_t i = 0; i < SIMPLIFY_PATH * OBJECTIVES_MAX; i++)
         out->error[i / OBJECTIVES_MAX][i % OBJECTIVES_MAX] = NAN;
     if (run->settings->problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "%s: simplify is for designs of a tower, with gaps and plates", run->folder);
+        return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", run->folder);
     const Status status = walk(&s, run_x(run, row), err);
     close_simulator(&s);
     free(s.x);

@@ -1,7 +1,7 @@
 /* study/simplify.h -- a design of a tower that can be built: fewer stops, gaps and plates as they are sold.
  *
- *   loss = max_k (f_k - f_k at the start) / (slack_k |f_k at the start|)       over the kept objectives, minimised; 1 is
- *                                                                             what may be lost
+ *   loss = max_k (f_k - f_k at the start) / (slack_k |f_k at the start|)     over the kept objectives, minimised; 1 is
+ *                                                                           what may be lost
  *
  *   1 start    the design as it is
  *   2 closing  stops that close under no record and in no replicate go: without them the results are the same
