@@ -30,7 +30,8 @@ typedef struct {
 /* [-] dz/dd of bouc_wen at z/y, energy e, while d moves to side `sign`. */
 static inline double storey_slope(const StoreyLaw *law, double z_over_y, double e, double sign)
 {
-    const double bends = sign * z_over_y > 0 ? (1 + law->strength * e) * pow(fabs(z_over_y), law->exponent) : 0;
+    const double n = law->exponent, z = fabs(z_over_y), power = n == 2 ? z * z : n == 1 ? z : pow(z, n);
+    const double bends = sign * z_over_y > 0 ? (1 + law->strength * e) * power : 0;
     return (1 - bends) / (1 + law->stiffness * e);
 }
 

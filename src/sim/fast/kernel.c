@@ -393,7 +393,7 @@ static void settle(FastWork *k, double start, Ramp a, double next)
 
 /* Steps of `fine`, and the longest that have to be resolved of the others, are no longer than so many to the period of
  * the building's fastest mode. */
-static int yielding_level(const FastWork *k)
+static int yielding_level(FastWork *k)
 {
     double fastest = 0;
     int level = 0;
@@ -401,6 +401,7 @@ static int yielding_level(const FastWork *k)
         fastest = fmax(fastest, scalars_const(k->omega)[i]);
     while (level < LEVEL_MAX && ldexp(k->base, -level) * fastest * k->tolerances->steps_per_contact > 2 * M_PI)
         level++;
+    k->storey_rate = fastest * fastest / 6; /* of the displacement that a force that grows over the step makes */
     return level;
 }
 

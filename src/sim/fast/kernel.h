@@ -147,6 +147,7 @@ typedef struct FastWork {
     vec *held;          /* (m_pad) modal load of the plastic drifts at the start of the step */
     vec *rest;          /* (n_pad) [m] |z| of the storeys at rest under it */
     int yielding_level; /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
+    double storey_rate; /* [1/s2] times the square of a step: what the other storeys change of one, at most */
     FloorSet yielding;  /* storeys at the end of the last step */
     double work_of[FLOORS_PAD_MAX]; /* [J] int k z d' dt of a storey */
     double hysteresis;              /* [J] */
