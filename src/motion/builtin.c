@@ -54,6 +54,7 @@ enum { BUILTIN_MOTION_LIST(CHOICE_NAME) N_MOTIONS };
 
 /* builtin.csv, a part of the program (Makefile, rule for *.csv.o): a Model for each. */
 extern const char _binary_src_motion_builtin_csv_start[], _binary_src_motion_builtin_csv_end[];
+static const char *const TABLE[] = {_binary_src_motion_builtin_csv_start, _binary_src_motion_builtin_csv_end};
 
 /* Adds the derivative of v at the n samples. */
 static void add_pulse(const Pulse *p, size_t n, double accel[])
@@ -156,7 +157,6 @@ static Status make_motion(Motion *m, const Model *model, Err *err)
 Status builtin_motion(Motion *m, const char *source, Err *err)
 {
     static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
-    const char *table = _binary_src_motion_builtin_csv_start;
     Table t;
     int k = 0;
     while (k < N_MOTIONS && strcmp(source, NAMES[k]) != 0)
@@ -164,7 +164,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
     memset(m, 0, sizeof *m);
     if (k == N_MOTIONS)
         return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, k);
-    TRY(table_parse(&t, source, table, _binary_src_motion_builtin_csv_end - table, TABLE_PLAIN, err));
+    TRY(table_parse(&t, source, TABLE[0], TABLE[1] - TABLE[0], TABLE_PLAIN, err));
     const Status status = make_motion(m, (const Model *)t.values + k, err);
     table_free(&t);
     snprintf(m->name, sizeof m->name, "%s", source);
