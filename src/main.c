@@ -4,10 +4,6 @@
  * scripts/completion.bash --commands. */
 #include <fcntl.h>
 #include <jansson.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -1,8 +1,5 @@
 #include "analysis/baselines.h"
 
-#include <math.h>
-#include <stdio.h>
-
 static const struct {
     const char *words, *key;
     SceneKind scene;

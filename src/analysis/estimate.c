@@ -1,9 +1,5 @@
 #include "analysis/estimate.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "base/stat.h"
 

@@ -3,9 +3,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "analysis/estimate.h"
@@ -67,7 +64,7 @@ Status evaluations_add_folder(Evaluations *e, const char *folder, Err *err)
         free(names[i]);
     }
     free(names);
-    return n > 0 ? status : fail(err, STATUS_BAD_DATA, "--records %s: is empty", folder);
+    return n > 0 ? status : bad_data(err, "--records %s: is empty", folder);
 }
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
@@ -202,8 +199,7 @@ static Status estimate(const Evaluations *e, size_t i, const double x[], Err *er
 Status evaluations_run(Evaluations *e, size_t n_var, const double x[], EvaluationsTold *told, Err *err)
 {
     if (e->tower.n_var != n_var)
-        return fail(err, STATUS_BAD_DATA, "the front has designs of %zu variables, this building has %zu", n_var,
-                    e->tower.n_var);
+        return bad_data(err, "the front has designs of %zu variables, this building has %zu", n_var, e->tower.n_var);
     TRY(run_round(e, first_tasks, x, told, err));
     TRY(run_round(e, device_tasks, x, NULL, err));
     TRY(run_round(e, replicate_tasks, x, told, err));

@@ -1,8 +1,5 @@
 #include "analysis/full_model.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "analysis/estimate.h"
 
 /* Above the degrees of freedom of any frame. */

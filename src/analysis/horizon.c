@@ -1,9 +1,5 @@
 #include "analysis/horizon.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 /* States of one run, sample by sample: sqrt(2 energy) per mode, as pairs (w q, q'). */
 typedef struct {
     size_t n, n_modes, room;
@@ -49,7 +45,7 @@ static Status follow(const Scenario *scenario, const double x[], Track *track, E
     if (status == STATUS_OK && track->no_memory)
         status = fail(err, STATUS_NO_MEMORY, "no memory to keep a run of %zu samples", track->n);
     if (status == STATUS_OK && result.outcome != RUN_OK)
-        status = fail(err, STATUS_BAD_DATA, "the design cannot be simulated: %s", result.reason);
+        status = bad_data(err, "the design cannot be simulated: %s", result.reason);
     return status;
 }
 

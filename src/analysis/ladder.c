@@ -1,9 +1,5 @@
 #include "analysis/ladder.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "scene/frame.h"
 #include "scene/neighbour.h"
 #include "settings/settings.h"
@@ -173,7 +169,7 @@ static Status leave_out_each(Job *job, Err *err)
     const Status status = tower_run(&p, 1 + l->n, task, NULL, NULL, err);
     problem_close(&p);
     if (status == STATUS_OK && job->first[0].outcome != RUN_OK)
-        return fail(err, STATUS_BAD_DATA, "ladder: the model with all effects failed: %s", job->first[0].reason);
+        return bad_data(err, "ladder: the model with all effects failed: %s", job->first[0].reason);
     if (status == STATUS_OK)
         conclude(job, &as_built);
     return status;

@@ -1,10 +1,5 @@
 #include "analysis/sensitivity.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/stat.h"
 #include "scene/design.h"
 #include "settings/settings.h"

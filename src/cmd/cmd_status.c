@@ -33,7 +33,7 @@ static json_t *json_generations(const Run *run)
 static void print_generations(const Run *run, double expected)
 {
     static const char *const UNSHOWN[] = {"hypervolume_error", "surrogate_error", "finished"};
-    const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
+    const size_t n = run->n_generations, rows = MIN_OF(n, ROWS_MAX);
     json_t *all = json_generations(run), *table = json_array();
     for (size_t r = 0; r < rows; r++) {
         const size_t g = rows > 1 ? r * (n - 1) / (rows - 1) : 0;

@@ -74,7 +74,7 @@ static json_t *columns_of(json_t *table)
     {
         const json_int_t before = json_integer_value(json_object_get(columns, name));
         cell_words(cell, text);
-        const int head = width_of(name), own = width_of(text), width = head > own ? head : own;
+        const int head = width_of(name), own = width_of(text), width = MAX_OF(head, own);
         if (!before || width > before)
             json_object_set_new(columns, name, json_integer(width));
     }

@@ -138,7 +138,7 @@ Status importance_of(const Run *run, Importance *out, Err *err)
     const size_t known = count_known(run), n_var = run->schema.n_var, n_obj = run->schema.n_obj;
     const size_t samples = PREDICTIONS / (n_var + 1);
     Sobol s = {.run = run,
-               .n = known < CENTRES ? known : CENTRES,
+               .n = MIN_OF(known, CENTRES),
                .n_var = n_var,
                .n_obj = n_obj,
                .n_samples = samples < SAMPLES_MIN   ? SAMPLES_MIN

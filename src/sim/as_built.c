@@ -1,8 +1,5 @@
 #include "sim/as_built.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 void as_built_options(const AsBuilt *built, const SceneOptions *o, SceneOptions *out)
 {
     *out = *o;

@@ -123,8 +123,8 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
     const double r = o->restitution, nu = o->poisson;
     const ContactLaw law = o->law;
     if (r < 0.01 && (law == LAW_EXACT || law == LAW_FLORES || law == LAW_JANKOWSKI))
-        return fail(
-            err, STATUS_BAD_DATA,
+        return bad_data(
+            err,
             "contact.restitution: %g cannot be had with this contact.law (its damping grows without bound); use "
             "0.01 or more, or contact.law = paper",
             r);

@@ -30,8 +30,6 @@
 #ifndef IMTET_SIM_CONTACT_H
 #define IMTET_SIM_CONTACT_H
 
-#include <math.h>
-
 #include "base/status.h"
 #include "sim/options.h"
 

@@ -6,9 +6,6 @@
 #ifndef IMTET_SIM_ENERGY_BALANCE_H
 #define IMTET_SIM_ENERGY_BALANCE_H
 
-#include <math.h>
-#include <stdio.h>
-
 #include "sim/result.h"
 
 /* [J] The error's denominator: the input, or what came out where the ground has taken back all that it gave. */

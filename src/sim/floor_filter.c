@@ -1,10 +1,5 @@
 #include "sim/floor_filter.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/carve.h"
 #include "base/clones.h"
 #include "base/filter.h"

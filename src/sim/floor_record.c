@@ -1,8 +1,5 @@
 #include "sim/floor_record.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "scene/building.h"
 
 struct FloorRecord {

@@ -10,8 +10,6 @@
 #ifndef IMTET_SIM_FLOOR_RECORD_H
 #define IMTET_SIM_FLOOR_RECORD_H
 
-#include <stddef.h>
-
 #include "base/status.h"
 
 typedef struct FloorRecord FloorRecord;

@@ -2,8 +2,6 @@
 #ifndef IMTET_SIM_FLOOR_SET_H
 #define IMTET_SIM_FLOOR_SET_H
 
-#include <stdint.h>
-
 #include "scene/options.h"
 
 __extension__ typedef unsigned __int128 FloorSet;

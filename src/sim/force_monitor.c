@@ -1,10 +1,5 @@
 #include "sim/force_monitor.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/carve.h"
 #include "base/clones.h"
 #include "base/units.h"

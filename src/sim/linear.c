@@ -1,10 +1,5 @@
 #include "sim/linear.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/carve.h"
 #include "base/linalg.h"
 #include "sim/energy_balance.h"

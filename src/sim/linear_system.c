@@ -1,6 +1,4 @@
 #include <limits.h>
-#include <math.h>
-#include <stdlib.h>
 
 #include "base/carve.h"
 #include "base/linalg.h"

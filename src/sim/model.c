@@ -1,9 +1,5 @@
 #include "sim/model.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/clones.h"
 
 static int padded(int n)
@@ -60,8 +56,7 @@ Status model_set_gaps(SimModel *model, const double right[], const double left[]
     for (int j = 0; j < model->n; j++) {
         const double r = fmin(right[j], NOTHING_M), l = fmin(left[j], NOTHING_M);
         if (!(right[j] >= 0 && left[j] >= 0))
-            return fail(err, STATUS_BAD_DATA, "gap_%02d_m: left %g, right %g; a gap is zero or more", j + 1, left[j],
-                        right[j]);
+            return bad_data(err, "gap_%02d_m: left %g, right %g; a gap is zero or more", j + 1, left[j], right[j]);
         model->gap[j] = isinf(right[j]) && isinf(left[j]) ? 1e300 : 0.5 * (r + l);
         model->middle[j] = 0.5 * (r - l);
     }

@@ -8,8 +8,6 @@
 #ifndef IMTET_SIM_PEAK_MONITOR_H
 #define IMTET_SIM_PEAK_MONITOR_H
 
-#include <math.h>
-
 #include "base/units.h"
 #include "sim/result.h"
 

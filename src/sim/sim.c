@@ -1,10 +1,5 @@
 #include "sim/sim.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/linalg.h"
@@ -93,8 +88,8 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
 {
     *out = NULL;
     if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
-        return fail(err, STATUS_BAD_DATA, "%s: %zu samples, %g s apart, are no motion; two or more are needed",
-                    motion->name, motion->n, motion->dt_s);
+        return bad_data(err, "%s: %zu samples, %g s apart, are no motion; two or more are needed", motion->name,
+                        motion->n, motion->dt_s);
     Scene *scene;
     TRY_ROOM(scene, 1, "a scene", err);
     scene->options = *o;
@@ -111,8 +106,8 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (status == STATUS_OK && neighbour_is_given(&o->core))
         status = set_neighbour(scene, err);
     if (status == STATUS_OK && motion && motion->n_force > scene->building.n)
-        status = fail(err, STATUS_BAD_DATA, "motion.forces: column floor_%02d_n; the building has %d floors",
-                      motion->n_force, scene->building.n);
+        status = bad_data(err, "motion.forces: column floor_%02d_n; the building has %d floors", motion->n_force,
+                          scene->building.n);
     if (status == STATUS_OK && motion)
         status = set_tail_input(scene, err);
     if (status == STATUS_OK)

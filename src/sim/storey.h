@@ -17,8 +17,6 @@
 #ifndef IMTET_SIM_STOREY_H
 #define IMTET_SIM_STOREY_H
 
-#include <math.h>
-
 #include "scene/options.h"
 
 /* What all storeys of a building have in common. */

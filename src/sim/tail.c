@@ -1,8 +1,5 @@
 #include "sim/tail.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "sim/flow.h"
 
 /* Work [J] of the load p0 + p1 x on a mode over one step from (q, v), which it moves on. c: of the mode alone. */

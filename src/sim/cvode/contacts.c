@@ -1,8 +1,5 @@
 #include "sim/cvode/contacts.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "base/clones.h"
 
 CLONED double dot_product(int n, const double a[], const double b[])

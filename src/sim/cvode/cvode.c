@@ -3,8 +3,6 @@
 #include "sim/cvode/cvode.h"
 
 #include <cvode/cvode.h>
-#include <stdio.h>
-#include <string.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 static int step(Ode *o, double t_stop, double *t)

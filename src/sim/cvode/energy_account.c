@@ -1,7 +1,5 @@
 #include "sim/cvode/energy_account.h"
 
-#include <string.h>
-
 #include "base/clones.h"
 
 void energy_account_start(EnergyAccount *l, const SimModel *model)

@@ -1,9 +1,5 @@
 #include "sim/cvode/ode.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "base/denormal.h"
 #include "base/clones.h"
 #include "sim/cvode/vectors.h"

@@ -1,7 +1,5 @@
 #include "sim/cvode/storeys.h"
 
-#include <math.h>
-
 void storeys_drifts(const SimModel *model, const double q[], double d[])
 {
     double u[FLOORS_MAX];
