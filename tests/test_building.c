@@ -470,7 +470,7 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
     for (int i = 0; i < 2; i++) {
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
-                 "builtin:sylmar-like --set motion.stretch=1 --set sim.duration_s=5 --set sim.accuracy=fine --set "
+                 "builtin:sylmar-like --set motion.stretch=1 --set sim.duration_s=4 --set sim.accuracy=fine --set "
                  "sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);

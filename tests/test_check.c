@@ -141,7 +141,7 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
         Said s;
         json_error_t why;
         run(&s,
-            "%s --set sim.duration_s=8 --set building.units=N_m_kg --set "
+            "%s --set sim.duration_s=4 --set building.units=N_m_kg --set "
             "motion.records=builtin:sylmar-like,builtin:sylmar-like",
             COMMANDS[i]);
         assert_int_equal(s.code, 0);

@@ -145,7 +145,7 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     assert_true(estimate_options(&o.sim, &twice.sim));
     fine.sim.accuracy = ACCURACY_FINE;
-    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 24};
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 16};
     for (long k = 0; k < plan.n_scenes; k++) {
         PromiseCase c;
         double error[N_MEASURES];

@@ -13,8 +13,8 @@ typedef struct {
 } Deed;
 
 #define STUDY(folder)                                                                                                  \
-    "optimize configs/quick.ini --max-evals 24 --threads 1 --out " folder " --set search.initial=16 "                  \
-    "--set search.population=8 --set sim.duration_s=40"
+    "optimize configs/quick.ini " SIX_FLOORS "--max-evals 24 --threads 1 --out " folder " --set search.initial=16 "    \
+    "--set search.population=8 --set sim.duration_s=6"
 
 static const Deed DEEDS[] = {
     {"settings", NULL},

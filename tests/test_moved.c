@@ -3,7 +3,7 @@
 #include "program.h"
 
 #define STUDY                                                                                                          \
-    "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=3 --set search.initial=24 "                \
+    "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=3 --set search.initial=24 "                         \
     "--set search.population=8 --threads 1 --set search.polish=0 "
 #define FIRST "--set motion.record=@/one.csv"
 #define BOTH  FIRST " --set motion.records=@/two.csv,builtin:sylmar-like"

@@ -334,7 +334,7 @@ static void check_this_is_refused_everywhere(double number, int asynchronous)
 TEST(a_state_with_a_number_anywhere_that_is_not_finite_is_refused)
 {
     static const double NUMBERS[] = {NAN, INFINITY, -INFINITY};
-    for (size_t i = 0; i < 6; i++)
+    for (size_t i = 0; i < (SANITIZED ? 2 : 6); i++)
         check_this_is_refused_everywhere(NUMBERS[i / 2], i % 2);
 }
 

@@ -15,6 +15,8 @@
 
 enum { ANSWER_MAX = 4 << 20 };
 /* Without a browser a shorter motion does. */
+/* Below the 15 s after which the server closes a connection that says nothing. */
+static const double LATE_S = 12;
 #define SMALL_RUN                                                                                                      \
     "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set search.initial=40 "         \
     "--threads 1"
@@ -356,7 +358,7 @@ static void test_a_slow_flood_leaves_others_answered(void **state)
         }
         const double start = now_s();
         expect_code(200, "GET", "/%T/0/front", "");
-        assert_less(now_s() - start, (SANITIZED ? 20 : 4));
+        assert_less(now_s() - start, LATE_S);
     }
     assert_less(SLOW / 4, n_ended);
     for (int i = 0; i < SLOW; i++)
@@ -390,7 +392,7 @@ static void test_a_thousand_connections_leave_room_for_one_that_asks(void **stat
         fd[i] = dial();
     const double start = now_s();
     expect_code(200, "GET", "/%T/0/front", "");
-    assert_less(now_s() - start, (SANITIZED ? 20 : 3));
+    assert_less(now_s() - start, LATE_S);
     assert_at_most(threads_of_server(), PEERS_MAX + 8);
     for (int i = 0; i < MANY; i++)
         close(fd[i]);
@@ -407,6 +409,12 @@ static double processor_s(void)
     assert_int_equal(fscanf(f, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld", &user, &kernel), 2);
     fclose(f);
     return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
+}
+
+static double seconds_of(const struct rusage *used)
+{
+    return (double)(used->ru_utime.tv_sec + used->ru_stime.tv_sec) +
+           1e-6 * (double)(used->ru_utime.tv_usec + used->ru_stime.tv_usec);
 }
 
 /* At the limit of open files nothing could be accepted, again and again. */
@@ -652,9 +660,14 @@ static void test_a_run_that_cannot_be_read_holds_up_no_listing(void **state)
     write_in_place("odd/broken/run.sqlite", "no database");
     const Served before = serve_here("odd");
     json_decref(ask_json("/%T/runs"));
-    const double start = now_s();
+    double least = HUGE_VAL;
+    for (int i = 0; i < 10 && least > 1; i++) { /* that waited would take 2 s, each time */
+        const double start = now_s();
+        json_decref(ask_json("/%T/runs"));
+        least = fmin(least, now_s() - start);
+    }
+    assert_less(least, 1);
     json_t *runs = ask_json("/%T/runs");
-    assert_less(now_s() - start, 1);
     assert_int_equal(json_array_size(runs), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(runs, 1), "state")), "unreadable");
     assert_less(20, strlen(json_string_value(json_object_get(json_array_get(runs, 1), "reason"))));
@@ -731,7 +744,7 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
     (void)state;
     char path[PATH_MAX];
     Watch *w;
-    View first, again;
+    View first, again, kept;
     const RecordPaths moved = {NULL, NULL};
     Err err = {0};
     CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
@@ -739,9 +752,17 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
     assert_ptr_equal(first.look, again.look);
     watch_give(&again);
-    rest(0.7);
-    CHECK_OK(watch_take(w, 0, 60, &again, &err), &err);
+    again = first;
+    for (int i = 0; i < 200 && again.version == first.version;
+         i++) { /* until the watch has looked for what is not asked for */
+        rest(0.3);
+        CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
+        if (again.version == first.version)
+            watch_give(&again);
+    }
     assert_less(first.version, again.version);
+    CHECK_OK(watch_take(w, 0, 60, &kept, &err), &err);
+    watch_give(&kept);
     assert_same_number(first.look->run.n_front, again.look->run.n_front); /* whoever holds it has it */
     watch_give(&first);
     watch_give(&again);
@@ -779,7 +800,7 @@ static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
     const double start = now_s();
     const int status = end_server();
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    assert_less(now_s() - start, (SANITIZED ? 20 : 3));
+    assert_less(now_s() - start, LATE_S);
     for (int i = 0; i < 4; i++)
         close(fd[i]);
     serve("runs");
@@ -803,6 +824,10 @@ static void test_ctrl_c_does_not_wait_for_the_questions_in_the_queue(void **stat
     int fd[QUESTIONS];
     serve("long");
     json_t *bounds = ask_json("/%T/0/what-if");
+    const double before_one = processor_s();
+    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:f, s:O}", "page", QUESTIONS, "turn", 1,
+                                                     "restitution", 0.7, "x", json_object_get(bounds, "lower"))));
+    const double before_all = processor_s(), one = before_all - before_one;
     for (int i = 0; i < QUESTIONS; i++) {
         json_t *x = json_incref(json_object_get(bounds, "lower"));
         json_t *question =
@@ -817,10 +842,14 @@ static void test_ctrl_c_does_not_wait_for_the_questions_in_the_queue(void **stat
         free(body);
         json_decref(question);
     }
-    rest(1);
-    const double start = now_s();
+    while (processor_s() - before_all < 0.2 * one) /* until it is at work */
+        rest(0.02);
+    struct rusage used;
+    getrusage(RUSAGE_CHILDREN, &used);
+    const double others = seconds_of(&used);
     assert_int_equal(end_server(), 0);
-    assert_less(now_s() - start, 6);
+    getrusage(RUSAGE_CHILDREN, &used);
+    assert_less(seconds_of(&used) - others - before_all, 0.5 * QUESTIONS * one);
     for (int i = 0; i < QUESTIONS; i++)
         close(fd[i]);
     json_decref(bounds);

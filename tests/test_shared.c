@@ -24,7 +24,18 @@ static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/wor
                              "objectives = 2\n[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\n"
                              "surrogate = off\nthreads = 2\n";
 
-static pid_t study_in_child(const char *out)
+/* After so many evaluations it waits to be killed. */
+static int wait_after(void *left)
+{
+    int now;
+#pragma omp atomic capture
+    now = --*(int *)left;
+    while (now <= 0)
+        pause();
+    return 0;
+}
+
+static pid_t study_in_child(const char *out, int evaluations)
 {
     const pid_t pid = fork();
     assert_at_most(0, pid);
@@ -33,7 +44,8 @@ static pid_t study_in_child(const char *out)
     StudySummary summary;
     Err err = {0};
     const Settings s = settings_of(STEADY, out);
-    const Status status = study_run(&s, &(StudyOptions){0}, &summary, NULL, &err);
+    const Status status = study_run(&s, &(StudyOptions){.stop = evaluations ? wait_after : NULL, .user = &evaluations},
+                                    &summary, NULL, &err);
     _exit(status_exit_code(status));
 }
 
@@ -88,7 +100,7 @@ TEST(a_run_there_has_the_same_bytes)
 {
     finish_alone();
     file_system = NFS;
-    assert_true(ended_well(study_in_child("there")));
+    assert_true(ended_well(study_in_child("there", 0)));
     file_system = 0;
     assert_same_run("alone", "there");
 }
@@ -100,7 +112,7 @@ TEST(it_is_killed_and_read_at_any_moment)
     finish_alone();
     for (int is_done = 0; !is_done; kills++) {
         file_system = NFS;
-        const pid_t pid = study_in_child("killed");
+        const pid_t pid = study_in_child("killed", kills < 9 ? 30 : 0);
         file_system = 0;
         const double until = now_s() + 0.15 + 0.05 * kills;
         while (now_s() < until || (looks <= kills / 2 && has_evaluations("killed"))) {
@@ -125,14 +137,14 @@ TEST(it_is_killed_and_read_at_any_moment)
 TEST(a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there)
 {
     finish_alone();
-    const pid_t pid = study_in_child("moved");
+    const pid_t pid = study_in_child("moved", 0);
     while (!is_there("moved/run.sqlite-wal"))
         rest(0.01);
     rest(0.5);
     kill(pid, SIGKILL);
     assert_false(ended_well(pid));
     file_system = NFS;
-    const pid_t second = study_in_child("moved");
+    const pid_t second = study_in_child("moved", 0);
     file_system = 0;
     rest(0.3);
     assert_false(is_there("moved/run.sqlite-wal"));

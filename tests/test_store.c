@@ -338,8 +338,10 @@ TEST(a_second_signal_ends_at_once)
     while (access(path_of("deaf/run.sqlite", path), F_OK) != 0 && now_s() < begun + 60)
         rest(0.02);
     rest(0.2);
+    kill(pid, SIGSTOP);
     kill(pid, SIGTERM);
-    kill(pid, SIGINT); /* within microseconds: one request, as of `timeout` */
+    kill(pid, SIGINT); /* it takes both at once: one request, as of `timeout` */
+    kill(pid, SIGCONT);
     rest(0.4);
     assert_int_equal(waitpid(pid, NULL, WNOHANG), 0); /* it still waits for the answer that is under way */
     kill(pid, SIGTERM);
