@@ -86,16 +86,18 @@ static int look(const char *folder, Run *h)
     return -1;
 }
 
-/* Evaluations of `before` that are not the same in `after`. */
+/* Evaluations of `before` that are not the same in `after`; what is named at the end gets better values, with errors. */
 static long count_lost(const Run *before, const Run *after)
 {
     long lost = 0;
     const size_t n_var = before->schema.n_var, m = before->schema.n_obj;
     for (size_t i = 0; i < before->table.n; i++) {
         const size_t j = run_find(after, before->table.row[i].id);
-        lost += j == after->table.n ||
-                memcmp(before->table.x + i * n_var, after->table.x + j * n_var, n_var * sizeof(double)) != 0 ||
-                (before->place[i].ok && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
+        const int is_named = j < after->table.n && !before->table.row[i].err && after->table.row[j].err;
+        lost +=
+            j == after->table.n ||
+            memcmp(before->table.x + i * n_var, after->table.x + j * n_var, n_var * sizeof(double)) != 0 ||
+            (before->place[i].ok && !is_named && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
     }
     return lost;
 }
