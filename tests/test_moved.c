@@ -71,15 +71,16 @@ TEST(a_finished_run_is_shown_without_its_records)
 
 TEST(another_content_does_not_take_the_place_of_a_record)
 {
-    expect(65, "does not hold what the run's record",
+    expect(65, "motion.record: ",
            "report @/run --set motion.record=@/two.csv --set motion.records=@/two.csv,builtin:sylmar-like");
-    expect(65, "do not hold what the run's records",
-           "report @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
-    expect(65, "do not hold what the run's records", "report @/run " FIRST " --set motion.records=@/two.csv");
+    expect(65, "motion.records: ", "report @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
+    expect(65, "two.csv does not hold what it held for the run",
+           "report @/run " FIRST " --set motion.records=@/two.csv");
     expect(65, "motion.records is content",
            "optimize @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
     expect(2, "given twice", "report @/run " FIRST " " FIRST);
-    expect(2, "only motion.record=PATH and motion.records", "report @/run --set motion.pga_g=1");
+    expect(2, "only motion.record=PATH, motion.records=PATH,... and motion.forces",
+           "report @/run --set motion.pga_g=1");
 }
 
 TEST(records_are_taken_from_where_they_are_now)
@@ -89,6 +90,54 @@ TEST(records_are_taken_from_where_they_are_now)
     free(output_of("optimize @/run --max-evals 32 --force-settings " BOTH));
     free(output_of("report @/run")); /* the run knows its new places from there on */
     free(output_of("optimize @/run"));
+}
+
+/* A push that ends, so that the roof swings freely after it. */
+static void write_push(const char *name, double force_n)
+{
+    char text[128];
+    snprintf(text, sizeof text, "time_s,floor_06_n\n0,%g\n1,%g\n1.01,0\n3,0\n", force_n, force_n);
+    write_in_place(name, text);
+}
+
+#define PUSHED "--set motion.record=none --set motion.forces=@/push.csv "
+
+TEST(forces_are_moved_with_their_run_and_other_forces_are_noticed_by_every_command)
+{
+    static const char CHANGED[] = "push.csv does not hold what it held for the run";
+    Said s;
+    write_push("push.csv", 1e7);
+    free(output_of(STUDY PUSHED "--out @/pushed --max-evals 24"));
+    rename_in_place("push.csv", "gone.csv");
+    expect(66, "push.csv: a file of the run is not there; where it was moved, say so: --set motion.forces=PATH",
+           "report @/pushed");
+    free(output_of("report @/pushed --set motion.forces=@/gone.csv"));
+    free(output_of("evaluate @/pushed --design 1 --set motion.forces=@/gone.csv"));
+    write_push("push.csv", 2e7);
+    expect(65, CHANGED, "report @/pushed");
+    expect(65, CHANGED, "report @/pushed --set motion.forces=@/push.csv");
+    expect(65, CHANGED, "evaluate @/pushed --design 1");
+    expect(65, CHANGED, "polish @/pushed --design 1");
+    expect(65, "motion.forces is content", "optimize @/pushed --max-evals 32 --force-settings");
+    run(&s, "simulate configs/quick.ini --set building.model=configs/neighbours/tower --set core.width_m=5 "
+            "--set motion.stretch=1 --set sim.duration_s=3 " PUSHED "--design @/pushed:1");
+    assert_int_equal(s.code, 0); /* of other settings, which may have another motion */
+    assert_non_null(strstr(s.err, CHANGED));
+    forget(&s);
+    free(output_of("optimize @/pushed --max-evals 32 --force-settings --set motion.forces=@/gone.csv"));
+    free(output_of("report @/pushed"));
+}
+
+TEST(a_record_that_has_changed_at_its_place_is_noticed_by_every_command)
+{
+    static const char CHANGED[] = "motion.record: ";
+    write_record("here.csv", 1.0);
+    free(output_of(STUDY "--out @/here --max-evals 24 --set motion.record=@/here.csv"));
+    free(output_of("evaluate @/here --design 1"));
+    write_record("here.csv", 1.1);
+    expect(65, CHANGED, "report @/here");
+    expect(65, CHANGED, "evaluate @/here --design 1");
+    free(output_of("evaluate @/here --design 1 --record @/here.csv")); /* another ground motion, as it says */
 }
 
 static char *front_of(const char *under, const char *name)

@@ -233,6 +233,8 @@ TEST(a_file_of_forces_that_is_wrong_is_refused_by_its_line_and_column)
     refuse("time_s,floor_01_n\n0,1\n1,0\n1,0\n", "f.csv:4: time_s is 1; times begin at 0 and ascend");
     refuse("time_s,floor_01_n\n0,1\n1,\n", "f.csv:3: column floor_01_n is missing");
     refuse("time_s,floor_01_n\n0,1\n", "1 rows; forces need two or more");
+    refuse("time_s,floor_01_n\n0,0\n1,0\n", "motion.forces: ");
+    refuse("time_s,floor_01_n\n0,0\n1,0\n", "every force is 0; leave motion.forces at none");
     refuse("time_s,floor_21_n\n0,1\n1,0\n", "motion.forces: column floor_21_n; the building has 20 floors");
     expect(65, "motion.record = none: then nothing moves but by motion.forces",
            "check configs/quick.ini --set motion.record=none");

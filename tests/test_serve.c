@@ -745,7 +745,7 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
     char path[PATH_MAX];
     Watch *w;
     View first, again, kept;
-    const RecordPaths moved = {NULL, NULL};
+    const RecordPaths moved = {0};
     Err err = {0};
     CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);

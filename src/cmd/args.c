@@ -45,19 +45,19 @@ static const char *value_of(const char *assignment, const char *key)
 Status args_moved(const Args *args, RecordPaths *moved, Err *err)
 {
     const char *text;
-    *moved = (RecordPaths){NULL, NULL};
+    *moved = (RecordPaths){0};
     for (int i = 0; (text = args_next(args, "--set", &i));) {
-        const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
-        if (!record && !records)
-            return misused(
-                err,
-                "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
-                "be set",
-                text);
-        if ((record && moved->record) || (records && moved->records))
-            return misused(err, "--set %s is given twice", record ? "motion.record" : "motion.records");
-        moved->record = record ? record : moved->record;
-        moved->records = records ? records : moved->records;
+        int k = 0;
+        while (k < N_MOVED && !value_of(text, MOVED_KEY[k]))
+            k++;
+        if (k == N_MOVED)
+            return misused(err,
+                           "--set %.60s: of a run that is there only motion.record=PATH, motion.records=PATH,... and "
+                           "motion.forces=PATH can be set",
+                           text);
+        if (moved->path[k])
+            return misused(err, "--set %s is given twice", MOVED_KEY[k]);
+        moved->path[k] = value_of(text, MOVED_KEY[k]);
     }
     return STATUS_OK;
 }

@@ -34,7 +34,7 @@ Status args_alone(const Args *args, const char *name, const char *others, Err *e
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
-/* Of --set motion.record=PATH and motion.records=PATHS; nothing else may be set. */
+/* Of --set motion.record=PATH, motion.records=PATHS and motion.forces=PATH; nothing else may be set. */
 Status args_moved(const Args *args, RecordPaths *moved, Err *err);
 
 /* "unknown WHAT WORD; did you mean ...?" */
@@ -55,7 +55,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define SETTING(name_, value_, setting_, help_) {.name = name_, .value = value_, .setting = setting_, .help = help_}
 
 /* Options of several commands. */
-#define OPTION_MOVED VALUES("--set", "motion.record=PATH", "where the run's record is, if moved; motion.records too")
+#define OPTION_MOVED VALUES("--set", "motion.record=PATH", "where the run's record is, if moved; .records, .forces")
 #define OPTION_SET VALUES("--set", "SECTION.KEY=VALUE", "any setting; may be repeated (`imtet settings` lists them)")
 #define OPTION_RECORD SETTING("--record", "FILE", "motion.record", "ground motion file or builtin:NAME")
 #define OPTION_PGA SETTING("--pga", "G", "motion.pga_g", "scale the motion to this peak [g]; 0: as recorded")

@@ -47,7 +47,7 @@ static Status make_core(const Args *args, Model *m, Err *err)
     m->design = (Design){.t_base = T_BASE_M, .t_top = T_TOP_M};
     TRY(design_space_make(&space, &m->s.design, core_section(core), m->b.n, err));
     if (word) {
-        TRY(designs_take_one(&d, word, &space, NULL, NULL, err));
+        TRY(designs_take_one(&d, word, &space, NULL, 0, NULL, err));
         design_of(&space, d.x, &m->design);
         design_free(&d);
     }

@@ -156,7 +156,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     if (!path)
         return 1;
     Designs d;
-    if (!note(c, designs_take(&d, path, s, NULL, NULL, &e), "--design", &e))
+    if (!note(c, designs_take(&d, path, s, NULL, 0, NULL, &e), "--design", &e))
         return 0;
     memcpy(p->x, d.x, s->n_var * sizeof *p->x);
     warn_of_designs(&d, path, warn, c);

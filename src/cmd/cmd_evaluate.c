@@ -16,6 +16,7 @@
 
 /* A design of a run, or one from elsewhere, under the settings of the run or of a settings file. */
 typedef struct {
+    const Run *run; /* NULL: of a settings file */
     const Schema *schema;
     long id; /* in the run; 0: none */
     const double *x;
@@ -319,10 +320,10 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
 /* ---- what is evaluated ------------------------------------------------------------------------------------------- */
 
 /* The run's own, where they are now. */
-static Status add_own(Evaluations *e, Settings *s, Err *err)
+static Status add_own(Evaluations *e, const Settings *s, const Run *run, Err *err)
 {
     char path[OPTION_TEXT_MAX];
-    TRY(record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err));
+    TRY(record_paths_check(s, run, err));
     for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
         TRY(motion_record(&s->motion, i, path, err));
         TRY(evaluations_add(e, path, 0, err));
@@ -330,11 +331,11 @@ static Status add_own(Evaluations *e, Settings *s, Err *err)
     return STATUS_OK;
 }
 
-static Status add_records(const Args *args, Evaluations *e, Settings *s, Err *err)
+static Status add_records(const Args *args, Evaluations *e, const Settings *s, const Run *run, Err *err)
 {
     const char *path;
     if (!args_has(args, "--record") && !args_has(args, "--records"))
-        return add_own(e, s, err);
+        return add_own(e, s, run, err);
     for (int i = 0; (path = args_next(args, "--record", &i));)
         TRY(evaluations_add(e, path, 0, err));
     return args_has(args, "--records") ? evaluations_add_folder(e, args_value(args, "--records"), err) : STATUS_OK;
@@ -385,7 +386,7 @@ static void tell(size_t n_done, void *user)
 static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evaluations *e, Err *err)
 {
     Progress p = {.told.tell = isatty(STDERR_FILENO) ? tell : NULL};
-    TRY(add_records(args, e, s, err));
+    TRY(add_records(args, e, s, c->run, err));
     TRY(evaluations_read(e, s, err));
     if (e->n_read == 0) {
         print_refused(stderr, e);
@@ -424,7 +425,7 @@ static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, con
     size_t row;
     Designs other;
     TRY(design_of_run(run, word, &row, &other, err));
-    Chosen c = {.schema = &run->schema, .x = other.x, .word = word};
+    Chosen c = {.run = run, .schema = &run->schema, .x = other.x, .word = word};
     if (row < run->table.n) {
         c.id = run->table.row[row].id;
         c.x = run_x(run, row);
@@ -443,7 +444,7 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
     Designs d;
     Chosen c = {.schema = &schema, .word = word};
     TRY(tower_space(s, &space, err));
-    TRY(designs_take_one(&d, word, &space, args_gives(args, "sim.accuracy") ? NULL : &s->sim, c.known, err));
+    TRY(designs_take_one(&d, word, &space, s, !args_gives(args, "sim.accuracy"), c.known, err));
     Status status = schema_of(&schema, s, space.n_floors, err);
     if (status == STATUS_OK) {
         c.x = d.x;
@@ -462,7 +463,7 @@ static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *
     if (s->problem.kind != PROBLEM_TOWER && !run)
         return is_no_tower(err);
     if (args_has(args, "--full-model"))
-        return show_full_model(args, s, run ? args->operand : NULL, err);
+        return show_full_model(args, s, run, err);
     return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
 }
 

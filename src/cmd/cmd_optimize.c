@@ -218,7 +218,7 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
     TRY(option_put_path(s->run.out, args->operand, err));
     TRY(args_apply(args, s, NULL, NULL, err));
     TRY(settings_check(s, err));
-    return record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
+    return record_paths_check(s, NULL, err);
 }
 
 /* The operand is a settings file, or the folder of a run. */

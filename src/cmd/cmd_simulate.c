@@ -51,8 +51,8 @@ static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
             err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                  "fast");
     TRY(tower_space(s, &space, err));
-    TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space,
-                                                args_gives(args, "sim.accuracy") ? NULL : &s->sim, job->known, err));
+    TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space, s, !args_gives(args, "sim.accuracy"),
+                                                job->known, err));
     warn_of_designs(&job->designs, word, warn_on_stderr, NULL);
     job->n = job->designs.n;
     return STATUS_OK;

@@ -5,6 +5,7 @@
 #include "cmd/show.h"
 #include "evaluate/measures.h"
 #include "store/run_read.h"
+#include "study/record_paths.h"
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
@@ -135,6 +136,14 @@ void known_of_run(const Run *run, size_t row, Known known[])
         known[s->order.of[k]] = (Known){run_result(run, row, k), run->table.row[row].err[k]};
 }
 
+/* What is simulated then is not what the run knows of the design. */
+static void tell_changed(const Settings *s, const Run *run)
+{
+    Err why = {0};
+    if (record_paths_check(s, run, &why) == STATUS_BAD_DATA)
+        fprintf(stderr, "note: %s\n", why.text);
+}
+
 /* What the run knows of the design, said where it takes other steps than its settings. */
 static void take_known(const Run *run, size_t row, SimOptions *sim, Known known[])
 {
@@ -148,8 +157,8 @@ static void take_known(const Run *run, size_t row, SimOptions *sim, Known known[
         known_of_run(run, row, known);
 }
 
-static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space,
-                            SimOptions *sim, Known known[], Err *err)
+static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space, Settings *s,
+                            int as_known, Known known[], Err *err)
 {
     Run run;
     size_t row;
@@ -159,8 +168,10 @@ static Status take_from_run(Designs *d, const char *folder, const char *choice, 
         status = check_space(&run, folder, space, err);
     if (status == STATUS_OK)
         status = copy_row(d, &run, row, err);
-    if (status == STATUS_OK && sim)
-        take_known(&run, row, sim, known);
+    if (status == STATUS_OK && s)
+        tell_changed(s, &run);
+    if (status == STATUS_OK && as_known)
+        take_known(&run, row, &s->sim, known);
     run_free(&run);
     return status;
 }
@@ -206,27 +217,28 @@ static void find_place(const char *word, Place *p)
     p->is_run = run_drop_name(p->path) || run_is_there(p->path);
 }
 
-Status designs_take(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[], Err *err)
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known, Known known[],
+                    Err *err)
 {
     Place p;
-    struct stat s;
+    struct stat there;
     memset(d, 0, sizeof *d);
     if (strlen(word) >= sizeof p.path)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", word);
     find_place(word, &p);
-    if (!p.is_run && stat(p.path, &s) == 0 && S_ISDIR(s.st_mode))
+    if (!p.is_run && stat(p.path, &there) == 0 && S_ISDIR(there.st_mode))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", p.path);
-    const Status status = p.is_run ? take_from_run(d, p.path, p.choice, space, sim, known, err)
+    const Status status = p.is_run ? take_from_run(d, p.path, p.choice, space, s, as_known, known, err)
                                    : take_file(d, p.path, p.choice, space, err);
     if (status != STATUS_OK)
         design_free(d);
     return status;
 }
 
-Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[],
-                        Err *err)
+Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known,
+                        Known known[], Err *err)
 {
-    TRY(designs_take(d, word, space, sim, known, err));
+    TRY(designs_take(d, word, space, s, as_known, known, err));
     const size_t n = d->n;
     const long first = design_number(d, 0);
     if (n == 1)
@@ -282,7 +294,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         *elsewhere = (Designs){0};
     if (is_name(word) || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
-    TRY(designs_take_one(&d, word, &run->schema.design, NULL, NULL, err));
+    TRY(designs_take_one(&d, word, &run->schema.design, NULL, 0, NULL, err));
     *row = row_of(run, d.x);
     if (*row == run->table.n && elsewhere) {
         *elsewhere = d;

@@ -28,14 +28,15 @@ void known_of_run(const Run *run, size_t row, Known known[]);
  * more copies than sd comes from. */
 void known_raise(const Known known[], const SimResult *r, double sd[]);
 
-/* For design_free. space: of the building and the settings that they are for. Of a design of a run also the steps by
- * which the run knows it (run_steps), said on standard error: into sim; and known (N_MEASURES, zeroed). NULL: not
- * wanted. */
-Status designs_take(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[], Err *err);
+/* For design_free. space: of the building and the settings that they are for. Of a design of a run, where settings are
+ * given, it is said on standard error whether a ground motion that both have has changed since; as_known: also the
+ * steps by which the run knows it (run_steps), into s->sim; and known (N_MEASURES, zeroed). NULL: not wanted. */
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known, Known known[],
+                    Err *err);
 
 /* The same where one design is wanted: a file of several is refused. */
-Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, SimOptions *sim, Known known[],
-                        Err *err);
+Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known,
+                        Known known[], Err *err);
 
 long design_number(const Designs *d, size_t i); /* as the run numbers it, else that of its row, from 1 */
 

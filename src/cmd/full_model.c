@@ -121,8 +121,8 @@ static Status show(const Args *args, Job *job, Settings *s, Err *err)
     return shown;
 }
 
-/* --design; of a run also ID, knee, best_NAME alone. folder NULL: there is no run. */
-static Status take_designs(const Args *args, const char *folder, Job *job, SimOptions *sim, Err *err)
+/* --design; of a run also ID, knee, best_NAME alone. run NULL: there is none. */
+static Status take_designs(const Args *args, const Run *run, Job *job, Settings *s, Err *err)
 {
     const char *word = args_value(args, "--design");
     char own[PATH_MAX + 64];
@@ -131,18 +131,18 @@ static Status take_designs(const Args *args, const char *folder, Job *job, SimOp
         job->kind = SCENE_NO_CORE;
         return STATUS_OK;
     }
-    if (!word && !folder)
+    if (!word && !run)
         return misused(err, "--design is missing: " DESIGN_WORDS "; none: the building alone");
-    if (folder && (!word || (!strpbrk(word, "/:") && stat(word, &there) != 0))) {
-        snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
+    if (run && (!word || (!strpbrk(word, "/:") && stat(word, &there) != 0))) {
+        snprintf(own, sizeof own, "%s:%s", run->folder, word ? word : "knee");
         word = own;
     }
-    TRY(designs_take(&job->designs, word, &job->space, args_gives(args, "sim.accuracy") ? NULL : sim, NULL, err));
+    TRY(designs_take(&job->designs, word, &job->space, s, !args_gives(args, "sim.accuracy"), NULL, err));
     job->n = job->designs.n;
     return STATUS_OK;
 }
 
-static Status check_wishes(const Args *args, Settings *s, const char *folder, Err *err)
+static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *err)
 {
     const char *pga = args_value(args, "--pga");
     TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
@@ -153,19 +153,18 @@ static Status check_wishes(const Args *args, Settings *s, const char *folder, Er
                         s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));
-    return !folder || args_has(args, "--record") ? STATUS_OK
-                                                 : record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
+    return !run || args_has(args, "--record") ? STATUS_OK : record_paths_check(s, run, err);
 }
 
-Status show_full_model(const Args *args, Settings *s, const char *folder, Err *err)
+Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
 {
     const int as_json = args_has(args, "--json");
     Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
-    TRY(check_wishes(args, s, folder, err));
+    TRY(check_wishes(args, s, run, err));
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
     TRY(measures_order(&job.order, s->search.objectives, job.space.n_floors, err));
-    TRY(take_designs(args, folder, &job, &s->sim, err));
+    TRY(take_designs(args, run, &job, s, err));
     const Status status = show(args, &job, s, err);
     design_free(&job.designs);
     return status;

@@ -5,7 +5,7 @@
 
 #include "cmd/args.h"
 
-/* s: of the command; folder: of the run that they are of, NULL: of none. */
-Status show_full_model(const Args *args, Settings *s, const char *folder, Err *err);
+/* s: of the command; run: that they are of, NULL: of none. */
+Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err);
 
 #endif

@@ -374,7 +374,7 @@ static uint64_t hash_of_files(const Tower *t)
 {
     uint64_t hash = t->recipe->is_sweep ? 0 : scene_building(t->place[0].scenario->scene)->hash;
     for (size_t r = 0; r < t->recipe->n_records; r++)
-        hash = (hash ^ t->record[r].motion.file_hash) * HASH_PRIME;
+        hash = (hash ^ t->record[r].motion.file_hash ^ t->record[r].motion.forces_hash) * HASH_PRIME;
     return hash;
 }
 

@@ -20,6 +20,7 @@ static Status floor_of(const Table *t, size_t c, int *floor, Err *err)
 
 static Status check_rows(const Table *t, Err *err)
 {
+    double largest = 0;
     for (size_t i = 0; i < t->n_rows; i++) {
         const double *row = t->values + i * t->n_cols;
         for (size_t c = 0; c < t->n_cols; c++)
@@ -27,8 +28,12 @@ static Status check_rows(const Table *t, Err *err)
                 return bad_data(err, "%s:%d: column %s is missing", t->path, t->line[i], t->names[c]);
         if (i == 0 ? row[0] != 0 : !(row[0] > row[-(long)t->n_cols]))
             return bad_data(err, "%s:%d: time_s is %g; times begin at 0 and ascend", t->path, t->line[i], row[0]);
+        for (size_t c = 1; c < t->n_cols; c++)
+            largest = fmax(largest, fabs(row[c]));
     }
-    return t->n_rows > 1 ? STATUS_OK : bad_data(err, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
+    if (t->n_rows < 2)
+        return bad_data(err, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
+    return largest > 0 ? STATUS_OK : bad_data(err, "%s: every force is 0; leave motion.forces at none", t->path);
 }
 
 static Status take_rows(Motion *m, const Table *t, Err *err)
@@ -53,17 +58,19 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
         for (size_t i = 0; i < t->n_rows; i++)
             m->force_rows[i * width + floor] += t->values[i * t->n_cols + c];
     }
-    m->file_hash = hash_fnv1a(m->force_rows, t->n_rows * width * sizeof *m->force_rows, m->file_hash);
+    m->forces_hash = hash_fnv1a(m->force_rows, t->n_rows * width * sizeof *m->force_rows, HASH_SEED);
     return STATUS_OK;
 }
 
 Status forces_read(Motion *m, const char *path, Err *err)
 {
-    Table t;
-    TRY(table_read(&t, path, TABLE_HEADED, err));
-    const Status status = take_rows(m, &t, err);
+    Table t = {0};
+    Err why = {0};
+    Status status = table_read(&t, path, TABLE_HEADED, &why);
+    if (status == STATUS_OK)
+        status = take_rows(m, &t, &why);
     table_free(&t);
-    return status;
+    return status == STATUS_OK ? STATUS_OK : fail(err, status, "motion.forces: %s", why.text);
 }
 
 static const double *row_of(const Motion *m, size_t i)

@@ -13,7 +13,7 @@
 
 #include "motion/motion.h"
 
-/* The rows of the file into m->force_rows; its hash joins m->file_hash. */
+/* The rows of the file into m->force_rows, its hash into m->forces_hash. Forces that are all 0 are refused. */
 Status forces_read(Motion *m, const char *path, Err *err);
 
 /* m->force from m->force_rows, on a step for both; nothing where there are none. */

@@ -25,10 +25,11 @@ typedef struct {
     char name[128];   /* as given by the user: a path or builtin:NAME */
     char format[32];  /* what the reader took it for: "csv", "at2", ..., "builtin" */
     char channel[64]; /* its name in the file; empty where it has none */
-    char processed[320]; /* what was done to the samples of the file; empty: nothing */
-    char warning[240];   /* what does not fit in the file; empty: nothing */
-    int is_corrected;    /* by the agency, as the file says: its displacement means something */
-    uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
+    char processed[320];  /* what was done to the samples of the file; empty: nothing */
+    char warning[240];    /* what does not fit in the file; empty: nothing */
+    int is_corrected;     /* by the agency, as the file says: its displacement means something */
+    uint64_t file_hash;   /* FNV-1a of the file's bytes, or of the generated samples; 0: at rest */
+    uint64_t forces_hash; /* the same of the forces; 0: there are none */
 } Motion;
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */

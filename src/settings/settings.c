@@ -182,7 +182,8 @@ static const Option OPTIONS[] = {
 
     PATH(motion.forces, "none", NULL,
          "forces on floors over time, beside the ground motion or with motion.record = none: a CSV with time_s and a "
-         "column floor_01_n, ... per floor, in N (docs/motions.md)"),
+         "column floor_01_n, ... per floor, in N (docs/motions.md)",
+         .flags = SETTING_FREE),
 
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),

@@ -127,7 +127,8 @@ Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)
     if (!t)
         return STATUS_OK;
     TRY(building_load(&b, &tower_record(t, 0)->options.building, err));
-    *out = (Inputs){.record = tower_record(t, 0)->motion.file_hash, .matrices = b.hash};
+    const Motion *m = &tower_record(t, 0)->motion;
+    *out = (Inputs){.record = m->file_hash, .forces = m->forces_hash, .matrices = b.hash};
     building_free(&b);
     for (size_t i = 0; i < tower_n_records(t); i++)
         out->records = provenance_add_hash(out->records, tower_record(t, i)->motion.file_hash);
@@ -142,13 +143,13 @@ static char *hex(uint64_t hash, char text[24])
 
 static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
 {
-    char record[24], records[24], matrices[24];
-    return json_of("record=%s record_format=%s record_channel=%s record_processed=%s record_fnv1a=%s records=%s "
-                   "records_fnv1a=%s samples=%ld step_s=%g building=%s floors=%d matrices_fnv1a=%s",
-                   w->record.record, w->motion.format, w->motion.channel, w->motion.processed,
-                   hex(hashes->record, record), w->record.records, hex(hashes->records, records), w->motion.n,
-                   w->motion.dt_s, w->options.building.model, scene_n_floors(w->scene),
-                   hex(hashes->matrices, matrices));
+    char record[24], records[24], forces[24], matrices[24];
+    return json_of(
+        "record=%s record_format=%s record_channel=%s record_processed=%s record_fnv1a=%s records=%s "
+        "records_fnv1a=%s forces=%s forces_fnv1a=%s samples=%ld step_s=%g building=%s floors=%d matrices_fnv1a=%s",
+        w->record.record, w->motion.format, w->motion.channel, w->motion.processed, hex(hashes->record, record),
+        w->record.records, hex(hashes->records, records), w->record.forces, hex(hashes->forces, forces), w->motion.n,
+        w->motion.dt_s, w->options.building.model, scene_n_floors(w->scene), hex(hashes->matrices, matrices));
 }
 
 static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)

@@ -22,10 +22,10 @@ json_t *program_description(void);
 /* As JSON, to be freed by the caller. */
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err);
 
-/* What a run depends on beside its settings: hashes of the first record, of all records together, and of the matrices;
- * 0 where there are none. */
+/* What a run depends on beside its settings: hashes of the first record, of all records together, of the forces, and of
+ * the matrices; 0 where there are none. */
 typedef struct {
-    uint64_t record, records, matrices;
+    uint64_t record, records, forces, matrices;
 } Inputs;
 
 /* The hash of several files in their order, from the hash of each: FNV-1a, a word at a time; begins with 0. */

@@ -56,6 +56,7 @@ static Status compare_inputs(const Comparison *c, Differences *d, Err *err)
     const char *provenance = c->run->provenance;
     const uint64_t record = provenance_hash(provenance, "record_fnv1a");
     compare_hash(d, "motion.record", record, now.record);
+    compare_hash(d, "motion.forces", provenance_hash(provenance, "forces_fnv1a"), now.forces);
     if (now.record == record)
         compare_hash(d, "motion.records", provenance_hash(provenance, "records_fnv1a"), now.records);
     compare_hash(d, "building.model", provenance_hash(provenance, "matrices_fnv1a"), now.matrices);

@@ -76,7 +76,7 @@ Status front_review_of_run(const Run *run, FrontReview *out, Err *err)
     Problem p;
     Settings s = *run->settings;
     TRY(linalg_room(threads_wanted(s.search.threads), err));
-    TRY(record_paths_find(&s, run->provenance, &(RecordPaths){NULL, NULL}, err));
+    TRY(record_paths_find(&s, run->provenance, &(RecordPaths){0}, err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, SIMULATED_MAX, err));
     const Status status = front_review_closings(&p, run, out, err);
     problem_close(&p);

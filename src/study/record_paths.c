@@ -4,15 +4,18 @@
 
 #include "motion/builtin.h"
 #include "motion/motion_scale.h"
-#include "settings/options.h"
+#include "settings/settings.h"
 #include "store/provenance.h"
 
-static Status check_is_there(const char *path, const char *key, Err *err)
+const char *const MOVED_KEY[N_MOVED] = {"motion.record", "motion.records", "motion.forces"};
+
+static Status check_is_there(const char *path, const char *what, const char *key, Err *err)
 {
     if (builtin_name(path) || strcmp(path, "none") == 0 || access(path, R_OK) == 0)
         return STATUS_OK;
-    return fail(err, STATUS_MISSING,
-                "%s: a record of the run is not there; where it was moved, say so: --set motion.%s", path, key);
+    return fail(err, STATUS_MISSING, "%s: a %s of the run is not there; where it was moved, say so: --set %s=PATH%s",
+                path, what, key,
+                strcmp(key, MOVED_KEY[MOVED_RECORDS]) == 0 ? ",... (all of them, in their order)" : "");
 }
 
 static Status check_all_there(const Settings *s, Err *err)
@@ -20,54 +23,60 @@ static Status check_all_there(const Settings *s, Err *err)
     char path[OPTION_TEXT_MAX];
     for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
         TRY(motion_record(&s->motion, i, path, err));
-        TRY(check_is_there(path, i == 0 ? "record=PATH" : "records=PATH,... (all of them, in their order)", err));
+        TRY(check_is_there(path, "record", MOVED_KEY[i == 0 ? MOVED_RECORD : MOVED_RECORDS], err));
+    }
+    return check_is_there(s->motion.forces, "file", MOVED_KEY[MOVED_FORCES], err);
+}
+
+static Status hash_all(const Settings *s, uint64_t now[N_MOVED], Err *err)
+{
+    memset(now, 0, N_MOVED * sizeof *now);
+    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
+        Motion m = {0};
+        MotionOptions one = s->motion;
+        TRY(motion_record(&s->motion, i, one.record, err));
+        TRY(motion_open(&m, &one, err));
+        now[MOVED_RECORD] = i == 0 ? m.file_hash : now[MOVED_RECORD];
+        now[MOVED_RECORDS] = provenance_add_hash(now[MOVED_RECORDS], m.file_hash);
+        now[MOVED_FORCES] = m.forces_hash;
+        motion_free(&m);
     }
     return STATUS_OK;
 }
 
-static Status hash_record(const MotionOptions *s, const char *path, uint64_t *hash, Err *err)
+static Status compare(const Settings *s, const char *provenance, Err *err)
 {
-    Motion m = {0};
-    MotionOptions one = *s;
-    snprintf(one.record, sizeof one.record, "%s", path);
-    const Status status = motion_open(&m, &one, err);
-    *hash = m.file_hash;
-    motion_free(&m);
-    return status;
-}
-
-static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, Err *err)
-{
-    char path[OPTION_TEXT_MAX];
-    uint64_t hash;
-    *record = *records = 0;
-    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
-        TRY(motion_record(&s->motion, i, path, err));
-        TRY(hash_record(&s->motion, path, &hash, err));
-        *record = i == 0 ? hash : *record;
-        *records = provenance_add_hash(*records, hash);
-    }
+    static const char *const HASH[N_MOVED] = {"record_fnv1a", "records_fnv1a", "forces_fnv1a"};
+    const char *const path[N_MOVED] = {s->motion.record, s->motion.records, s->motion.forces};
+    uint64_t now[N_MOVED];
+    TRY(hash_all(s, now, err));
+    for (int k = 0; k < N_MOVED; k++)
+        if (provenance_hash(provenance, HASH[k]) != now[k])
+            return bad_data(err, "%s: %.200s does not hold what it held for the run", MOVED_KEY[k], path[k]);
     return STATUS_OK;
 }
 
 Status record_paths_find(Settings *s, const char *provenance, const RecordPaths *moved, Err *err)
 {
-    const Settings was = *s;
-    uint64_t record, records;
     if (s->problem.kind != PROBLEM_TOWER)
         return STATUS_OK;
-    if (moved->record)
-        TRY(option_put_path(s->motion.record, moved->record, err));
-    if (moved->records)
-        TRY(option_put_path(s->motion.records, moved->records, err));
+    for (int k = 0; k < N_MOVED; k++)
+        if (moved->path[k])
+            TRY(settings_put(s, MOVED_KEY[k], moved->path[k], err));
     TRY(check_all_there(s, err));
-    if (!moved->record && !moved->records)
+    return compare(s, provenance, err);
+}
+
+Status record_paths_check(const Settings *s, const Run *run, Err *err)
+{
+    if (s->problem.kind != PROBLEM_TOWER)
         return STATUS_OK;
-    TRY(hash_all(s, &record, &records, err));
-    if (moved->record && provenance_hash(provenance, "record_fnv1a") != record)
-        return bad_data(err, "%s: does not hold what the run's record %.200s held", moved->record, was.motion.record);
-    if (moved->records && provenance_hash(provenance, "records_fnv1a") != records)
-        return bad_data(err, "%.200s: do not hold what the run's records %.200s held", moved->records,
-                        was.motion.records);
-    return STATUS_OK;
+    TRY(check_all_there(s, err));
+    Settings own = *s;
+    settings_make_absolute(&own);
+    const MotionOptions *is = &own.motion, *was = run ? &run->settings->motion : NULL;
+    return was && strcmp(is->record, was->record) == 0 && strcmp(is->records, was->records) == 0 &&
+                   strcmp(is->forces, was->forces) == 0
+               ? compare(s, run->provenance, err)
+               : STATUS_OK;
 }
