@@ -186,9 +186,10 @@ static SimResult run_scene(const Settings *s, const AsBuilt *built)
 
 TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 {
-    const Settings s = short_scene("none", 1, "0");
+    Settings s = short_scene("none", 1, "0");
+    s.building.yield_drift = 0.004;
     const SimResult designed = run_scene(&s, NULL);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 7; k++) {
         Settings other = s;
         AsBuilt b = AS_DESIGNED;
         switch (k) {
@@ -211,6 +212,10 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
         case 4:
             b.ground_stiffness = 0.5;
             other.core.foundation_factor *= 0.5;
+            break;
+        case 5:
+            b.strength = 0.6;
+            other.building.yield_drift *= 0.6;
             break;
         default:
             b.building_damping = 3;

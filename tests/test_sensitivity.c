@@ -111,6 +111,30 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
     free(list);
 }
 
+/* Of storeys that do not reach it, the ductility d / y alone changes, by -d / y^2. */
+TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
+{
+    Settings s;
+    Err err = {0};
+    Sensitivity *list;
+    size_t n;
+    double x[N_VAR];
+    SimResult r;
+    Problem p;
+    short_scene(&s, x, 5);
+    s.building.yield_drift = 0.5;
+    CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
+    CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
+    problem_close(&p);
+    const Sensitivity *strength = named(list, n, "building.yield_drift");
+    assert_less(0, r.ductility);
+    assert_close(strength->slope[MEASURE_DUCTILITY], -r.ductility / 0.5, 1e-3);
+    assert_same_number(strength->slope[MEASURE_HYSTERESIS], 0);
+    assert_less(fabs(strength->slope[MEASURE_J1]), 1e-6 * r.j1_m);
+    free(list);
+}
+
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
     Settings s;

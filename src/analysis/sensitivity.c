@@ -8,8 +8,11 @@ enum { SIDES_OF_TWO_STEPS = 4 }; /* -h, h, -h/2, h/2 */
 static const double AT[SIDES_OF_TWO_STEPS] = {-1, 1, -0.5, 0.5};
 static const double GAP_STEP = 1e-3, SHARE = 0.02; /* [m], [-] */
 
-static const char *const KEYS[] = {"contact.radius_m", "contact.restitution",          "building.damping",
-                                   "core.damping",     "contact.bumper_stiffness_n_m", "core.foundation_factor"};
+static const char *const KEYS[] = {
+    "contact.radius_m",     "contact.restitution",          "building.damping",
+    "core.damping",         "contact.bumper_stiffness_n_m", "core.foundation_factor",
+    "building.yield_drift",
+};
 enum { N_KEYS = sizeof KEYS / sizeof KEYS[0] };
 
 typedef struct {
@@ -31,7 +34,8 @@ static double setting_of(const Settings *s, size_t key)
                                    damping,
                                    s->core.damping,
                                    s->contact.bumper_stiffness_n_m,
-                                   strcmp(s->core.foundation, "fixed") == 0 ? 0 : s->core.foundation_factor};
+                                   strcmp(s->core.foundation, "fixed") == 0 ? 0 : s->core.foundation_factor,
+                                   s->building.yield_drift};
     return values[key];
 }
 

@@ -8,7 +8,7 @@
  * jump with every impact (J3) it is the error that says so.
  *
  * Parameters: every gap, both thicknesses, contact.radius_m, contact.restitution, building.damping,
- * core.damping, the bumper's stiffness and core.foundation_factor where there is one. Steps: gaps GAP_STEP (half the
+ * core.damping, the bumper's stiffness, core.foundation_factor and building.yield_drift where there is one. Steps: gaps GAP_STEP (half the
  * gap where that is less), the others SHARE of themselves. Under the first record; forces are computed.
  *
  * Ownership  sensitivity_find allocates *out for free

@@ -2,7 +2,6 @@
 
 #include "base/random.h"
 #include "base/stat.h"
-#include "sim/as_built.h"
 
 enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that the settings allow */
 
@@ -32,12 +31,6 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
         change_gaps(random_stream(seed, RANDOM_REPLICATE, OF_LEFT_GAPS, (uint32_t)k), k, tolerance_m, n, d->gap[1]);
 }
 
-int is_uncertain(const UncertainOptions *u)
-{
-    return u->restitution > 0 || u->contact_stiffness > 0 || u->core_stiffness > 0 || u->building_stiffness > 0 ||
-           u->damping > 0 || u->ground_stiffness > 0;
-}
-
 const char *spread_word(double tolerance_m, const UncertainOptions *u)
 {
     return tolerance_m > 0 || is_uncertain(u) ? "as built" : "predictability";
@@ -62,6 +55,7 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
     b.core_damping = draw_factor(&random, u->damping);
     b.building_damping = draw_factor(&random, u->damping);
     b.ground_stiffness = draw_factor(&random, u->ground_stiffness);
+    b.strength = draw_factor(&random, u->strength);
     return b;
 }
 

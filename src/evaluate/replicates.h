@@ -20,6 +20,7 @@
 #pragma once
 
 #include "evaluate/measures.h"
+#include "sim/as_built.h"
 
 enum { TOWER_RECORDS_MAX = 16 }; /* of one design */
 
@@ -34,7 +35,6 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
 
 /* What replicate k is built like; 0: as designed. */
 AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u);
-int is_uncertain(const UncertainOptions *u);
 
 /* "as built", or "predictability": what the deviation of replicates is. */
 const char *spread_word(double tolerance_m, const UncertainOptions *u);

@@ -105,7 +105,10 @@ static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
         status = scenario_open(w, &options, &s->motion, &r->motion, err);
     }
     if (status == STATUS_OK) {
-        status = measures_check(t->judged, &w->options.core, scene_building(w->scene), err);
+        const Building *b = scene_building(w->scene);
+        status = measures_check(t->judged, &w->options.core, b, err);
+        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
+            status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
         if (status != STATUS_OK)
             scenario_close(w);
     }

@@ -8,6 +8,7 @@
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"
 #include "scene/neighbour.h"
+#include "sim/as_built.h"
 
 typedef struct {
     BrokenRuleFn broken;
@@ -43,6 +44,8 @@ static void check_core(const CoreOptions *o, const Rules *r)
     Err err;
     if (foundation_parse(o->foundation, 1, &(Foundation){0}, &err) != STATUS_OK)
         break_rule(r, "%s", err.text);
+    if (o->foundation_factor != 1 && strcmp(o->foundation, "fixed") == 0)
+        break_rule(r, "core.foundation_factor: is of core.foundation, which is fixed; leave it at 1");
     if (neighbour_is_given(o) && strcmp(o->foundation, "fixed") != 0)
         break_rule(r, "core.foundation: is that of a cantilever; a building of core.model stands fixed");
 }
@@ -69,13 +72,12 @@ static void check_variables(const Settings *s, const Rules *r)
 static void check_replicates(const Settings *s, const Rules *r)
 {
     const UncertainOptions *u = &s->sim.uncertain;
-    const int varies = u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping +
-                           u->ground_stiffness >
-                       0;
     if (s->sim.gap_tolerance_m > 0 && s->sim.replicates < 2)
         break_rule(r, "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
-    if (varies && s->sim.replicates < 2)
+    if (is_uncertain(u) && s->sim.replicates < 2)
         break_rule(r, "sim.uncertain: needs replicates that differ: set sim.replicates to 2 or more");
+    if (u->ground_stiffness > 0 && strcmp(s->core.foundation, "fixed") == 0)
+        break_rule(r, "sim.uncertain: ground_stiffness is that of core.foundation, which is fixed");
 }
 
 static void check_fidelity(const SearchOptions *s, const Rules *r)

@@ -63,7 +63,7 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 
 /* In the order of UncertainOptions. */
 static const char UNCERTAIN_WORDS[] =
-    "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness";
+    "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness|strength";
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
@@ -207,10 +207,8 @@ static const Option OPTIONS[] = {
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",
         "standard deviations of what is built, as restitution=0.05 damping=0.3: of contact.restitution, and as shares "
-        "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness and of the "
-        "damping "
-        "ratios; needs "
-        "sim.replicates >= 2"),
+        "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness, of the "
+        "damping ratios and of the strength (building.yield_drift); needs sim.replicates >= 2"),
 
     TEXT(design.variables, "gaps, thickness",
          "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
@@ -296,7 +294,7 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = N_OF(OPTIONS) };
 
-_Static_assert(sizeof(UncertainOptions) == 6 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
+_Static_assert(sizeof(UncertainOptions) == 7 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert(N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
 _Static_assert(OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");

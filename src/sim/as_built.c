@@ -1,5 +1,12 @@
 #include "sim/as_built.h"
 
+int is_uncertain(const UncertainOptions *u)
+{
+    return u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping +
+               u->ground_stiffness + u->strength >
+           0;
+}
+
 void as_built_options(const AsBuilt *built, const SceneOptions *o, SceneOptions *out)
 {
     *out = *o;
@@ -26,7 +33,7 @@ Status as_built_building(const AsBuilt *built, const Building *b, Building *out,
     const size_t n = (size_t)b->n, m = (size_t)b->model.n;
     const double stiffness = built->building_stiffness, damping = built->building_damping;
     if (!*store)
-        *store = malloc((n * n + 3 * n + m * m + 2 * m) * sizeof **store);
+        *store = malloc((n * n + 4 * n + m * m + 2 * m) * sizeof **store);
     if (!*store)
         return fail(err, STATUS_NO_MEMORY, "no memory for a building of %d floors", b->n);
     double *at = *store;
@@ -34,6 +41,7 @@ Status as_built_building(const AsBuilt *built, const Building *b, Building *out,
     out->K = scaled(n * n, b->K, stiffness, &at);
     out->omega = scaled(n, b->omega, sqrt(stiffness), &at);
     out->zeta = scaled(n, b->zeta, damping, &at);
+    out->yield_m = scaled(n, b->yield_m, built->strength, &at);
     out->yield_n_m = scaled(n, b->yield_n_m, stiffness, &at);
     out->model.K = scaled(m * m, b->model.K, stiffness, &at);
     out->model.omega = scaled(m, b->model.omega, sqrt(stiffness), &at);

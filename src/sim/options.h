@@ -46,9 +46,10 @@ typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.q
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 
 /* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of
- * restitution [-], and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
+ * restitution [-], and as shares of the stiffnesses, of the damping ratios and of the storeys' strength. 0: as designed.
+ */
 typedef struct {
-    double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness;
+    double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness, strength;
 } UncertainOptions;
 
 typedef struct {
@@ -71,7 +72,7 @@ typedef struct {
 /* One structure as built: restitution is added (and stays within 0.05 to 1), the others are factors. */
 typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, core_damping, building_damping,
-        ground_stiffness;
+        ground_stiffness, strength;
 } AsBuilt;
 
 /* Linear devices in the place of impacts (sim/linear.h). */
