@@ -179,7 +179,7 @@ static Status leave_out_each(Job *job, Err *err)
 
 static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err)
 {
-    const Ladder *l = job->out;
+    Ladder *l = job->out;
     Settings s = *job->s;
     Problem p;
     SimTask task[LADDER_SCENES];
@@ -189,6 +189,8 @@ static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err
     for (int i = 0; i < LADDER_SCENES; i++)
         task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
     TRY(tower_open(&p, &s, TOWER_SINGLE, LADDER_SCENES, err));
+    const Building *b = scene_building(tower_record(tower_of(&p), 0)->scene);
+    l->hardening = b->yields ? b->hardening : 0;
     const Status status = tower_run(&p, LADDER_SCENES, task, NULL, NULL, err);
     problem_close(&p);
     return status;

@@ -44,6 +44,7 @@ typedef struct {
     double off[LADDER_MEASURES];                               /* [-] the set from the model with all */
     double set[LADDER_SCENES][LADDER_MEASURES];                /* by the set; NAN: a simulation failed */
     double all_s, set_s;                                       /* of a simulation */
+    double hardening; /* [-] of the set, raised where the building would not stand (P-delta); 0: nothing yields */
 } Ladder;
 
 /* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect

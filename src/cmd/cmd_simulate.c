@@ -47,9 +47,8 @@ static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
     if (job->kind == SCENE_NO_CORE)
         return STATUS_OK;
     if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
-        return misused(
-            err, "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
-                 "fast");
+        return misused(err,
+                       "--rigid: floors and core without gaps are solved by sim.engine = fast alone; leave it at that");
     TRY(tower_space(s, &space, err));
     TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space, s, !args_gives(args, "sim.accuracy"),
                                                 job->known, err));

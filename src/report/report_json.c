@@ -109,6 +109,8 @@ json_t *ladder_json(const Ladder *l)
         json_array_append_new(effects, row);
         json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
     }
+    if (l->hardening > 0)
+        json_put(settings, "building.hardening=%g", l->hardening);
     for (int i = 0; i < LADDER_SCENES; i++)
         json_object_set_new(by_set, SCENES[i], json_by_measure(l->set[i], "", 1));
     json_put(all, "ms=%g", 1e3 * l->all_s);
