@@ -218,6 +218,41 @@ TEST(a_neighbour_has_no_ground_and_no_beam)
     json_decref(o);
 }
 
+/* A storey that carries the weight W over its height h keeps k - W/h of k; where all have yielded, 2 % of that stands:
+ * the share that yields is 0.98 (1 - W/(h k)) at most. */
+TEST(the_hardening_that_p_delta_raises_is_said)
+{
+    static const double STIFFNESS[N] = {6e7, 5e7, 4e7, 3e7, 2e7}, HEIGHT = 4, MASS = 3e5;
+    double x[N + 2], wanted = 0.05;
+    for (int j = 0; j < N; j++)
+        wanted = fmax(wanted, 1 - 0.98 * (1 - (N - j) * MASS * 9.81 / (HEIGHT * STIFFNESS[j])));
+    assert_less(0.06, wanted);
+    const Settings s = scene_of((const char *const[]){NULL});
+    design_with(0.008, x);
+    Ladder *l = find(&s, x, 6, 1);
+    assert_close(l->all_hardening, wanted, 1e-6);
+    free(l);
+}
+
+TEST(settings_that_let_storeys_yield_say_how)
+{
+#define YIELDS                                                                                                         \
+    "check configs/quick.ini --json --ladder --record builtin:sylmar-like --set motion.stretch=1 --set "               \
+    "core.width_m=5 "                                                                                                  \
+    "--set sim.duration_s=8 --set building.model=@/soft --set building."
+    json_t *weak = json_of(YIELDS "yield_drift=0.003 --set building.hysteresis=bouc_wen"),
+           *strong = json_of(YIELDS "yield_drift=0.9");
+    json_t *settings = json_object_get(json_object_get(weak, "ladder"), "settings");
+    assert_string_equal(json_string_value(json_object_get(settings, "building.yield_drift")), "0.003");
+    assert_string_equal(json_string_value(json_object_get(settings, "building.hysteresis")), "bouc_wen");
+    assert_string_equal(json_string_value(json_object_get(settings, "building.bouc_wen_exponent")), "2");
+    settings = json_object_get(json_object_get(strong, "ladder"), "settings");
+    assert_string_equal(json_string_value(json_object_get(settings, "building.yield_drift")), "0");
+    assert_null(json_object_get(settings, "building.hysteresis"));
+    json_decref(weak);
+    json_decref(strong);
+}
+
 TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
 {
     double x[N + 2];

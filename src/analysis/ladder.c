@@ -81,6 +81,15 @@ static int is_there(const Job *job, int kind)
     }
 }
 
+static Status find_hardening(const Settings *s, double *hardening, Err *err)
+{
+    Building b;
+    TRY(building_load(&b, &s->building, err));
+    *hardening = b.yields ? b.hardening : 0;
+    building_free(&b);
+    return STATUS_OK;
+}
+
 static Status list_effects(Job *job, Err *err)
 {
     Ladder *l = job->out;
@@ -95,7 +104,9 @@ static Status list_effects(Job *job, Err *err)
         job->kind[l->n++] = kind;
         TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
     }
-    return STATUS_OK;
+    for (int i = 0; i < YIELDING_KEYS; i++)
+        settings_each(job->s, take_value, &(Wanted){YIELDING_KEY[i], l->yielding[i]});
+    return find_hardening(&job->all, &l->all_hardening, err);
 }
 
 /* -- what each changes --------------------------------------------------------------------------------------------- */
@@ -188,9 +199,8 @@ static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err
         TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without, err));
     for (int i = 0; i < LADDER_SCENES; i++)
         task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
+    TRY(find_hardening(&s, &l->hardening, err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, LADDER_SCENES, err));
-    const Building *b = scene_building(tower_record(tower_of(&p), 0)->scene);
-    l->hardening = b->yields ? b->hardening : 0;
     const Status status = tower_run(&p, LADDER_SCENES, task, NULL, NULL, err);
     problem_close(&p);
     return status;

@@ -14,6 +14,9 @@
  * the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
  * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts.
  *
+ * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
+ * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.
+ *
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
 #ifndef IMTET_ANALYSIS_LADDER_H
 #define IMTET_ANALYSIS_LADDER_H
@@ -24,6 +27,12 @@ enum { LADDER_MAX = 8, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
 static const MeasureId LADDER_MEASURE[LADDER_MEASURES] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
 
 static const SceneKind LADDER_SCENE[LADDER_SCENES] = {SCENE_IMPACT, SCENE_RIGID, SCENE_NO_CORE};
+
+/* What else says how storeys yield; the last three of bouc_wen alone. */
+enum { YIELDING_KEYS = 4 };
+static const char *const YIELDING_KEY[YIELDING_KEYS] = {"building.hysteresis", "building.bouc_wen_exponent",
+                                                        "building.strength_degradation",
+                                                        "building.stiffness_degradation"};
 
 /* Two digits, which is what such results are read with. */
 static const double LADDER_TOLERANCE = 0.02;
@@ -44,7 +53,9 @@ typedef struct {
     double off[LADDER_MEASURES];                               /* [-] the set from the model with all */
     double set[LADDER_SCENES][LADDER_MEASURES];                /* by the set; NAN: a simulation failed */
     double all_s, set_s;                                       /* of a simulation */
-    double hardening; /* [-] of the set, raised where the building would not stand (P-delta); 0: nothing yields */
+    /* [-] of the set and of the model with all, raised where the building would not stand; 0: nothing yields */
+    double hardening, all_hardening;
+    char yielding[YIELDING_KEYS][OPTION_TEXT_MAX]; /* values of the settings */
 } Ladder;
 
 /* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect

@@ -111,9 +111,11 @@ json_t *ladder_json(const Ladder *l)
     }
     if (l->hardening > 0)
         json_put(settings, "building.hardening=%g", l->hardening);
+    for (int i = 0; l->hardening > 0 && i < (strcmp(l->yielding[0], "bilinear") == 0 ? 1 : YIELDING_KEYS); i++)
+        json_object_set_new(settings, YIELDING_KEY[i], json_string(l->yielding[i]));
     for (int i = 0; i < LADDER_SCENES; i++)
         json_object_set_new(by_set, SCENES[i], json_by_measure(l->set[i], "", 1));
-    json_put(all, "ms=%g", 1e3 * l->all_s);
+    json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->all_hardening);
     json_put(set, "ms=%g", 1e3 * l->set_s);
     return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
                    json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);

@@ -224,7 +224,8 @@ function ladderPart(host, d) {
   const scene = (key, r) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits(r[name] === null ? null : factor * r[name]))]);
   host.append(
     element("p", { class: "note" }, `Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ${keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", ")} %, which is 2 % or the scatter as built. ` +
-      "imtet check --ladder repeats it with the steps, and says what each costs."),
+      "imtet check --ladder repeats it with the steps, and says what each costs." +
+      (l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : "")),
     table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
     element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
