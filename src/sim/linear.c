@@ -420,7 +420,8 @@ static void look_at_kinks(Linear *d, double t, const double z0[], const double z
                     b->yield_n_m[j] * storey_advance(&b->storey_law, b->yield_m[j], d0[j], d0[j] + at * (d1[j] - d0[j]),
                                                      z0[d->at_force + j] / b->yield_n_m[j], &spent);
         linalg_product(d->rows.n, size, 1, d->outputs, z, y);
-        linalg_product(n_q, size, 1, d->coordinates, z, q);
+        if (d->run->forces)
+            linalg_product(n_q, size, 1, d->coordinates, z, q);
         look(d, t + at * d->h, z[ground], y, q);
         peak_monitor_break(&d->peaks);
     }
