@@ -318,6 +318,10 @@ TEST(faults_of_storeys_are_named)
     expect_refusal_of(&o, "storeys.csv:2: has no stiffness_n_m");
     write_file(&o, "storeys.csv", "height_m,stiffness_n_m\n3,1e8\n");
     expect_refusal_of(&o, "storeys.csv:2: has no mass_kg or mass_t");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0.01\n3,1e5,1e8,1.5\n");
+    expect_refusal_of(&o, "storeys.csv:3: yield_drift is 1.5; it is drift over height, 1 at most");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0\n");
+    expect_refusal_of(&o, "storeys.csv:2: yield_drift is 0; it must be above 0");
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
     expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
     write_file(&o, "storeys.csv", "height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n");

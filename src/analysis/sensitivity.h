@@ -7,9 +7,9 @@
  * D(h/2))^2, sd that of the differences of single replicates; of one replicate the second part alone. Where slopes
  * jump with every impact (J3) it is the error that says so.
  *
- * Parameters: every gap, both thicknesses, contact.radius_m, contact.restitution, building.damping,
- * core.damping, the bumper's stiffness, core.foundation_factor and building.yield_drift where there is one. Steps: gaps GAP_STEP (half the
- * gap where that is less), the others SHARE of themselves. Under the first record; forces are computed.
+ * Parameters: every gap, both thicknesses, contact.radius_m, contact.restitution, building.damping, core.damping, the
+ * bumper's stiffness, core.foundation_factor and building.yield_drift where there is one. Steps: gaps GAP_STEP (half
+ * the gap where that is less), the others SHARE of themselves. Under the first record; forces are computed.
  *
  * Ownership  sensitivity_find allocates *out for free
  * Threads    as search.threads says, or ranks; the numbers do not depend on it */

@@ -43,7 +43,7 @@ static Status take(const char *setting, const char *word, unsigned kind, size_t 
     }
     if (end == value || *end || !(x[i] >= k->least && x[i] <= k->most))
         return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s", setting, word, k->least, k->most,
-                        k->letters ? " and no letter from A to " : "", k->letters, (char[]){last_letter(k)});
+                        k->letters ? " and no capital letter from A to " : "", k->letters, (char[]){last_letter(k)});
     return STATUS_OK;
 }
 

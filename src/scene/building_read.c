@@ -188,6 +188,8 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
     TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &storey->shear, err));
     TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));
     storey->yield_drift = r->x[7];
+    if (storey->yield_drift > 1)
+        return bad_data(err, "yield_drift is %g; it is drift over height, 1 at most", storey->yield_drift);
     if (!(storey->mass > 0))
         return bad_data(err, "has no mass_kg or mass_t");
     const Storey *first = all->storey;

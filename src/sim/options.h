@@ -46,8 +46,7 @@ typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.q
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 
 /* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of
- * restitution [-], and as shares of the stiffnesses, of the damping ratios and of the storeys' strength. 0: as designed.
- */
+ * restitution [-], and as shares of the stiffnesses, the damping ratios and the storeys' strength. 0: as designed. */
 typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness, strength;
 } UncertainOptions;
