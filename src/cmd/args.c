@@ -153,7 +153,9 @@ Status command_run(const Args *args, Err *err)
 {
     Run run;
     if (args->command->run)
-        return args->command->run(args, err);
+        TRY(args->command->run(args, err));
+    if (!args->command->run_of)
+        return STATUS_OK;
     TRY(run_read(&run, args->operand, err));
     const Status status = args->command->run_of(args, &run, err);
     run_free(&run);

@@ -18,7 +18,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
 
-/* What the command does: its run, or run_of with the run of its operand. */
+/* What the command does: its run, then run_of with the run of its operand, which is read for it. */
 Status command_run(const Args *args, Err *err);
 
 /* The values of an option that may be repeated, one call after the other; i begins at 0, NULL: no more. */

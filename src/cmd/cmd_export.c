@@ -26,11 +26,15 @@ static Status write_table(const Args *args, const Run *run, Err *err)
     return output_end(&o, status, err);
 }
 
-static Status export_run(const Args *args, const Run *run, Err *err)
+static Status check_options(const Args *args, Err *err)
 {
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return misused(err, "--csv FILE is missing: where the table goes (or --json)");
-    TRY(args_alone(args, "--all", "--select", err));
+    return args_alone(args, "--all", "--select", err);
+}
+
+static Status export_run(const Args *args, const Run *run, Err *err)
+{
     TRY(args_has(args, "--json") ? export_json(stdout, run, err) : STATUS_OK);
     return args_has(args, "--csv") ? write_table(args, run, err) : STATUS_OK;
 }
@@ -56,6 +60,7 @@ const Command CMD_EXPORT = {
         "variables; kind is `unfinished` for those of a generation that is under way or was cut short.\n"
         "results/README.md explains every column. The run may still be going on.",
     .options = OPTIONS,
+    .run = check_options,
     .run_of = export_run,
     .only_reads = 1,
 };
