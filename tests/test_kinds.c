@@ -136,6 +136,10 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
         {"choice:", "0", "1", "problem.kinds: choice:: word 1 is empty"},
         {"choice:a||b", "0", "1", "word 2 is empty"},
         {"choice:a|b|a", "0", "1", "problem.kinds: choice:a|b|a names a twice"},
+        {"choice:a|b\tc", "0", "1", "word 2 is empty"},
+        {"choice:a|\xff", "0", "1", "word 2 is empty"},
+        {"choice: a|b", "0", "1", "word 1 is empty"},
+        {"choice:a|=1+1", "0", "1", "word 2 is empty"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         VariableKind kind[3];

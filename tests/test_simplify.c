@@ -95,6 +95,23 @@ TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goe
     simplified_free(&s);
 }
 
+/* Mass is limited to just above the knee's: heavy plates alone would break it. */
+TEST(limits_are_kept_or_nothing_is_stored)
+{
+    Settings limited = *study.settings;
+    Settings *before = study.settings;
+    SimplifyConfig c = {.n_plates = 1, .plate = {0.06}};
+    for (size_t k = 0; k < study.schema.n_obj; k++)
+        c.slack[k] = INFINITY;
+    snprintf(limited.search.limits, sizeof limited.search.limits, "mcore_kg<=1e6");
+    study.settings = &limited;
+    Simplified s = simplified(&c);
+    study.settings = before;
+    assert_int_equal(s.n, SIMPLIFY_MOVED + 1);
+    assert_true(s.loss[SIMPLIFY_MOVED] > 1.0 && s.loss[SIMPLIFY_START] <= 0.0);
+    simplified_free(&s);
+}
+
 TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
 {
     char *said = output_of("simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%");
@@ -102,6 +119,7 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
     free(said);
     free(output_of("simulate @/s.ini --design @/run:41"));
     expect(2, "--gap-step: 'wide' is no length in mm", "simplify @/run --gap-step wide");
+    expect(2, "--keep: j1_m may lose -0.5 of its value", "simplify @/run --keep j1_m=-0.5");
     expect(2, "--plates: give them in ascending order", "simplify @/run --plates 12,8");
 }
 

@@ -162,12 +162,16 @@ static void show_table(const Run *run, const Picks *p)
 
 static void show_variables(const Run *run, const Picks *p)
 {
+    char word[KIND_WORD_MAX];
     for (size_t i = 0; i < p->n; i++) {
         if (strncmp(p->pick[i].name, "best_", 5) == 0)
             continue;
         printf("\n%s:", p->pick[i].name);
         for (size_t j = 0; j < run->schema.n_var; j++)
-            printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, p->pick[i].row)[j]);
+            if (schema_word(&run->schema, j, run_x(run, p->pick[i].row)[j], word))
+                printf(" %s=%s", schema_variable(&run->schema, j)->name, word);
+            else
+                printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, p->pick[i].row)[j]);
     }
     putchar('\n');
 }

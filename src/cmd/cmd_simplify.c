@@ -52,6 +52,10 @@ static Status take_options(const Args *args, Work *w, Err *err)
         c->slack[k] = args_has(args, "--keep") ? INFINITY : k == 0 ? KEPT : KEPT_OTHERS;
     if (args_has(args, "--keep"))
         TRY(pairs_take(schema, "--keep", args_value(args, "--keep"), KEPT, c->slack, err));
+    for (size_t k = 0; k < schema->n_obj; k++)
+        if (c->slack[k] < 0.0)
+            return misused(err, "--keep: %s may lose %g of its value; give 0 or more",
+                           schema_objective(schema, k)->name, c->slack[k]);
     if (args_has(args, "--gap-step"))
         TRY(take_mm("--gap-step", args_value(args, "--gap-step"), &c->gap_step, err));
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
@@ -110,9 +114,16 @@ static Status simplify(const Args *args, Work *w, Err *err)
            r->n_evaluated, r->seconds);
     show_path(w);
     show_design(w, last->x);
+    if (r->designs.row[0].violation > 0.0)
+        puts("\nThe design violates the limits of its run, and so may what is made of it.");
     if (r->loss[r->n - 1] > 1.0) {
-        printf("\nOn these steps it loses %.3g times what may be lost: finer steps, more plates or another --keep.\n",
-               r->loss[r->n - 1]);
+        puts("\nNot stored: on these steps it loses more than may be lost, or violates limits: finer steps, more "
+             "plates or "
+             "another --keep.");
+        return STATUS_OK;
+    }
+    if (memcmp(last->x, r->designs.row[0].x, w->run.schema.n_var * sizeof *last->x) == 0) {
+        puts("\nNot stored: nothing was there to be simplified.");
         return STATUS_OK;
     }
     TRY(store_polished(w->store, last, (size_t)w->run.tried_to_polish, (size_t)w->run.polished_at, &id, err));

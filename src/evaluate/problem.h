@@ -139,13 +139,15 @@ static inline double problem_to_unit(const Problem *p, size_t d, double x)
     const double lower = p->lower[d], upper = p->upper[d];
     if (!(upper > lower))
         return 0.0;
-    return problem_kind(p, d) == VARIABLE_LOG ? log(x / lower) / log(upper / lower) : (x - lower) / (upper - lower);
+    return problem_kind(p, d) == VARIABLE_LOG ? (log(x) - log(lower)) / (log(upper) - log(lower))
+                                              : (x - lower) / (upper - lower);
 }
 
 static inline double problem_from_unit(const Problem *p, size_t d, double u)
 {
     const double lower = p->lower[d], upper = p->upper[d];
-    const double x = problem_kind(p, d) == VARIABLE_LOG ? lower * pow(upper / lower, u) : lower + u * (upper - lower);
+    const double x = problem_kind(p, d) == VARIABLE_LOG ? exp(log(lower) + u * (log(upper) - log(lower)))
+                                                        : lower + u * (upper - lower);
     return fmin(fmax(x, lower), upper);
 }
 

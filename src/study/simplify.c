@@ -16,6 +16,7 @@ typedef struct {
     const DesignSpace *space;
     size_t n_var, n_obj, n_max;
     double first[OBJECTIVES_MAX]; /* minimised objectives of the start */
+    double violation;             /* ... of the limits */
     double *x;                    /* (n_var) so far */
     double *X, *F, *G;            /* (n_max, n_var) (n_max, n_obj) (n_max, n_con) designs of a round */
     unsigned char *ok;            /* (n_max) */
@@ -45,9 +46,11 @@ static void add(Simplify *s, size_t j, double value)
     x[j] = value;
 }
 
-static double loss_of(const Simplify *s, const double f[])
+/* Above 1 where limits are violated by more than at the start. */
+static double loss_of(const Simplify *s, const double f[], const double g[])
 {
-    double loss = -INFINITY;
+    const double more = violation_of(adapter_problem(s->adapter)->n_con, g) - s->violation;
+    double loss = more > 0.0 ? 1.0 + more : -INFINITY;
     for (size_t k = 0; k < s->n_obj; k++)
         if (isfinite(s->config->slack[k]))
             loss = fmax(loss, (f[k] - s->first[k]) / fmax(s->config->slack[k] * fabs(s->first[k]), 1e-300));
@@ -65,8 +68,8 @@ static Status find_least(Simplify *s, size_t *least, double *loss, Err *err)
     *least = s->n;
     *loss = INFINITY;
     for (size_t i = 0; i < s->n; i++) {
-        const double now = loss_of(s, s->F + i * s->n_obj);
-        if (s->ok[i] && violation_of(p->n_con, s->G + i * p->n_con) == 0.0 && now < *loss) {
+        const double now = loss_of(s, s->F + i * s->n_obj, s->G + i * p->n_con);
+        if (s->ok[i] && now < *loss) {
             *least = i;
             *loss = now;
         }
@@ -84,9 +87,11 @@ static Status note(Simplify *s, Simplification what, Err *err)
     if (done.evaluation->outcome != OUTCOME_OK)
         return bad_data(err, "the design fails when it is simulated again (%s %s): choose another one",
                         outcome_word(done.evaluation->outcome), done.evaluation->reason);
-    if (what == SIMPLIFY_START)
+    if (what == SIMPLIFY_START) {
         memcpy(s->first, done.f, s->n_obj * sizeof *done.f);
-    out->loss[what] = loss_of(s, done.f);
+        s->violation = done.evaluation->violation;
+    }
+    out->loss[what] = loss_of(s, done.f, done.g);
     out->n_stops[what] = simplify_n_stops(s->space, s->x);
     out->n_evaluated++;
     out->n = (size_t)what + 1;

@@ -3,6 +3,8 @@
  *   loss = max_k (f_k - f_k at the start) / (slack_k |f_k at the start|)     over the kept objectives, minimised; 1 is
  *                                                                           what may be lost
  *
+ * A design that violates the run's limits by more than the start has a loss above 1.
+ *
  *   1 start    the design as it is
  *   2 closing  stops that close under no record and in no replicate go: without them the results are the same
  *   3 steps    gaps to the nearest multiple of gap_step, walls to the nearest plate
