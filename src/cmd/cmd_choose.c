@@ -195,10 +195,12 @@ static Status write_csv(const Run *run, const Picks *p, const char *path, Err *e
 /* Values of n columns that begin at `first`; a column that is listed alone where `list` is given. */
 static json_t *json_values(const Schema *schema, size_t first, size_t n, const size_t list[], const double values[])
 {
+    char word[KIND_WORD_MAX];
     json_t *o = json_object();
     for (size_t i = 0; i < n; i++) {
         const size_t k = list ? list[i] : i;
-        json_object_set_new(o, schema->column[first + k].name, json_number(values[k]));
+        const int is_word = first + k < schema->n_var && schema_word(schema, first + k, values[k], word);
+        json_object_set_new(o, schema->column[first + k].name, is_word ? json_string(word) : json_number(values[k]));
     }
     return o;
 }
