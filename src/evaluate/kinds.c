@@ -21,7 +21,7 @@ int kinds_are_real(const char *list)
     return 1;
 }
 
-/* Fit for JSON, for a cell of a CSV file and for people: no quote, control character, blank at an end or formula; UTF-8. */
+/* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
 static int is_plain(const char *word, size_t n)
 {
     for (size_t i = 0; i < n; i++)
