@@ -30,7 +30,7 @@ static int is_plain(const char *word, size_t n)
     json_t *text = json_stringn(word, n);
     const int is_text = text != NULL;
     json_decref(text);
-    return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !memchr("=+-@", word[0], 4);
+    return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
 }
 
 /* Word i of "choice:a|b|c"; 0: there is none, or it is too long. */
