@@ -30,8 +30,9 @@ static int wait_after(void *left)
     int now;
 #pragma omp atomic capture
     now = --*(int *)left;
-    while (now <= 0)
-        pause();
+    if (now <= 0)
+        for (;;)
+            pause();
     return 0;
 }
 

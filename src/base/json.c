@@ -35,13 +35,13 @@ static json_t *next_value(char type, va_list *values)
     switch (type) {
     case 'd':
         return json_integer(va_arg(*values, int));
+    case 'g':
+        return json_number(va_arg(*values, double));
     case 'l':
     case 'z':
         return json_integer(va_arg(*values, long));
     case 'c':
         return json_boolean(va_arg(*values, int));
-    case 'g':
-        return json_number(va_arg(*values, double));
     case 's':
         text = va_arg(*values, const char *);
         return text ? json_words(text) : NULL;

@@ -208,8 +208,8 @@ static Status check_search(Selftest *t, Err *err)
 static Status verdict(Selftest *t, double seconds, Err *err)
 {
     if (t->as_json)
-        TRY(show_json(json_of("trusted=%c kernel=%s seconds=%g checks=%p", t->n_wrong == 0, fast_kernel_name(), seconds,
-                              json_incref(t->checks)),
+        TRY(show_json(json_of("trusted=%c kernel=%s seconds=%g checks=%p", t->n_wrong == 0 ? 1 : 0, fast_kernel_name(),
+                              seconds, json_incref(t->checks)),
                       err));
     if (t->n_wrong > 0)
         return fail(err, STATUS_INTERNAL, "this build cannot be trusted: %d of %d answers differ (kernel %s)",

@@ -89,7 +89,6 @@ static _Noreturn void live(const Helper *h, int from)
 {
     Order order;
     Message m;
-    ssize_t n;
     sigset_t all;
     sigfillset(&all);
     sigprocmask(SIG_SETMASK, &all, NULL);
@@ -100,7 +99,7 @@ static _Noreturn void live(const Helper *h, int from)
     for (;;) {
         int ends[2] = {-1, -1};
         message_make(&m, &order);
-        if ((n = recvmsg(STDIN_FILENO, &m.head, MSG_CMSG_CLOEXEC)) <= 0)
+        if (recvmsg(STDIN_FILENO, &m.head, MSG_CMSG_CLOEXEC) <= 0)
             break;
         const struct cmsghdr *beside = CMSG_FIRSTHDR(&m.head);
         if (beside)
