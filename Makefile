@@ -31,7 +31,7 @@ CPPFLAGS += -Isrc -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -ltcl8.6 -lstdc++ -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -lz -ltcl8.6 -lstdc++ -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. Sanitized, the
 # simulator takes 0.55 of its time at -O2. These flags come last; provenance.json quotes them by the same variables.
@@ -99,7 +99,7 @@ $(CORE): $(CORE_OBJ) Makefile
 
 $(BUILD)/alone: $(BUILD)/tests/alone.o $(CORE)
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(filter-out -lsqlite3 -lmicrohttpd,$(LDLIBS))
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(filter-out -lsqlite3 -lmicrohttpd -lz,$(LDLIBS))
 
 lib-alone: $(BUILD)/alone ## links libimtet.a without SQLite and libmicrohttpd, and simulates a design with it
 	@$(BUILD)/alone
@@ -132,7 +132,7 @@ $(BUILD)/%.csv.o: %.csv
 
 # So are the page of the report, its style and scripts inside, and that of `imtet serve`, which has live parts too.
 # web/charts.js is what `make web` bundles from npm.
-build/web/page.html build/web/live.html: web/assemble web/page.html web/style.css web/charts.js $(wildcard web/app/*.js web/live/*)
+build/web/page.html build/web/live.html: web/assemble web/page.html web/style.css web/first.js web/charts.js $(wildcard web/app/*.js web/live/*)
 	@mkdir -p $(@D)
 	$(Q)web/assemble $(filter live,$(basename $(@F))) > $@.part && mv $@.part $@
 

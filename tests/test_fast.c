@@ -45,7 +45,7 @@ static void bounce(const Ball *ball, double until, Bounce *b)
     b->closing = 5 * b->dt;
     bobs_model(&model, 1, &(Bob){.mass = ball->m, .gap = ball->v * b->dt + ball->v * 3 * b->dt}, 0,
                &(Contact){.k = ball->k, .a = 1.5 * (1 - ball->r), .v0_floor = 1e-300});
-    CHECK_OK(fast_create(&work, 1, 1, 0, &err), &err);
+    CHECK_OK(fast_create(&work, 1, 1, 0, 0, &err), &err);
     const double end = until >= 0 ? b->closing + until * b->duration : 8 * b->dt;
     fast_run(work, &model, &motion, &(EngineOptions){.duration = end}, &ball->tolerances, &b->result);
     fast_free(work);
@@ -153,7 +153,7 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
         const Bob floors[] = {{.mass = 1e6 * m, .gap = 1e9}, {.mass = m, .gap = v * (4 + 0.01 * i) * dt}};
         const FastTolerances tolerances = fast_tolerances(ACCURACY_STANDARD);
         bobs_model(&model, 2, floors, 0, &contact);
-        CHECK_OK(fast_create(&work, 2, 2, 0, &err), &err);
+        CHECK_OK(fast_create(&work, 2, 2, 0, 0, &err), &err);
         fast_run(work, &model, &motion, &(EngineOptions){.duration = 8 * dt}, &tolerances, &result);
         assert_int_equal(result.impacts, 1);
         const double depth = contact_hertz_indentation(contact.k, m, v);

@@ -22,7 +22,7 @@ static void stage_open(Stage *t, const SceneOptions *o)
     Err err;
     CHECK_OK(building_load(&t->b, &o->building, &err), &err);
     CHECK_OK(model_create(&t->model, t->b.n, t->b.model.n, &err), &err);
-    CHECK_OK(fast_create(&t->work, t->b.n, t->b.model.n, 0, &err), &err);
+    CHECK_OK(fast_create(&t->work, t->b.n, t->b.model.n, 0, 0, &err), &err);
 }
 
 static void stage_close(Stage *t)

@@ -93,11 +93,12 @@ TEST(a_mutated_number_moves_by_one_at_least_and_a_mutated_choice_to_any_other_wo
     enum { TRIES = 3000 };
     const VariableKind kind[] = {VARIABLE_WHOLE, VARIABLE_CHOICE, VARIABLE_CHOICE, VARIABLE_REAL};
     const double lower[4] = {0}, upper[] = {3, 3, 3, 1}, before[] = {3, 1, 2, 0.5};
+    const Problem p = {.n_var = 4, .kind = kind, .lower = lower, .upper = upper};
     size_t words[4] = {0};
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     for (int i = 0; i < TRIES; i++) {
         double x[] = {3.0 - 1e-3, 1.2, 2, 0.7};
-        mutate_discrete(&r, 4, kind, lower, upper, before, x);
+        mutate_discrete(&r, &p, before, x);
         assert_true(x[0] == 2.0 && x[2] == 2.0 && x[3] == 0.7);
         words[(int)x[1]]++;
     }
@@ -105,6 +106,67 @@ TEST(a_mutated_number_moves_by_one_at_least_and_a_mutated_choice_to_any_other_wo
     for (int w = 0; w < 4; w++)
         if (w != 1)
             assert_less(fabs((double)words[w] / TRIES - 1.0 / 3.0), 0.04);
+}
+
+TEST(a_value_that_is_sold_is_the_nearest_and_mutation_takes_another)
+{
+    const double sold[] = {0.008, 0.010, 0.012, 0.015, 0.020}, lower[] = {0.005, 0.008}, upper[] = {0.5, 0.020};
+    const Steps steps[] = {{.n = 100, .first = 1, .step = 0.005}, {.n = N_OF(sold), .at = sold}};
+    const VariableKind kind[] = {VARIABLE_STEPPED, VARIABLE_STEPPED};
+    const Problem p = {.n_var = 2, .kind = kind, .steps = steps, .lower = lower, .upper = upper};
+    Random r = random_stream(2, RANDOM_TEST, 0, 0);
+    size_t seen[N_OF(sold)] = {0};
+    for (int i = 0; i < 500; i++) {
+        double x[] = {0.6 * random_uniform(&r), 0.03 * random_uniform(&r)}, before[2];
+        const double wanted[] = {x[0], x[1]};
+        problem_repair(&p, x);
+        for (size_t k = 0; k < 100; k++)
+            assert_true(fabs(x[0] - wanted[0]) <= fabs((double)(k + 1) / 200.0 - wanted[0]) + 1e-15);
+        for (size_t k = 0; k < N_OF(sold); k++)
+            assert_true(fabs(x[1] - wanted[1]) <= fabs(sold[k] - wanted[1]) + 1e-15);
+        memcpy(before, x, sizeof before);
+        x[0] += random_uniform(&r) < 0.5 ? 1e-6 : -1e-6;
+        x[1] += random_uniform(&r) < 0.5 ? 1e-6 : -1e-6;
+        mutate_discrete(&r, &p, before, x);
+        assert_less(fabs(fabs(x[0] - before[0]) - 0.005), 1e-12);
+        assert_true(x[1] != before[1]);
+        seen[steps_nearest(&steps[1], problem_spread(&p, 1, ((double)i + 0.5) / 500.0))]++;
+    }
+    for (size_t k = 0; k < N_OF(sold); k++)
+        assert_int_equal(seen[k], 100);
+}
+
+/* Gaps of 5 mm, five plates; of a study whose designs would differ by less than that at its end. */
+TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
+{
+    write_in_place("steps.ini",
+                   "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 4\n[design]\n"
+                   "gap_zones = 2\nstep_gap_m = 0.005\nstep_thickness_m = 0.008, 0.01, 0.012, 0.015, 0.02\n"
+                   "[search]\ninitial = 20\npopulation = 12\nmax_evals = 120\npolish = 0\n");
+    free(output_of("optimize @/steps.ini --out @/steps --threads 1"));
+    free(output_of("optimize @/steps.ini --out @/steps-2 --threads 2"));
+    char *one = all_of("steps"), *two = all_of("steps-2");
+    assert_string_equal(one, two);
+    Run run = run_of("steps");
+    for (size_t i = 0; i < run.table.n; i++) {
+        const double *x = run_x(&run, i);
+        for (int j = 0; j < 2; j++)
+            assert_true(x[j] == round(200.0 * x[j]) / 200.0);
+        for (int j = 2; j < 4; j++)
+            assert_true(x[j] == 0.008 || x[j] == 0.01 || x[j] == 0.012 || x[j] == 0.015 || x[j] == 0.02);
+        for (size_t k = 0; k < i; k++) {
+            const double *y = run_x(&run, k);
+            assert_true(x[0] != y[0] || x[1] != y[1] || x[2] != y[2] || x[3] != y[3]);
+        }
+    }
+    assert_int_equal(run.table.n, 120);
+    run_free(&run);
+    free(one);
+    free(two);
+    expect(65, "design.step_gap_m: no multiple of 0.9 lies within design.gap_m",
+           "optimize @/steps.ini --out @/no --set design.step_gap_m=0.9");
+    expect(65, "design.step_thickness_m: 0.01 stands behind 0.02; give them in ascending order",
+           "optimize @/steps.ini --out @/no --set 'design.step_thickness_m=0.02, 0.01'");
 }
 
 TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)

@@ -196,6 +196,18 @@ TEST(an_external_simulator_runs_beside_every_rank)
     assert_same_files("steady", "spread");
 }
 
+TEST(constraints_whole_numbers_and_words_have_the_same_bytes_over_ranks)
+{
+    program();
+    write_in_place("bounded.ini",
+                   "[problem]\nkind = external\ncommand = sh tests/worker.sh bounded\nvariables = 3\nobjectives = 2\n"
+                   "lower = 0\nupper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\n"
+                   "max_evals = 60\nthreads = 1\n");
+    free(output_of("optimize @/bounded.ini --out @/bounded"));
+    expect_code(launch(3, "optimize @/bounded.ini --out @/bounded-on-3"), 0);
+    assert_same_files("bounded", "bounded-on-3");
+}
+
 /* One other rank of one thread is one worker: then the order of arrival is that of asking. */
 TEST(asynchronous_with_one_worker_is_the_run_in_batches)
 {

@@ -61,7 +61,8 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     CHECK_OK(sensitivity_find(&s, x, SANITIZED ? 1 : 3, &list, &n, &err), &err);
     for (int j = 0; j < 20; j++)
         assert_true(list[j].slope[MEASURE_J1] == 0 && list[j].error[MEASURE_J1] == 0);
-    assert_same_number(named(list, n, "contact.radius_m")->slope[MEASURE_J3], 0);
+    /* Of a softer contact fewer core modes are kept: sums of other lengths round differently. */
+    assert_at_most(fabs(named(list, n, "contact.radius_m")->slope[MEASURE_J3]), 1e-12);
     const Sensitivity *damping = named(list, n, "building.damping");
     for (int side = 0; side < 2; side++) {
         Settings other = s;

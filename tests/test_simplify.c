@@ -118,9 +118,50 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
     assert_non_null(strstr(said, "stored in the run as design 41"));
     free(said);
     free(output_of("simulate @/s.ini --design @/run:41"));
+    expect(2, "--plates: '0.00001' is no length in mm, as 5 or 5mm, from 0.1 to 10000",
+           "simplify @/run --plates 0.00001");
     expect(2, "--gap-step: 'wide' is no length in mm", "simplify @/run --gap-step wide");
     expect(2, "--keep: j1_m may lose -0.5 of its value", "simplify @/run --keep j1_m=-0.5");
     expect(2, "--plates: give them in ascending order", "simplify @/run --plates 12,8");
+}
+
+TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept_within_2_percent)
+{
+    static const double SOLD[] = {0.008, 0.010, 0.012, 0.015, 0.020, 0.025, 0.030, 0.040, 0.050};
+    free(output_of("simplify @/run --design knee --gap-step 5mm --plates 8,10,12,15,20,25,30,40,50 --keep j1_m=2%"));
+    Run now;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(run_read(&now, path_of("run", path), &err), &err);
+    size_t pair[2], n_stops = 0, n_sold = 0;
+    assert_false(run_simplified(&now, row + 1, pair));
+    assert_true(run_simplified(&now, now.table.n - 1, pair) && pair[0] == row && pair[1] == now.table.n - 1);
+    assert_true(run_simplified(&now, row, pair) && pair[0] == row && pair[1] == now.table.n - 1);
+    const double *x = run_x(&now, pair[1]);
+    for (size_t j = 0; j < 20; j++) {
+        n_stops += x[j] < SIMPLIFY_OPEN_M;
+        assert_less(off_step(x[j], 0.005), 1e-9);
+    }
+    for (size_t j = 20; j < 22; j++)
+        for (size_t i = 0; i < N_OF(SOLD); i++)
+            n_sold += fabs(x[j] - SOLD[i]) < 1e-12;
+    assert_at_most(n_stops, 10);
+    assert_int_equal(n_sold, 2);
+    assert_at_most(run_f(&now, pair[1])[0], 1.02 * run_f(&now, row)[0]);
+    free(output_of("report @/run --design knee"));
+    char *page = read_in_place("run/report.html"), shown[64];
+    snprintf(shown, sizeof shown, "\"pair\":[{\"id\":%ld,", now.table.row[row].id);
+    assert_non_null(strstr(page, shown));
+    free(page);
+    run_free(&now);
+}
+
+TEST(what_stores_nothing_says_so_by_its_status)
+{
+    expect(69, "not stored: on these steps it loses more than may be lost",
+           "simplify @/run --plates 8 --keep j1_m=0.1%");
+    expect(69, "not stored: the design is as simple as it can be",
+           "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0");
 }
 
 int main(void)

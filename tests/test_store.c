@@ -335,7 +335,7 @@ TEST(a_second_signal_ends_at_once)
     const double begun = now_s();
     const pid_t pid = start("deaf.ini", "deaf");
     char path[PATH_MAX];
-    while (access(path_of("deaf/run.sqlite", path), F_OK) != 0 && now_s() < begun + 60)
+    while (access(path_of("deaf/lock", path), F_OK) != 0 && now_s() < begun + 60)
         rest(0.02);
     rest(0.2);
     kill(pid, SIGSTOP);

@@ -6,6 +6,7 @@
 #include <execinfo.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <sqlite3.h>
 
@@ -466,6 +467,8 @@ static void test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_take
     Err err = {0};
     CHECK_OK(store_open(&first, path_of("old", old), 0, &err), &err);
     store_free(first);
+    assert_int_equal(access(old, F_OK), -1); /* no run came of it */
+    assert_int_equal(mkdir(old, 0777), 0);
     assert_int_equal(add_to_run(old, 1, POLISHED, NULL, &err), STATUS_MISSING);
     write_in_place("old/front.csv", "id\n");
     write_in_place("old/run.sqlite", "a run");

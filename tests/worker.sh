@@ -1,4 +1,5 @@
 # A simulator for tests of the JSON lines protocol: f = (x1, x2). Every third request it misbehaves as $1 says.
+# With $1 bounded or unbounded whole numbers x1, x2 in 0..20 and a word: 6 <= x1 <= 15 - x2 as g; $2 gets the requests.
 [ "$1" = unasked ] && echo "welcome to the simulator"
 [ "$1" = deaf ] && exec sleep 60
 while read -r line; do
@@ -11,6 +12,12 @@ while read -r line; do
     x2=${x2%%,*}
     good="{\"id\":$id,\"f\":[$x1,$x2]}"
     [ "$1" = words ] && case $x1 in '"steel"') good="{\"id\":$id,\"f\":[1,$x2]}" ;; '"oak"') good="{\"id\":$id,\"f\":[0,1$x2]}" ;; *) good=no ;; esac
+    case $1 in *bounded)
+        case $x in *'"b"') more=3 ;; *) more=0 ;; esac
+        good="{\"id\":$id,\"f\":[$x1,$((20 - x1 + x2 + more))]"
+        [ -n "$2" ] && echo "$id" >>"$2"
+        [ "$1" = unbounded ] && [ $((id % 3)) -eq 0 ] && good="$good}" || good="$good,\"g\":[$((6 - x1)),$((x1 + x2 - 15))]}" ;;
+    esac
     [ "$1" = steady ] && sleep 0.04
     [ "$1" = uneven ] && if [ $((id % 10)) -eq 0 ]; then sleep 0.1; else sleep 0.005; fi
     [ "$1" = tenth ] && [ $((id % 10)) -eq 0 ] && good="{\"id\":$id,\"error\":\"every tenth\"}"

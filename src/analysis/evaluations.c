@@ -1,14 +1,10 @@
 #include "analysis/evaluations.h"
 
-#include <dirent.h>
-#include <errno.h>
-#include <limits.h>
-#include <sys/stat.h>
-
 #include "analysis/estimate.h"
 #include "base/stat.h"
 #include "base/units.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/settings.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
@@ -38,33 +34,16 @@ Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *e
     return STATUS_OK;
 }
 
-static int is_visible(const struct dirent *e)
+static Status add_of_suite(const char *source, void *user, Err *err)
 {
-    return e->d_name[0] != '.';
+    return evaluations_add(user, source, 1, err);
 }
 
-static int by_name(const struct dirent **a, const struct dirent **b)
+Status evaluations_add_suite(Evaluations *e, const char *suite, Err *err)
 {
-    return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
-}
-
-Status evaluations_add_folder(Evaluations *e, const char *folder, Err *err)
-{
-    struct dirent **names = NULL;
-    Status status = STATUS_OK;
-    const int n = scandir(folder, &names, is_visible, by_name);
-    if (n < 0)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "--records %s: %s", folder, strerror(errno));
-    for (int i = 0; i < n; i++) {
-        char path[PATH_MAX];
-        struct stat there;
-        const int length = snprintf(path, sizeof path, "%s/%s", folder, names[i]->d_name);
-        if (status == STATUS_OK && length < PATH_MAX && (stat(path, &there) != 0 || !S_ISDIR(there.st_mode)))
-            status = evaluations_add(e, path, 1, err);
-        free(names[i]);
-    }
-    free(names);
-    return n > 0 ? status : bad_data(err, "--records %s: is empty", folder);
+    Err why = {0};
+    const Status status = suite_each(suite, add_of_suite, e, &why);
+    return status == STATUS_OK ? STATUS_OK : fail(err, status, "--records %s", why.text);
 }
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */

@@ -2,7 +2,7 @@
  *
  *   record r, intensity l: every case of EVALUATION_CASES, in run[r n_levels + l].result
  *
- * Life cycle  evaluations_add, evaluations_add_folder ... -> evaluations_read -> evaluations_run -> evaluations_free
+ * Life cycle  evaluations_add, evaluations_add_suite ... -> evaluations_read -> evaluations_run -> evaluations_free
  * Threads     tasks of a queue (evaluate/queue.h), threads as search.threads says or ranks of a cluster; the results
  *             do not depend on their number
  * Errors      a record that cannot be read: status and why of it, where it came from a folder; else that of
@@ -67,8 +67,8 @@ size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run);
 
 Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err);
 
-/* Every file of it, sorted by name; folders inside and hidden files are left out. */
-Status evaluations_add_folder(Evaluations *e, const char *folder, Err *err);
+/* Every record of it (motion/suite.h). */
+Status evaluations_add_suite(Evaluations *e, const char *suite, Err *err);
 
 /* Reads every record before anything is simulated. */
 Status evaluations_read(Evaluations *e, const Settings *s, Err *err);

@@ -27,7 +27,8 @@ typedef enum {
     RANDOM_DESCENT,
     RANDOM_IMPORTANCE = 12,
     RANDOM_PROBES = 14,
-    RANDOM_GRAZING
+    RANDOM_GRAZING,
+    RANDOM_MOTION
 } RandomPurpose;
 
 typedef struct {

@@ -5,11 +5,13 @@
 #include "base/list.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "cmd/asked.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/selftest.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "motion/motion.h"
 #include "report/report_json.h"
 #include "scene/frame.h"
@@ -257,15 +259,26 @@ static void scene_json(Check *c, const CheckedScene *p)
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 4, BOUC_WEN = 12;
 enum { CLOSING_SIMULATIONS = 24 };
 
+/* [s] beside the simulations of a search. */
+static double search_seconds(const SearchOptions *o, size_t n_var, size_t n_obj)
+{
+    const double growth = sqrt((double)n_var / VARIABLES);
+    return o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
+}
+
+static long threads_of(const SearchOptions *o)
+{
+    const long here = sysconf(_SC_NPROCESSORS_ONLN);
+    return o->threads > 0 ? o->threads : here > 0 ? here : 1;
+}
+
 /* Wall times [s] of a study: search and baselines beside the simulations, of each_s, and all of it. */
 static void put_times(json_t *study, const CheckedScene *p, long simulations, long threads, double each_s, size_t n_obj)
 {
     const SearchOptions *o = &p->s->search;
     const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
     const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
-    const double growth = sqrt(p->space.n_var / VARIABLES);
-    const double search_s =
-        o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
+    const double search_s = search_seconds(o, p->space.n_var, n_obj);
     const double dearer = !p->building.yields                                ? 1
                           : p->s->building.hysteresis == HYSTERESIS_BOUC_WEN ? BOUC_WEN
                                                                              : YIELDING;
@@ -301,10 +314,8 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
         return;
     if (foundation_lifts(&r))
         warn("core.foundation", uplift_words(&r, text), c);
-    const long here = sysconf(_SC_NPROCESSORS_ONLN), threads = s->search.threads > 0 ? s->search.threads
-                                                               : here > 0            ? here
-                                                                                     : 1;
-    const long records = motion_n_records(&s->motion);
+    const long threads = threads_of(&s->search);
+    const long records = suite_count(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     json_t *study =
         json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%ld",
@@ -312,6 +323,26 @@ static void describe_study(Check *c, const CheckedScene *p, const Problem *probl
                 simulations, threads, r.seconds, r.impacts);
     put_times(study, p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")));
     json_put(c->out, "study=%p", study);
+}
+
+/* A worker that says nothing that can be understood is a fault; what it says of the design may be of this one alone. */
+static void describe_worker(Check *c, const Settings *s, Adapter *a)
+{
+    Err e = {0}, why = {0};
+    Outcome outcome;
+    double each_s;
+    const Problem *p = adapter_problem(a);
+    const long n = s->search.max_evals, threads = threads_of(&s->search);
+    if (!note(c, asked_check(a, c->out, &each_s, &outcome, &why, &e), "problem.command", &e))
+        return;
+    if (outcome == OUTCOME_DEAD || outcome == OUTCOME_TIMEOUT || outcome == OUTCOME_GARBLED)
+        note(c, STATUS_BAD_DATA, "problem.command", &why);
+    else if (outcome != OUTCOME_OK)
+        warn("problem.command", why.text, c);
+    const double search_s = search_seconds(&s->search, p->n_var, p->n_obj);
+    json_put(c->out, "study=%p",
+             json_of("simulations=%ld threads=%ld simulation_s=%g search_s=%g seconds=%g", n, threads, each_s, search_s,
+                     (double)n * each_s / (double)threads + search_s));
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */
@@ -322,6 +353,7 @@ static void open_study(Check *c, const Settings *s, const CheckedScene *p)
     Settings with = *s;
     if (strcmp(s->core.foundation, "fixed") != 0)
         with.sim.forces = FORCES_YES;
+    with.problem.constraints = ASKED_CONSTRAINTS(s);
     if (!note(c, adapter_open(&adapter, &with, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
         return;
     const Schema *schema = adapter_schema(adapter);
@@ -333,6 +365,8 @@ static void open_study(Check *c, const Settings *s, const CheckedScene *p)
             describe_study(c, p, adapter_problem(adapter));
     } else {
         json_put(c->out, "problem=%p", json_of("variables=%ld objectives=%ld", schema->n_var, schema->n_obj));
+        if (s->problem.kind == PROBLEM_EXTERNAL && json_array_size(c->faults) == 0)
+            describe_worker(c, s, adapter);
     }
     adapter_close(adapter);
 }
@@ -462,7 +496,8 @@ const Command CMD_CHECK = {
         "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
         "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"
         "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
-        "samples. --json: the same as an object, faults and warnings as arrays.\n"
+        "samples. An external worker is started and asked one design, twice where it is quick: its answer, its time\n"
+        "and that of the study are printed. --json: the same as an object, faults and warnings as arrays.\n"
         "--ladder: a model with P-delta, ground, yielding storeys, flexible contacts and more is simulated, and again\n"
         "without each of them: what that changes in J1, drift and J3, what it costs, and whether it is needed, by "
         "more\n"

@@ -10,6 +10,7 @@
 #include "cmd/full_model.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "report/gnuplot.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
@@ -49,7 +50,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
                 for (int f = 0; f < IDA_FRACTILES; f++)
                     figure_text(ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]), NAN, NAN, value[f]);
                 snprintf(text, sizeof text, is_one ? "%s" : "%s (%s to %s)", value[1], value[0], value[2]);
-                json_object_set_new(row, measure(order->of[i])->name, json_string(text));
+                json_object_set_new(row, measures_name(order, order->of[i]), json_string(text));
             }
         }
         figures_print(table);
@@ -60,7 +61,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
 static json_t *json_fractiles(const Evaluations *e, EvaluatedCase which, double p)
 {
     json_t *o = json_object();
-    for (int k = 0; k < N_MEASURES; k++) {
+    for (int k = 0; k < MEASURES_LISTED; k++) {
         json_t *list = json_array();
         for (size_t l = 0; l < e->n_levels; l++)
             json_array_append_new(list, json_number(ida_fractile(e, l, which, k, p)));
@@ -319,16 +320,16 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
 
 /* ---- what is evaluated ------------------------------------------------------------------------------------------- */
 
+static Status add_one(const char *source, void *user, Err *err)
+{
+    return evaluations_add(user, source, 0, err);
+}
+
 /* The run's own, where they are now. */
 static Status add_own(Evaluations *e, const Settings *s, const Run *run, Err *err)
 {
-    char path[OPTION_TEXT_MAX];
     TRY(record_paths_check(s, run, err));
-    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
-        TRY(motion_record(&s->motion, i, path, err));
-        TRY(evaluations_add(e, path, 0, err));
-    }
-    return STATUS_OK;
+    return suite_of_study(&s->motion, add_one, e, err);
 }
 
 static Status add_records(const Args *args, Evaluations *e, const Settings *s, const Run *run, Err *err)
@@ -338,7 +339,7 @@ static Status add_records(const Args *args, Evaluations *e, const Settings *s, c
         return add_own(e, s, run, err);
     for (int i = 0; (path = args_next(args, "--record", &i));)
         TRY(evaluations_add(e, path, 0, err));
-    return args_has(args, "--records") ? evaluations_add_folder(e, args_value(args, "--records"), err) : STATUS_OK;
+    return args_has(args, "--records") ? evaluations_add_suite(e, args_value(args, "--records"), err) : STATUS_OK;
 }
 
 /* --pga: one peak is a setting, a range the intensities of an incremental dynamic analysis. */

@@ -70,7 +70,8 @@ static void explain_objectives(const Schema *schema, const char *objectives)
     putchar('\n');
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Measure *m = measure(schema->order.of[k]);
-        printf("%-12s %s [%s], the %s the better\n", m->name, m->what, m->unit, m->sense > 0 ? "less" : "more");
+        printf("%-12s %s [%s], the %s the better\n", schema_objective(schema, k)->name, m->what, m->unit,
+               m->sense > 0 ? "less" : "more");
     }
     if (missing)
         puts(missing);
@@ -140,7 +141,7 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
         figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
     }
     figures_print(table);
-    printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
+    printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit, and over g > 0.\n");
 }
 
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
@@ -149,7 +150,7 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
     size_t rows[NEAREST_MAX];
     const size_t n = run_nearest(run, rows);
     TRY(export_nearest(summary->folder, run, n, rows, err));
-    if (n > 0 && strcmp(run->settings->search.limits, "none") != 0) {
+    if (n > 0 && run_has_limits(run)) {
         printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
                summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
                stop_reason_words(summary->stopped));
@@ -266,7 +267,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     status = study_run(&s, &options, &summary, stderr, err);
     if (telling.has_line)
         fputc('\n', stderr);
-    if (status == STATUS_STOPPED)
+    if (status == STATUS_STOPPED && summary.n_simulated > 0)
         tell_how_to_resume(&summary);
     TRY(status);
     return report(finished, &summary, err);

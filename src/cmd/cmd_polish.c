@@ -1,18 +1,14 @@
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/improve.h"
 #include "cmd/show.h"
-#include "store/run_read.h"
-#include "store/store.h"
-#include "study/named.h"
 #include "study/refine.h"
 #include "settings/options.h"
 
 typedef struct {
-    RunStore *store; /* open from the first look at the design until the better one is in */
-    Run read;
-    const Run *run;
-    size_t row; /* of the design */
+    Improve from;
+    const Run *run; /* of it */
     RefineConfig config;
     Refined result;
 } Work;
@@ -62,26 +58,6 @@ static Status take_options(const Args *args, Work *w, Err *err)
     return STATUS_OK;
 }
 
-static Status take_design(const Args *args, Work *w, Err *err)
-{
-    const char *word = args_value(args, "--design");
-    return word ? design_of_run(w->run, word, &w->row, NULL, err)
-                : misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
-}
-
-static Status open_run(const Args *args, Work *w, Err *err)
-{
-    RecordPaths moved;
-    TRY(run_wanted(args->operand, err));
-    TRY(store_open(&w->store, args->operand, 0, err));
-    TRY(store_read(w->store, &w->read, err));
-    w->run = &w->read;
-    TRY(take_design(args, w, err));
-    TRY(take_options(args, w, err));
-    TRY(args_moved(args, &moved, err));
-    return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
-}
-
 static void put_objectives(json_t *row, const Schema *schema, const char *end, const double values[])
 {
     char name[TABLE_NAME_MAX + 16];
@@ -103,7 +79,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
         const double *values;
     } more[] = {{"_before", start->f}, {"_before_sd", start->sd}, {"_sd", end->sd}, {"_error", r->error}};
     json_t *table = json_array(), *row = figures_row(table);
-    json_put(row, "polished_from=%ld", w->run->table.row[w->row].id);
+    json_put(row, "polished_from=%ld", w->run->table.row[w->from.row].id);
     for (size_t j = 0; j < schema->n_var; j++)
         json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
     put_objectives(row, schema, "", end->f);
@@ -138,61 +114,48 @@ static const char *verdict_of(const Refined *r)
                : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
-static void show_table(const Work *w, long id)
+static void show_table(const Work *w)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
     const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
     const SimOptions *s = &w->run->settings->sim;
     json_t *table = json_array();
-    figures_design(table, "before", w->run->table.row[w->row].id, schema, start->f, r->error, start->sd, start->extra);
+    figures_design(table, "before", w->run->table.row[w->from.row].id, schema, start->f, r->error, start->sd,
+                   start->extra);
     if (r->has_changed)
-        figures_design(table, "polished", id, schema, end->f, r->error, end->sd, end->extra);
+        figures_design(table, "polished", w->from.id, schema, end->f, r->error, end->sd, end->extra);
     figures_print(table);
     if (isfinite(start->sd[0]))
         printf("sd: %s\n", spread_word(s->gap_tolerance_m, &s->uncertain));
 }
 
-static void show(const Work *w, long id)
+static void show(const Work *w)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
-    show_table(w, id);
+    show_table(w);
     printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
            r->seconds);
     for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)
         if (w->config.weight[k] > 0.0)
             show_gain(w, k);
     puts(verdict_of(r));
-    if (id)
-        printf("stored in the run as design %ld.\n", id);
-}
-
-/* It may move the knee of the front, by which other commands name a design: the new one's id. */
-static Status store_better(Work *w, long *id, long *knee, Err *err)
-{
-    Run now;
-    TRY(store_polished(w->store, &w->result.designs.row[1], w->run->tried_to_polish, w->run->polished_at, id, err));
-    if (w->run->n_sessions > 0 && w->run->session[w->run->n_sessions - 1].is_final) /* else its search goes on */
-        TRY(named_simulate(w->store, w->run->settings, NULL, NULL, err));
-    TRY(store_write_front(w->store, &now, err));
-    *knee = now.table.row[run_knee(&now)].id;
-    run_free(&now);
-    return STATUS_OK;
+    improve_say(&w->from);
 }
 
 static Status polish(const Args *args, Work *w, Err *err)
 {
-    long id = 0;
-    TRY(open_run(args, w, err));
-    const long before = w->run->n_front > 0 ? w->run->table.row[run_knee(w->run)].id : 0;
-    long knee = before;
-    TRY(refine_design(w->run, w->row, &w->config, &w->result, err));
+    const char *word = args_value(args, "--design");
+    if (!word)
+        return misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+    TRY(improve_open(&w->from, args, word, err));
+    w->run = &w->from.run;
+    TRY(take_options(args, w, err));
+    TRY(refine_design(w->run, w->from.row, &w->config, &w->result, err));
     if (refined_counts(&w->result))
-        TRY(store_better(w, &id, &knee, err));
-    show(w, id);
-    if (knee != before)
-        printf("%s:knee was design %ld and is now design %ld.\n", w->run->folder, before, knee);
+        TRY(improve_store(&w->from, &w->result.designs.row[1], err));
+    show(w);
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
 
@@ -201,8 +164,7 @@ static Status run(const Args *args, Err *err)
     Work w = {0};
     const Status status = polish(args, &w, err);
     refined_free(&w.result);
-    run_free(&w.read);
-    store_free(w.store);
+    improve_close(&w.from);
     return status;
 }
 

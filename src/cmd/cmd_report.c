@@ -5,6 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "motion/builtin.h"
+#include "motion/suite.h"
 #include "motion/motion_scale.h"
 #include "report/report.h"
 #include "settings/options.h"
@@ -12,27 +13,33 @@
 enum { RECORDS_MAX = 32 };
 
 typedef struct {
-    size_t n;
+    size_t n, n_seen; /* n_seen: records of the run */
     const char *path[RECORDS_MAX];
     char own[RECORDS_MAX][OPTION_TEXT_MAX]; /* those that the run names */
 } Records;
+
+static Status take_own(const char *source, void *user, Err *err)
+{
+    Records *r = user;
+    if (r->n_seen++ == 0 || r->n == RECORDS_MAX)
+        return STATUS_OK;
+    r->path[r->n] = r->own[r->n];
+    return option_put_path(r->own[r->n++], source, err);
+}
 
 /* Those of the command line, else the further ones of the run, else the built-in motions that it did not use. */
 static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
 {
     static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
-    const size_t n = motion_n_records(&run->motion);
+    const size_t n = suite_count(&run->motion);
     for (int i = 0; r->n < RECORDS_MAX && (path = args_next(args, "--record", &i));)
         r->path[r->n++] = path;
     const int is_given = r->n > 0;
     if (r->n == RECORDS_MAX)
         return misused(err, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
-    for (size_t i = 1; i < n && !is_given && r->n < RECORDS_MAX; i++) {
-        TRY(motion_record(&run->motion, i, r->own[r->n], err));
-        r->path[r->n] = r->own[r->n];
-        r->n++;
-    }
+    if (!is_given)
+        TRY(suite_of_study(&run->motion, take_own, r, err));
     for (size_t i = 0; !is_given && n == 1 && i < N_OF(BUILT_IN); i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
             r->path[r->n++] = BUILT_IN[i];

@@ -1,18 +1,16 @@
 #include "base/list.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/improve.h"
 #include "cmd/show.h"
 #include "settings/options.h"
-#include "store/run_read.h"
-#include "store/store.h"
 #include "study/simplify.h"
 
 static const double KEPT = 0.02, KEPT_OTHERS = 0.1;
 
 typedef struct {
-    RunStore *store;
-    Run run;
-    size_t row;
+    Improve from;
+    const Run *run; /* of it */
     SimplifyConfig config;
     Simplified result;
 } Work;
@@ -22,8 +20,8 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
 {
     char *end;
     const double mm = strtod(text, &end);
-    if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm > 0.0 && mm <= 1e4))
-        return misused(err, "%s: '%.40s' is no length in mm, as 5 or 5mm", option, text);
+    if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm >= 0.1 && mm <= 1e4))
+        return misused(err, "%s: '%.40s' is no length in mm, as 5 or 5mm, from 0.1 to 10000", option, text);
     *value = 1e-3 * mm;
     return STATUS_OK;
 }
@@ -46,7 +44,7 @@ static Status take_plates(const char *list, SimplifyConfig *c, Err *err)
 
 static Status take_options(const Args *args, Work *w, Err *err)
 {
-    const Schema *schema = &w->run.schema;
+    const Schema *schema = &w->run->schema;
     SimplifyConfig *c = &w->config;
     for (size_t k = 0; k < schema->n_obj; k++)
         c->slack[k] = args_has(args, "--keep") ? INFINITY : k == 0 ? KEPT : KEPT_OTHERS;
@@ -61,19 +59,6 @@ static Status take_options(const Args *args, Work *w, Err *err)
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-static Status open_run(const Args *args, Work *w, Err *err)
-{
-    RecordPaths moved;
-    const char *word = args_value(args, "--design");
-    TRY(run_wanted(args->operand, err));
-    TRY(store_open(&w->store, args->operand, 0, err));
-    TRY(store_read(w->store, &w->run, err));
-    TRY(design_of_run(&w->run, word ? word : "knee", &w->row, NULL, err));
-    TRY(take_options(args, w, err));
-    TRY(args_moved(args, &moved, err));
-    return record_paths_find(w->run.settings, w->run.provenance, &moved, err);
-}
-
 static void show_path(const Work *w)
 {
     static const char *const WORDS[] = {"as it is", "idle stops gone", "on steps", "moved on steps", "fewer stops"};
@@ -83,7 +68,7 @@ static void show_path(const Work *w)
         char label[64];
         const Evaluation *e = &r->designs.row[i];
         snprintf(label, sizeof label, "%s: %zu", WORDS[i], r->n_stops[i]);
-        figures_design(table, label, 0, &w->run.schema, e->f, r->error[i], e->sd, e->extra);
+        figures_design(table, label, 0, &w->run->schema, e->f, r->error[i], e->sd, e->extra);
     }
     figures_print(table);
     puts("behind the colon: stops that are left");
@@ -92,7 +77,7 @@ static void show_path(const Work *w)
 /* Name and number of every variable, gaps and plates in mm. */
 static void show_design(const Work *w, const double x[])
 {
-    const Schema *s = &w->run.schema;
+    const Schema *s = &w->run->schema;
     putchar('\n');
     for (size_t j = 0; j < s->n_var; j++)
         if ((int)j < s->design.n_gaps && x[j] >= SIMPLIFY_OPEN_M)
@@ -103,34 +88,45 @@ static void show_design(const Work *w, const double x[])
             printf("%-20s %g\n", schema_variable(s, j)->name, x[j]);
 }
 
+/* Whether the end of the path is another design than its start, and keeps what is to be kept. */
+static Status check_end(const Work *w, Err *err)
+{
+    const Simplified *r = &w->result;
+    if (r->loss[r->n - 1] > 1.0)
+        return fail(err, STATUS_UNMET,
+                    "%s: not stored: on these steps it loses more than may be lost, or violates limits: finer steps, "
+                    "more plates or another --keep",
+                    w->run->folder);
+    return memcmp(r->designs.row[r->n - 1].x, r->designs.row[0].x, w->run->schema.n_var * sizeof(double)) == 0
+               ? fail(err, STATUS_UNMET,
+                      "%s: not stored: the design is as simple as it can be "
+                      "(steps, idle stops, --keep)",
+                      w->run->folder)
+               : STATUS_OK;
+}
+
 static Status simplify(const Args *args, Work *w, Err *err)
 {
-    long id = 0;
-    TRY(open_run(args, w, err));
-    TRY(simplify_design(&w->run, w->row, &w->config, &w->result, err));
+    const char *word = args_value(args, "--design");
+    char reason[48];
+    TRY(improve_open(&w->from, args, word ? word : "knee", err));
+    w->run = &w->from.run;
+    TRY(take_options(args, w, err));
+    TRY(simplify_design(w->run, w->from.row, &w->config, &w->result, err));
     const Simplified *r = &w->result;
-    const Evaluation *last = &r->designs.row[r->n - 1];
-    printf("design %ld of %s, %zu designs simulated, %.1f s\n\n", w->run.table.row[w->row].id, w->run.folder,
+    Evaluation *last = &r->designs.row[r->n - 1];
+    printf("design %ld of %s, %zu designs simulated, %.1f s\n\n", w->run->table.row[w->from.row].id, w->run->folder,
            r->n_evaluated, r->seconds);
     show_path(w);
     show_design(w, last->x);
+    putchar('\n');
     if (r->designs.row[0].violation > 0.0)
-        puts("\nThe design violates the limits of its run, and so may what is made of it.");
-    if (r->loss[r->n - 1] > 1.0) {
-        puts("\nNot stored: on these steps it loses more than may be lost, or violates limits: finer steps, more "
-             "plates or "
-             "another --keep.");
-        return STATUS_OK;
-    }
-    if (memcmp(last->x, r->designs.row[0].x, w->run.schema.n_var * sizeof *last->x) == 0) {
-        puts("\nNot stored: nothing was there to be simplified.");
-        return STATUS_OK;
-    }
-    TRY(store_polished(w->store, last, (size_t)w->run.tried_to_polish, (size_t)w->run.polished_at, &id, err));
-    printf("\nstored in the run as design %ld.\n", id);
-    Run now;
-    TRY(store_write_front(w->store, &now, err));
-    run_free(&now);
+        puts("The design violates the limits of its run, and so may what is made of it.");
+    TRY(check_end(w, err));
+    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, w->run->table.row[w->from.row].id);
+    last->reason = reason;
+    TRY(improve_store(&w->from, last, err));
+    improve_say(&w->from);
     return STATUS_OK;
 }
 
@@ -139,8 +135,7 @@ static Status run(const Args *args, Err *err)
     Work w = {0};
     const Status status = simplify(args, &w, err);
     simplified_free(&w.result);
-    run_free(&w.run);
-    store_free(w.store);
+    improve_close(&w.from);
     return status;
 }
 

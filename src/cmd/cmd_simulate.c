@@ -1,6 +1,7 @@
 
 #include "base/json.h"
 #include "base/units.h"
+#include "cmd/asked.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/outputs.h"
@@ -11,6 +12,7 @@
 #include "analysis/sensitivity.h"
 #include "evaluate/tower.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/options.h"
 
 typedef struct {
@@ -270,7 +272,7 @@ static Status show_horizon(const Args *args, Settings *s, const double x[], Err 
 static json_t *describe_slopes(const Sensitivity *s)
 {
     json_t *slopes = json_object();
-    for (int k = 0; k < N_MEASURES; k++)
+    for (int k = 0; k < MEASURES_LISTED; k++)
         if (isfinite(s->slope[k]))
             json_object_set_new(slopes, measure(k)->name, json_of("slope=%g error=%g", s->slope[k], s->error[k]));
     return json_of("parameter=%s value=%g step=%g slopes=%p", s->name, s->value, s->step, slopes);
@@ -350,7 +352,7 @@ static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
     Problem p;
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s->sim.forces = FORCES_YES;
-    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1);
+    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || suite_count(&s->motion) > 1);
     TRY(tower_open(&p, s, job->has_parts ? TOWER_AS_SET : TOWER_SINGLE, job->kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Status status = answer(args, s, &p, job, err);
@@ -365,6 +367,8 @@ static Status run(const Args *args, Err *err)
     TRY(choose_kind(args, &job, err));
     TRY(check_times(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
+    if (s.problem.kind != PROBLEM_TOWER)
+        return asked_simulate(args, &s, err);
     Status status = take_designs(args, &s, &job, err);
     if (status == STATUS_OK)
         status = args_has(args, "--horizon")       ? show_horizon(args, &s, job.designs.x, err)
@@ -413,6 +417,7 @@ const Command CMD_SIMULATE = {
         "per floor from the bottom, then the core's wall in the first and in the last storey [m]. A front.csv will "
         "do,\n"
         "and so will a design of a run: --design results/quick:knee, results/quick:417, results/quick:best_j1_m.\n"
+        "Of a problem that is no tower its simulator is asked, an external worker say, as a study asks it.\n"
         "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
         "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
         "--json gives one object for one design and a list of them for several. Behind +- stands the likely error of "

@@ -7,6 +7,7 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
+#include "motion/suite.h"
 #include "motion/spectrum.h"
 #include "report/gnuplot.h"
 #include "settings/settings.h"
@@ -394,33 +395,53 @@ static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[]
 
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
-static Status open_all(const Args *args, const Settings *settings, Spectrum s[], Err *err)
+typedef struct {
+    const Settings *settings;
+    size_t n, n_max;
+    Spectrum *s; /* (n); NULL: they are only counted */
+} Opened;
+
+static Status open_next(const char *source, void *user, Err *err)
 {
-    for (int k = 0; k < args->n_operands; k++) {
-        MotionOptions o = settings->motion;
-        TRY(option_put_path(o.record, args->operands[k], err));
-        TRY(spectrum_open(&s[k], &o, err));
+    Opened *all = user;
+    MotionOptions o = all->settings->motion;
+    if (!all->s) {
+        all->n++;
+        return STATUS_OK;
     }
+    if (all->n == all->n_max)
+        return bad_data(err, "%s: came while the others were read", source);
+    TRY(option_put_path(o.record, source, err));
+    return spectrum_open(&all->s[all->n++], &o, err);
+}
+
+static Status each_operand(const Args *args, Opened *all, Err *err)
+{
+    all->n = 0;
+    for (int k = 0; k < args->n_operands; k++)
+        TRY(suite_each(args->operands[k], open_next, all, err));
     return STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
 {
     Settings settings;
-    const size_t n = args->n_operands;
+    Opened all = {.settings = &settings};
     settings_defaults(&settings);
     TRY(args_apply(args, &settings, NULL, NULL, err));
     TRY(settings_check(&settings, err));
+    TRY(each_operand(args, &all, err));
+    const size_t n = all.n_max = all.n;
     if (n > 1 && args_has(args, "--history"))
         return misused(err, "--history is of one motion, not of %zu", n);
-    Spectrum *s = calloc(n, sizeof *s);
     Curve *c = calloc(n + 3, sizeof *c);
-    Status status = s && c ? open_all(args, &settings, s, err) : fail_memory(err, n, "motions");
+    all.s = calloc(n, sizeof *all.s);
+    Status status = all.s && c ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
     if (status == STATUS_OK)
-        status = n == 1 ? give_one(args, s, err) : give_all(args, n, s, c, err);
-    for (size_t k = 0; s && k < n; k++)
-        spectrum_close(&s[k]);
-    free(s);
+        status = n == 1 ? give_one(args, all.s, err) : give_all(args, n, all.s, c, err);
+    for (size_t k = 0; all.s && k < n; k++)
+        spectrum_close(&all.s[k]);
+    free(all.s);
     free(c);
     return status;
 }
@@ -443,13 +464,14 @@ const Command CMD_SPECTRUM = {
     .operand = "MOTION...",
     .summary = "response spectrum, peak, duration and Arias intensity of ground motions",
     .example = "imtet spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1",
-    .details = "MOTION is a file (the formats of docs/motions.md) or\n"
-               "builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like. It is taken as recorded unless an "
-               "option\n"
-               "scales it, stretches it, or processes it (--set motion.baseline=linear, motion.highpass_hz=0.1): then "
-               "the\n"
-               "recorded figures stand beside. Several motions: their spectra, the mean, and the code spectrum of\n"
-               "--set 'motion.target=eurocode8 ag=0.3 soil=C'.",
+    .details =
+        "MOTION is a file (the formats of docs/motions.md) or\n"
+        "builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like, or a suite: builtin:suite, a folder, a\n"
+        "file *list.txt. It is taken as recorded unless an option\n"
+        "scales it, stretches it, or processes it (--set motion.baseline=linear, motion.highpass_hz=0.1): then "
+        "the\n"
+        "recorded figures stand beside. Several motions: their spectra, the mean, and the code spectrum of\n"
+        "--set 'motion.target=eurocode8 ag=0.3 soil=C'.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -5,6 +5,7 @@
 #include "cmd/show.h"
 #include "evaluate/measures.h"
 #include "store/run_read.h"
+#include "study/initial_designs.h"
 #include "study/record_paths.h"
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
@@ -233,6 +234,36 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Sett
     if (status != STATUS_OK)
         design_free(d);
     return status;
+}
+
+/* -- of problems that are no tower --------------------------------------------------------------------------------- */
+
+static Status take_row(Designs *d, const char *folder, const char *choice, const Schema *schema, Err *err)
+{
+    Run run;
+    size_t row;
+    TRY(run_read(&run, folder, err));
+    Status status = run_pick(&run, choice ? choice : "knee", &row, err);
+    if (status == STATUS_OK)
+        status = initial_designs_fit(&run, "--design", schema, err);
+    if (status == STATUS_OK)
+        status = copy_row(d, &run, row, err);
+    d->space.n_var = (int)schema->n_var;
+    run_free(&run);
+    return status;
+}
+
+Status designs_of_problem(Designs *d, const char *word, const Schema *schema, Err *err)
+{
+    Place p;
+    *d = (Designs){0};
+    find_place(word, &p);
+    if (p.is_run)
+        return take_row(d, p.path, p.choice, schema, err);
+    TRY(initial_designs_read("--design", p.path, schema, &d->x, &d->n, err));
+    d->space.n_var = (int)schema->n_var;
+    TRY_ROOM(d->line, d->n, "designs", err);
+    return p.choice ? choose_row(d, p.path, p.choice, err) : STATUS_OK;
 }
 
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known,

@@ -38,6 +38,10 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Sett
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known,
                         Known known[], Err *err);
 
+/* The same of a problem that is no tower: a file has a column for every variable, in any order, with words of
+ * choices; one of them is chosen by its row. */
+Status designs_of_problem(Designs *d, const char *word, const Schema *schema, Err *err);
+
 long design_number(const Designs *d, size_t i); /* as the run numbers it, else that of its row, from 1 */
 
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */

@@ -62,7 +62,7 @@ static void add_design(json_t *table, const Job *job, const char *word, size_t i
         snprintf(text, sizeof text, "%.3f %%",
                  100 * relative(measure_value(&job->found.result[REDUCED][i], k),
                                 measure_value(&job->found.result[FULL][i], k)));
-        json_object_set_new(row, measure(k)->name, json_string(text));
+        json_object_set_new(row, measures_name(&job->order, k), json_string(text));
     }
 }
 
@@ -163,7 +163,7 @@ Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
     TRY(check_wishes(args, s, run, err));
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
-    TRY(measures_order(&job.order, s->search.objectives, job.space.n_floors, err));
+    TRY(measures_order(&job.order, s->search.objectives, s->search.limits, job.space.n_floors, err));
     TRY(take_designs(args, run, &job, s, err));
     const Status status = show(args, &job, s, err);
     design_free(&job.designs);

@@ -5,6 +5,7 @@
 #include "base/figure.h"
 #include "base/hypervolume.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/settings.h"
 #include "store/output.h"
 #include "study/progress.h"
@@ -347,7 +348,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
                          (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
     json_t *o =
         json_of("scene=%s outcome=%s reason=%s", SCENES[kind], outcome_word(measure_outcome(r->outcome)), r->reason);
-    for (int k = 0; k < N_MEASURES; k++)
+    for (int k = 0; k < MEASURES_LISTED; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
@@ -360,7 +361,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
 void put_measures(json_t *o, const char *end, const double values[], const char *other, const double others[])
 {
     char name[64];
-    for (int k = 0; k < N_MEASURES; k++) {
+    for (int k = 0; k < MEASURES_LISTED; k++) {
         snprintf(name, sizeof name, "%s%s", measure(k)->name, end);
         json_object_set_new(o, name, json_number(values ? values[k] : NAN));
         snprintf(name, sizeof name, "%s%s", measure(k)->name, other ? other : "");
@@ -373,7 +374,7 @@ void put_measures(json_t *o, const char *end, const double values[], const char 
 static json_t *json_known(const double value[], double times)
 {
     json_t *o = json_object();
-    for (int k = 0; k < N_MEASURES; k++)
+    for (int k = 0; k < MEASURES_LISTED; k++)
         if (isfinite(value[k]))
             json_object_set_new(o, measure(k)->name, json_real(times * value[k]));
     return o;
@@ -389,11 +390,12 @@ void put_errors(json_t *o, const double likely[], const double sd[])
 
 json_t *json_replicates(const ReplicateSummary *r)
 {
-    json_t *mean = json_object(), *sd = json_object();
+    json_t *mean = json_object(), *sd = json_object(), *error = json_object();
+    put_measures(error, "", r->n_failed ? NULL : r->error, NULL, NULL);
     put_measures(mean, "", r->n_failed ? NULL : r->mean, NULL, NULL);
     put_measures(sd, "", r->n_failed ? NULL : r->sd, NULL, NULL);
-    return json_of("n=%ld records=%ld failed=%ld spread=%s rule=%s mean=%p sd=%p", r->n_replicates, r->n_records,
-                   r->n_failed, r->spread, r->rule, mean, sd);
+    return json_of("n=%ld records=%ld failed=%ld spread=%s rule=%s mean=%p sd=%p standard_error=%p", r->n_replicates,
+                   r->n_records, r->n_failed, r->spread, r->rule, mean, sd, error);
 }
 
 void put_replicates(json_t *row, const ReplicateSummary *r)
@@ -435,7 +437,7 @@ static void put_objectives(json_t *row, const MeasureOrder *order, const double 
 {
     for (int i = 0; i < order->n_obj; i++) {
         const int k = order->of[i];
-        figures_put(row, measure(k)->name, value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
+        figures_put(row, measures_name(order, k), value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
     }
 }
 
@@ -467,7 +469,8 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[])
 {
     char label[96];
-    const double *sd = r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]) ? r->sd : NULL;
+    const int by_replicates = r->n_replicates > 1 && isfinite(r->sd[order->of[0]]);
+    const double *sd = by_replicates ? r->sd : r->n_records > 1 ? r->error : NULL;
     json_t *row = figures_row(table);
     if (r->n_failed)
         snprintf(label, sizeof label, "  %zu of its simulations failed: no mean", r->n_failed);
@@ -476,7 +479,8 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
     else
         snprintf(label, sizeof label, "  %s of %zu", r->rule, r->n_replicates);
     if (sd && !r->n_failed)
-        snprintf(label + strlen(label), sizeof label - strlen(label), ", sd %s", r->spread);
+        snprintf(label + strlen(label), sizeof label - strlen(label), by_replicates ? ", sd %s" : ", standard error",
+                 r->spread);
     json_put(row, "=%s", label);
     if (r->n_failed)
         return;
@@ -559,19 +563,43 @@ void warn_on_stderr(const char *key, const char *text, void *user)
     fprintf(stderr, "warning: %s: %s\n", key, text);
 }
 
+typedef struct {
+    const MotionOptions *motion;
+    const char *source;
+    size_t n; /* times that it is there */
+    int is_told;
+    WarnFn warn;
+    void *user;
+} Twice;
+
+static Status count_same(const char *source, void *user, Err *err)
+{
+    Twice *t = user;
+    (void)err;
+    t->n += strcmp(source, t->source) == 0;
+    return STATUS_OK;
+}
+
+static Status tell_twice(const char *source, void *user, Err *err)
+{
+    Twice *t = user;
+    char text[OPTION_TEXT_MAX + 80];
+    t->source = source;
+    t->n = 0;
+    TRY(t->is_told ? STATUS_OK : suite_of_study(t->motion, count_same, t, err));
+    if (t->n < 2)
+        return STATUS_OK;
+    t->is_told = 1;
+    snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", source);
+    t->warn("motion.records", text, t->user);
+    return STATUS_OK;
+}
+
 /* Every record counts as often as it is listed. */
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
-    const MotionOptions *m = &s->motion;
-    char name[OPTION_TEXT_MAX], other[OPTION_TEXT_MAX], text[OPTION_TEXT_MAX + 80];
-    for (size_t i = 1; s->problem.kind == PROBLEM_TOWER && i < motion_n_records(m); i++)
-        for (size_t j = 0; j < i; j++)
-            if (motion_record(m, i, name, NULL) == STATUS_OK && motion_record(m, j, other, NULL) == STATUS_OK &&
-                strcmp(name, other) == 0) {
-                snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", name);
-                warn("motion.records", text, user);
-                return;
-            }
+    if (s->problem.kind == PROBLEM_TOWER)
+        suite_of_study(&s->motion, tell_twice, &(Twice){.motion = &s->motion, .warn = warn, .user = user}, NULL);
 }
 
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user)

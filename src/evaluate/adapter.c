@@ -41,6 +41,8 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
 {
     const Adapter *a = user;
     limits_apply(&a->limits, a->schema.n_obj, e, g);
+    for (size_t c = a->limits.n; c < a->problem.n_con; c++)
+        g[c] = e->extra[c - a->limits.n];
     for (size_t k = 0; k < a->schema.n_obj; k++)
         f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
 }
@@ -72,17 +74,27 @@ static Status open_simulator(Adapter *a, const Settings *s, Err *err)
     return STATUS_OK;
 }
 
-static Status open_all(Adapter *a, const Settings *s, Err *err)
+/* Columns, limits and constraints of the simulator that is open. */
+static Status describe(Adapter *a, const Settings *s, Err *err)
 {
-    TRY(open_simulator(a, s, err));
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
-    a->problem.n_con = a->limits.n;
+    a->problem.n_con = a->limits.n + (t ? 0 : a->schema.n_extra);
     a->problem.judge = judge;
     a->problem.user = a;
     a->problem.is_noisy = schema_is_noisy(s);
     return STATUS_OK;
+}
+
+Status adapter_constrain(Adapter *a, long n, Err *err)
+{
+    if (a->problem.recipe != &a->recipe)
+        return STATUS_OK;
+    a->recipe.settings.problem.constraints = n;
+    external_constrain(&a->problem, n);
+    schema_free(&a->schema);
+    return describe(a, &a->recipe.settings, err);
 }
 
 Status adapter_open(Adapter **out, const Settings *s, Err *err)
@@ -91,7 +103,9 @@ Status adapter_open(Adapter **out, const Settings *s, Err *err)
     Adapter *a;
     TRY_ROOM(a, 1, "a problem", err);
     a->threads = (int)threads_wanted(s->search.threads);
-    const Status status = open_all(a, s, err);
+    Status status = open_simulator(a, s, err);
+    if (status == STATUS_OK)
+        status = describe(a, s, err);
     if (status == STATUS_OK)
         *out = a;
     else

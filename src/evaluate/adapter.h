@@ -24,5 +24,9 @@ const Schema *adapter_schema(const Adapter *a);
 const Tower *adapter_tower(const Adapter *a); /* NULL: it is another problem */
 int adapter_threads(const Adapter *a);
 
+/* From now on the answers of an external problem have n constraint values: columns g_1 to g_n, each <= 0 where it is
+ * kept. Of other problems nothing changes. */
+Status adapter_constrain(Adapter *a, long n, Err *err);
+
 /* Copied; at first there is none. */
 void adapter_observe(Adapter *a, const Observer *observer);

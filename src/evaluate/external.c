@@ -50,6 +50,7 @@ typedef struct {
 typedef struct {
     char *words[WORDS_MAX + 1], *text; /* the command, NULL at its end */
     size_t n_var, n_obj, n_workers, part_size;
+    long n_con; /* below 0: any number */
     double timeout_s;
     double *lower, *upper; /* (n_var) */
     VariableKind *kind;    /* (n_var) NULL: all are real */
@@ -223,18 +224,28 @@ static void send_more(Worker *w)
         w->n_sent = w->n_request; /* nobody reads: the end of its output tells */
 }
 
-/* f of an answer into F; 0 where it is not n_obj finite numbers. */
-static int take_objectives(const External *e, const json_t *list, double f[])
+/* 0: they are not all finite numbers. */
+static int take_numbers(const json_t *list, double values[])
 {
-    if (json_array_size(list) != e->n_obj)
-        return 0;
-    for (size_t k = 0; k < e->n_obj; k++) {
+    for (size_t k = 0; k < json_array_size(list); k++) {
         const json_t *value = json_array_get(list, k);
-        f[k] = json_is_number(value) ? json_number_value(value) : NAN;
-        if (!isfinite(f[k]))
+        values[k] = json_is_number(value) ? json_number_value(value) : NAN;
+        if (!isfinite(values[k]))
             return 0;
     }
     return 1;
+}
+
+static int take_objectives(const External *e, const json_t *list, double f[])
+{
+    return json_array_size(list) == e->n_obj && take_numbers(list, f);
+}
+
+/* How many there should be is known where answers meet: combine. No g is none. */
+static int take_constraints(const json_t *list, ExternalAnswer *a, double g[])
+{
+    a->n_con = json_array_size(list);
+    return !list || (json_is_array(list) && a->n_con <= CONSTRAINTS_MAX && take_numbers(list, g));
 }
 
 /* What Python, C and others print for numbers that are none (NaN, -Infinity, inf) is no JSON: a word outside strings
@@ -283,6 +294,8 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
         settle(e, w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
     else if (!take_objectives(e, f, w->answer->f))
         settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+    else if (!take_constraints(json_object_get(o, "g"), w->answer, w->answer->f + e->n_obj))
+        settle(e, w, OUTCOME_NOT_FINITE, 0, "g is not a list of at most %d finite numbers", CONSTRAINTS_MAX);
     else
         settle(e, w, OUTCOME_OK, 0, "%s", "");
     json_decref(o);
@@ -385,9 +398,18 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
 {
     (void)n;
+    const External *e = p->self;
     const ExternalAnswer *a = parts;
+    char reason[REASON_MAX];
     evaluation_set_outcome(evaluation, a->outcome, a->reason);
     memcpy(evaluation->f, a->f, p->n_obj * sizeof *a->f);
+    if (a->outcome == OUTCOME_OK && e->n_con >= 0 && a->n_con != (size_t)e->n_con) {
+        snprintf(reason, sizeof reason, "g has %zu values and not %ld as in the first answer of the run", a->n_con,
+                 e->n_con);
+        evaluation_set_outcome(evaluation, OUTCOME_NOT_FINITE, reason);
+    } else if (a->outcome == OUTCOME_OK && a->n_con > 0) {
+        memcpy(evaluation->extra, a->f + p->n_obj, a->n_con * sizeof *a->f);
+    }
     evaluation->seconds = a->seconds;
     evaluation->replicates = 1;
 }
@@ -503,7 +525,7 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
     TRY_ROOM(e, 1, "a set of workers", err);
     e->n_var = o->variables;
     e->n_obj = o->objectives;
-    e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);
+    e->part_size = sizeof(ExternalAnswer) + (e->n_obj + CONSTRAINTS_MAX) * sizeof(double);
     e->timeout_s = o->timeout_s;
     const Status status = create(e, o, n_workers, err);
     if (status != STATUS_OK) {
@@ -520,5 +542,13 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .n_parts = 1,
                    .part_size = e->part_size,
                    .n_workers = e->n_workers};
+    external_constrain(p, o->constraints);
     return STATUS_OK;
+}
+
+void external_constrain(Problem *p, long n)
+{
+    External *e = p->self;
+    e->n_con = n;
+    p->n_extra = n < 0 ? CONSTRAINTS_MAX : (size_t)n;
 }

@@ -21,18 +21,6 @@ int kinds_are_real(const char *list)
     return 1;
 }
 
-/* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
-static int is_plain(const char *word, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        if ((unsigned char)word[i] < ' ' || word[i] == '"' || word[i] == '\\' || word[i] == 127)
-            return 0;
-    json_t *text = json_stringn(word, n);
-    const int is_text = text != NULL;
-    json_decref(text);
-    return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
-}
-
 /* Word i of "choice:a|b|c"; 0: there is none, or it is too long. */
 static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
 {
@@ -40,7 +28,7 @@ static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
     for (; at && i > 0; i--)
         at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
     const size_t n = at ? strcspn(at, "|") : 0;
-    if (n == 0 || n >= KIND_WORD_MAX || !is_plain(at, n))
+    if (n == 0 || n >= KIND_WORD_MAX)
         return 0;
     memcpy(word, at, n);
     word[n] = 0;
@@ -64,6 +52,19 @@ int kinds_number(const char *list, size_t j, const char *word, double *number)
     return 0;
 }
 
+/* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
+static int is_plain(const char *word)
+{
+    const size_t n = strlen(word);
+    for (size_t i = 0; i < n; i++)
+        if ((unsigned char)word[i] < ' ' || word[i] == '"' || word[i] == '\\' || word[i] == 127)
+            return 0;
+    json_t *text = json_stringn(word, n);
+    const int is_text = text != NULL;
+    json_decref(text);
+    return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
+}
+
 static Status read_choice(const char *item, double *upper, Err *err)
 {
     char word[KIND_WORD_MAX];
@@ -71,14 +72,13 @@ static Status read_choice(const char *item, double *upper, Err *err)
     size_t n = 0, bars = 0;
     for (const char *c = item; *c; c++)
         bars += *c == '|';
-    for (; word_at(item, n, word); n++)
+    for (; word_at(item, n, word) && is_plain(word); n++)
         if (kinds_number(item, 0, word, &first) && first < n)
             return bad_data(err, "problem.kinds: %s names %s twice", item, word);
     if (n != bars + 1)
         return bad_data(err,
                         "problem.kinds: %s: word %zu is empty, longer than %d letters, begins or ends with a blank, "
-                        "begins with one of = + - @, or "
-                        "holds a quote or what is no text",
+                        "begins with one of = + - @, or holds a quote or what is no text",
                         item, n + 1, KIND_WORD_MAX - 1);
     *upper = (double)(n - 1);
     return STATUS_OK;

@@ -5,7 +5,8 @@
 /* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
 static const char *take_name(const char *text, char name[])
 {
-    const char *relation = strpbrk(text, "<>");
+    const size_t inside = strncmp(text, "p(", 2) == 0 ? strcspn(text, ")") : 0;
+    const char *relation = strpbrk(text + inside, "<>");
     if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
         return NULL;
     snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);

@@ -8,7 +8,12 @@ static const Measure MEASURES[N_MEASURES] = {
 #define X(id, name, unit, sense, needs, value, what) {name, unit, sense, needs, what},
     MEASURE_LIST(X)
 #undef X
-};
+#define CHANCE                                                                                                         \
+    {                                                                                                                  \
+        "p", "-", 1, NEEDS_NOTHING, "share of the simulations that exceed a limit"                                     \
+    }
+        CHANCE,
+    CHANCE, CHANCE, CHANCE};
 
 const Measure *measure(int k)
 {
@@ -18,6 +23,8 @@ const Measure *measure(int k)
 double measure_value(const SimResult *r, int k)
 {
     const unsigned needs = MEASURES[k].needs;
+    if (k >= MEASURES_LISTED)
+        return r->chance[k - MEASURES_LISTED];
     if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known) ||
         ((needs & NEEDS_YIELDING) && !r->yields))
         return NAN;
@@ -27,7 +34,7 @@ double measure_value(const SimResult *r, int k)
         return value;
         MEASURE_LIST(X)
 #undef X
-    case N_MEASURES:
+    case MEASURES_LISTED:
         break;
     }
     return NAN;
@@ -99,19 +106,6 @@ const char *measures_missing(const MeasureOrder *order, const char *objectives, 
                : NULL;
 }
 
-MeasureSet measures_limited(const char *limits)
-{
-    MeasureSet set = 0;
-    char text[128];
-    for (size_t i = 0; i < list_count(limits); i++)
-        for (int k = 0; list_item(limits, i, text, sizeof text) && k < N_MEASURES; k++) {
-            const size_t n = strcspn(text, "<> \t");
-            if (strncmp(text, MEASURES[k].name, n) == 0 && MEASURES[k].name[n] == 0)
-                set |= (MeasureSet)1 << k;
-        }
-    return set;
-}
-
 void measures_settle(SimResult *r, MeasureSet set)
 {
     for (int k = 0; k < N_MEASURES && r->outcome == RUN_OK; k++) {
@@ -129,6 +123,59 @@ void measures_settle(SimResult *r, MeasureSet set)
 
 /* -- objectives ---------------------------------------------------------------------------------------------------- */
 
+/* A listed measure of that name of n characters; MEASURES_LISTED: none. */
+static int find(const char *name, size_t n)
+{
+    int k = 0;
+    while (k < MEASURES_LISTED && (strncmp(MEASURES[k].name, name, n) != 0 || MEASURES[k].name[n] != 0))
+        k++;
+    return k;
+}
+
+const char *measures_name(const MeasureOrder *order, int k)
+{
+    return k < MEASURES_LISTED ? MEASURES[k].name : order->chance[k - MEASURES_LISTED].name;
+}
+
+void measures_chances(const MeasureOrder *order, SimResult *r)
+{
+    for (int i = 0; i < CHANCES_MAX && order->chance[i].name[0]; i++) {
+        const Chance *c = &order->chance[i];
+        r->chance[i] = c->sign * (measure_value(r, c->of) - c->bound) > 0;
+    }
+}
+
+/* "p(NAME>NUMBER)" to *k, a measure of the order; another text says so. */
+static Status take_chance(MeasureOrder *o, const char *text, int *k, Err *err)
+{
+    Chance c = {0};
+    size_t length = 0;
+    char *end = NULL;
+    for (const char *t = text; *t && length + 1 < sizeof c.name; t++)
+        if (*t != ' ' && *t != '\t')
+            c.name[length++] = *t;
+    const char *name = c.name + 2, *relation = strpbrk(c.name, "<>");
+    c.of = relation ? find(name, (size_t)(relation - name)) : MEASURES_LISTED;
+    c.bound = relation ? strtod(relation + 1, &end) : NAN;
+    if (c.of == MEASURES_LISTED || end == relation + 1 || strcmp(end, ")") != 0 || !isfinite(c.bound))
+        return bad_data(err, "search.objectives or search.limits: '%.60s' is no p(NAME>NUMBER) with a column as NAME",
+                        text);
+    c.sign = *relation == '>' ? 1 : -1;
+    for (*k = 0; *k < CHANCES_MAX && o->chance[*k].name[0] && strcmp(o->chance[*k].name, c.name) != 0;)
+        ++*k;
+    if (*k == CHANCES_MAX)
+        return bad_data(err, "search.objectives and search.limits: more than %d probabilities", CHANCES_MAX);
+    o->chance[*k] = c;
+    o->judged |= (MeasureSet)1 << c.of;
+    *k += MEASURES_LISTED;
+    return STATUS_OK;
+}
+
+static int is_chance(const char *text)
+{
+    return strncmp(text, "p(", 2) == 0;
+}
+
 static void add_objective(MeasureOrder *o, int k)
 {
     o->of[o->n_obj++] = k;
@@ -137,17 +184,34 @@ static void add_objective(MeasureOrder *o, int k)
 
 static Status take_objective(MeasureOrder *o, const char *name, Err *err)
 {
-    const char *names[N_MEASURES];
-    int k = 0;
-    while (k < N_MEASURES && strcmp(MEASURES[k].name, name) != 0)
-        k++;
-    for (int i = 0; i < N_MEASURES; i++)
+    const char *names[MEASURES_LISTED];
+    int k = find(name, strlen(name));
+    for (int i = 0; i < MEASURES_LISTED; i++)
         names[i] = MEASURES[i].name;
-    if (k == N_MEASURES)
-        return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, N_MEASURES);
+    if (is_chance(name))
+        TRY(take_chance(o, name, &k, err));
+    if (k == MEASURES_LISTED && !is_chance(name))
+        return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, MEASURES_LISTED);
     if (o->objectives >> k & 1)
         return bad_data(err, "search.objectives: %s stands there twice", name);
     add_objective(o, k);
+    return STATUS_OK;
+}
+
+/* What stands before the relation of every limit; limits.c reads the rest. */
+static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
+{
+    char text[128];
+    for (size_t i = 0; i < list_count(limits); i++) {
+        if (!list_item(limits, i, text, sizeof text))
+            continue;
+        const size_t inside = is_chance(text) ? strcspn(text, ")") : 0, n = inside + strcspn(text + inside, "<> \t");
+        int k = find(text, n);
+        text[n] = 0;
+        if (is_chance(text))
+            TRY(take_chance(o, text, &k, err));
+        o->limited |= k == MEASURES_LISTED && !is_chance(text) ? 0 : (MeasureSet)1 << k;
+    }
     return STATUS_OK;
 }
 
@@ -162,7 +226,7 @@ static Status take_list(MeasureOrder *o, const char *list, Err *err)
     return STATUS_OK;
 }
 
-Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err)
+Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
 {
     const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
     *out = (MeasureOrder){0};
@@ -171,9 +235,12 @@ Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, E
             add_objective(out, k);
     if (!is_auto && !is_paper)
         TRY(take_list(out, objectives, err));
-    for (int k = 0, n = out->n_obj; k < N_MEASURES; k++)
-        if (!(out->objectives >> k & 1))
-            out->of[n++] = k;
+    TRY(take_limits(out, limits, err));
+    out->judged |= out->objectives | out->limited;
+    out->n = out->n_obj;
+    for (int k = 0; k < N_MEASURES; k++)
+        if (!(out->objectives >> k & 1) && (k < MEASURES_LISTED || (out->limited >> k & 1)))
+            out->of[out->n++] = k;
     return STATUS_OK;
 }
 

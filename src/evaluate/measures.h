@@ -75,14 +75,33 @@ enum {
     X(RESIDUAL_DRIFT, "residual_drift_ratio", "-", 1, NEEDS_YIELDING, r->residual_drift_ratio,                         \
       "largest drift of the state of rest over the height of its storey")                                              \
     X(HYSTERESIS, "ed_hysteresis_pct", "%", 1, NEEDS_YIELDING, r->ed_hysteresis_pct,                                   \
-      "share of the input dissipated by storeys that yield")
+      "share of the input dissipated by storeys that yield")                                                           \
+    X(DEVICES, "devices", "-", 1, NEEDS_NOTHING, (double)r->n_devices,                                                 \
+      "stops, links and tuned masses that a design has")                                                               \
+    X(DEVICE_FORCE, "device_force_max_n", "N", 1, NEEDS_NOTHING, r->dashpot_n,                                         \
+      "largest force of a link or tuned mass")                                                                         \
+    X(DEVICE_STROKE, "device_stroke_max_m", "m", 1, NEEDS_NOTHING, r->stroke_m,                                        \
+      "largest stroke of a link or tuned mass")                                                                        \
+    X(DEVICE_SHARE, "ed_devices_pct", "%", -1, NEEDS_NOTHING, r->ed_devices_pct,                                       \
+      "share of the input dissipated by links and the tuned mass")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,
     MEASURE_LIST(X)
 #undef X
-        N_MEASURES
+        MEASURES_LISTED
 } MeasureId;
+
+/* Behind those of the list, only where search.objectives or search.limits name them: chances p(NAME>NUMBER) or
+ * p(NAME<NUMBER), of a simulation 1 where that is so and else 0, so that their mean over all records and replicates is
+ * a probability, whatever sim.robust says. */
+enum { N_MEASURES = MEASURES_LISTED + CHANCES_MAX };
+
+typedef struct {
+    char name[48];      /* as it was written, without blanks; empty: there is none */
+    int of;             /* measure */
+    double sign, bound; /* sign (value - bound) > 0 */
+} Chance;
 
 enum { PAPER_OBJECTIVES = MEASURE_MCORE + 1 };
 
@@ -118,22 +137,28 @@ unsigned measures_need(MeasureSet set);
 /* Does a scene have what every measure of the set needs? STATUS_BAD_DATA: which lacks what, and what to set. */
 Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err);
 
-/* The objectives in the order in which they are searched for, then all the others in the order of the table. */
+/* The objectives in the order in which they are searched for, then all the others in the order of the table, then
+ * chances that are limited alone. */
 typedef struct {
-    int n_obj, of[N_MEASURES];
-    MeasureSet objectives;
+    int n, n_obj, of[N_MEASURES];
+    MeasureSet objectives, limited;
+    MeasureSet judged; /* both, with what their chances are of */
+    Chance chance[CHANCES_MAX];
 } MeasureOrder;
 
+const char *measures_name(const MeasureOrder *order, int k); /* of measure k, a chance too: its column */
+
+/* chance of r by the other numbers of it. */
+void measures_chances(const MeasureOrder *order, SimResult *r);
+
 /* objectives, of search.objectives: a comma list of names; auto: those of the paper that a building of n_floors has
- * (n_floors 0: any); paper: all seven. Errors: STATUS_BAD_DATA, a name that is none or stands there twice. */
-Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err);
+ * (n_floors 0: any); paper: all seven. limits, of search.limits: words that are no measures are passed over. Errors:
+ * STATUS_BAD_DATA, a name that is none or stands there twice, more than CHANCES_MAX chances. */
+Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err);
 
 /* What a building of n_floors does not have of the objectives, in words: left out by `auto`, or asked for all the same;
  * NULL: it has all. */
 const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors);
-
-/* Those that search.limits limits; words that are no measures are passed over. */
-MeasureSet measures_limited(const char *limits);
 
 /* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has
  * none fails with its reason. */

@@ -2,8 +2,8 @@
  *
  *   minimise f(x),  g(x) <= 0,  lower <= x <= upper
  *
- * A variable is real; real, and searched on the scale of its logarithm; a whole number; or a choice, whose numbers
- * 0, 1, ... stand for words and have no order.
+ * A variable is real; real, and searched on the scale of its logarithm; a whole number; a choice, whose numbers 0, 1,
+ * ... stand for words and have no order; or one of the values that are sold.
  *
  * One design is n_parts simulations (replicates under every record, say), each a task that any worker can do:
  *
@@ -25,7 +25,16 @@
 typedef struct Queue Queue;
 typedef struct Problem Problem;
 
-typedef enum { VARIABLE_REAL, VARIABLE_LOG, VARIABLE_WHOLE, VARIABLE_CHOICE } VariableKind;
+enum { CONSTRAINTS_MAX = 100 }; /* that a simulator may answer, beside the user's limits */
+
+typedef enum { VARIABLE_REAL, VARIABLE_LOG, VARIABLE_WHOLE, VARIABLE_CHOICE, VARIABLE_STEPPED } VariableKind;
+
+/* Values that are sold, ascending: those of a list, or multiples of a step. */
+typedef struct {
+    size_t n;
+    const double *at;   /* (n) NULL: (first + i) step */
+    double first, step; /* first: a whole number; step: 1e-4 at least */
+} Steps;
 
 /* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
 typedef struct {
@@ -81,10 +90,11 @@ struct Problem {
     size_t n_var, n_obj, n_con, n_extra;
     const double *lower, *upper; /* (n_var) whole ones of whole numbers; of a choice 0 and the last word */
     const VariableKind *kind;    /* (n_var) NULL: all are real */
-    RepairFn repair;             /* NULL: the box is all */
-    JudgeFn judge;               /* NULL: f as it is, and no g */
-    const void *user;            /* of judge */
-    int is_noisy;                /* the same design evaluated again gives another answer */
+    const Steps *steps; /* (n_var) of those that are VARIABLE_STEPPED, whose bounds are the ends; NULL: none is */
+    RepairFn repair;    /* NULL: the box is all */
+    JudgeFn judge;      /* NULL: f as it is, and no g */
+    const void *user;   /* of judge */
+    int is_noisy;       /* the same design evaluated again gives another answer */
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
@@ -121,11 +131,28 @@ static inline int problem_is_discrete(const Problem *p, size_t d)
     return problem_kind(p, d) >= VARIABLE_WHOLE;
 }
 
+static inline double steps_at(const Steps *s, size_t i)
+{
+    return s->at ? s->at[i] : round(1e9 * (s->first + (double)i) * s->step) / 1e9; /* 0.415 as it is read */
+}
+
+static inline size_t steps_nearest(const Steps *s, double x)
+{
+    size_t i = 0;
+    if (!s->at)
+        return (size_t)fmin(fmax(round(x / s->step) - s->first, 0.0), (double)(s->n - 1));
+    while (i + 1 < s->n && x > 0.5 * (s->at[i] + s->at[i + 1]))
+        i++;
+    return i;
+}
+
 /* Into the set of designs that can be built; 0 has no sign, as in the run that it is stored in. */
 static inline void problem_repair(const Problem *p, double x[])
 {
     for (size_t d = 0; d < p->n_var; d++) {
-        if (problem_is_discrete(p, d))
+        if (problem_kind(p, d) == VARIABLE_STEPPED)
+            x[d] = steps_at(&p->steps[d], steps_nearest(&p->steps[d], x[d]));
+        else if (problem_is_discrete(p, d))
             x[d] = fmin(fmax(round(x[d]), p->lower[d]), p->upper[d]);
         x[d] += 0.0;
     }
@@ -163,10 +190,12 @@ static inline void problem_from_cube(const Problem *p, const double u[], double 
         x[d] = problem_from_unit(p, d, u[d]);
 }
 
-/* Variable d at 0 <= u <= 1 of an even spread: every whole number and every word has the same share. */
+/* Variable d at 0 <= u <= 1 of an even spread: every whole number, word and value that is sold has the same share. */
 static inline double problem_spread(const Problem *p, size_t d, double u)
 {
     const double lower = p->lower[d], upper = p->upper[d];
+    if (problem_kind(p, d) == VARIABLE_STEPPED)
+        return steps_at(&p->steps[d], (size_t)fmin(u * (double)p->steps[d].n, (double)(p->steps[d].n - 1)));
     return problem_is_discrete(p, d) ? fmin(floor(lower + u * (upper - lower + 1.0)), upper)
                                      : problem_from_unit(p, d, u);
 }

@@ -6,7 +6,7 @@
 enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that the settings allow */
 
 /* Streams of the random numbers. */
-enum { OF_GAPS, OF_STRUCTURE, OF_LEFT_GAPS };
+enum { OF_GAPS, OF_STRUCTURE, OF_LEFT_GAPS, OF_BOOTSTRAP };
 
 static void change_gaps(Random random, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
@@ -64,7 +64,8 @@ typedef struct {
     const char *parts;
     size_t size;
     int measure;
-    size_t first; /* simulation of the record */
+    size_t first;        /* simulation of the record */
+    const size_t *drawn; /* (n_records) records in the place of those; NULL: themselves */
 } Sample;
 
 static size_t part_of(const ReplicatePlan *plan, size_t i)
@@ -75,12 +76,24 @@ static size_t part_of(const ReplicatePlan *plan, size_t i)
 /* Simulation i in the order of the records, then of their replicates. */
 static const Measured *simulation(const Sample *s, size_t i)
 {
+    const size_t n = s->plan->n_replicates;
+    i = s->drawn ? s->drawn[i / n] * n + i % n : i;
     return (const Measured *)(const void *)(s->parts + part_of(s->plan, i) * s->size);
 }
 
 static double value_of(const Sample *s, size_t i)
 {
     return simulation(s, s->first + i)->value[s->measure];
+}
+
+/* v (n) sorted by sense: the first are the worst. */
+static double mean_of_worst(double share, double sense, size_t n, const double v[])
+{
+    const double wanted = fmax(share * (double)n, 1.0);
+    double sum = 0.0;
+    for (size_t i = 0; i < n && (double)i < wanted; i++)
+        sum += fmin(wanted - (double)i, 1.0) * v[sense > 0 ? n - 1 - i : i];
+    return sum / wanted;
 }
 
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd)
@@ -90,6 +103,8 @@ double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v
     if (plan->rule == ROBUST_MEAN_PLUS_SD || !isfinite(mean))
         return isfinite(*sd) ? mean + sense * *sd : mean;
     sort_values(n, v);
+    if (plan->rule == ROBUST_CVAR)
+        return mean_of_worst(1.0 - plan->quantile, sense, n, v);
     const double place = (sense > 0 ? plan->quantile : 1 - plan->quantile) * (double)(n - 1);
     const size_t below = (size_t)place, above = below + 1 < n ? below + 1 : below;
     return v[below] + (place - (double)below) * (v[above] - v[below]);
@@ -128,9 +143,45 @@ static void combine_records(Sample *s, double *value, double *sd)
     s->first = 0;
 }
 
+static void combine_measure(Sample *s, int k, double *value, double *sd)
+{
+    const Robust rule = s->plan->rule;
+    const ReplicatePlan mean = {s->plan->n_records, s->plan->n_replicates, ROBUST_MEAN_PLUS_SD, 0, NULL};
+    double v[PARTS_MAX];
+    s->measure = k;
+    s->first = 0;
+    if (k < MEASURES_LISTED) {
+        (rule == ROBUST_WORST || rule == ROBUST_MEAN ? combine_records : combine_all)(s, value, sd);
+        return;
+    }
+    for (size_t i = 0; i < mean.n_records * mean.n_replicates; i++)
+        v[i] = value_of(s, i);
+    mean_and_sd_of(mean.n_records * mean.n_replicates, v, value, sd);
+}
+
+void replicates_errors(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
+{
+    size_t drawn[TOWER_RECORDS_MAX];
+    double sum[N_MEASURES] = {0}, squares[N_MEASURES] = {0}, value, sd;
+    Sample sample = {.plan = plan, .parts = parts, .size = size, .drawn = drawn};
+    for (size_t b = 0; b < BOOTSTRAP && plan->n_records > 1; b++) {
+        Random random = random_stream(0, RANDOM_REPLICATE, OF_BOOTSTRAP, (uint32_t)b);
+        for (size_t r = 0; r < plan->n_records; r++)
+            drawn[r] = random_below(&random, plan->n_records);
+        for (int k = 0; k < N_MEASURES; k++) {
+            combine_measure(&sample, k, &value, &sd);
+            sum[k] += value - out->mean[k];
+            squares[k] += (value - out->mean[k]) * (value - out->mean[k]);
+        }
+    }
+    for (int k = 0; k < N_MEASURES; k++)
+        out->error[k] =
+            plan->n_records > 1 ? sqrt(fmax(squares[k] - sum[k] * sum[k] / BOOTSTRAP, 0) / (BOOTSTRAP - 1)) : NAN;
+}
+
 void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
 {
-    static const char *const RULES[] = {"worst", "mean", "mean + sd", "quantile"};
+    static const char *const RULES[] = {"worst", "mean", "mean + sd", "cvar", "quantile"};
     const int is_mean = plan->rule == ROBUST_WORST && plan->n_records == 1;
     Sample sample = {.plan = plan, .parts = parts, .size = size};
     *out = (ReplicateSummary){.rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
@@ -146,7 +197,8 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
             out->n_failed++;
         }
     }
-    const int has_records = plan->rule == ROBUST_WORST || plan->rule == ROBUST_MEAN;
-    for (sample.measure = 0; sample.measure < N_MEASURES; sample.measure++)
-        (has_records ? combine_records : combine_all)(&sample, &out->mean[sample.measure], &out->sd[sample.measure]);
+    for (int k = 0; k < N_MEASURES; k++) {
+        combine_measure(&sample, k, &out->mean[k], &out->sd[k]);
+        out->error[k] = NAN;
+    }
 }

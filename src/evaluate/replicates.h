@@ -11,6 +11,13 @@
  *   mean            mean over the records, with the root mean square of their deviations
  *   mean_plus_sd    all replicates of all records: mean and standard deviation on the bad side of it
  *   quantile        of all replicates of all records, on the bad side, linear between ranks
+ *   cvar            conditional value at risk: mean of the worst share of all replicates of all records, the last of
+ *                   them counted in part (Rockafellar and Uryasev, J. Risk 2 (2000) 21-41)
+ *   chances         (evaluate/measures.h) mean and deviation of all, by every rule
+ *
+ * Standard errors of these numbers, of records drawn from those that could come, are by the bootstrap: standard deviation
+ * over BOOTSTRAP suites of as many records, drawn with replacement by a stream of their own; of one record NAN
+ * (Efron, Ann. Statist. 7 (1979) 1-26). That of the worst is a lower bound, for no suite has a worse record.
  *
  * Two standard deviations that differ by orders of magnitude have two names. Predictability: no tolerance, nothing
  * uncertain; replicates differ by chaos alone (after some hundreds of impacts even the smallest change may have made
@@ -22,7 +29,7 @@
 #include "evaluate/measures.h"
 #include "sim/as_built.h"
 
-enum { TOWER_RECORDS_MAX = 16 }; /* of one design */
+enum { TOWER_RECORDS_MAX = 64 }; /* of one design */
 
 /* Small against anything that could be built. */
 static const double REPLICATE_CHANGE = 1e-8;
@@ -42,7 +49,7 @@ const char *spread_word(double tolerance_m, const UncertainOptions *u);
 typedef struct {
     size_t n_records, n_replicates;
     Robust rule;
-    double quantile;    /* of ROBUST_QUANTILE */
+    double quantile;    /* of ROBUST_QUANTILE; of ROBUST_CVAR: where its tail begins */
     const char *spread; /* spread_word of the replicates; NULL: not known */
 } ReplicatePlan;
 
@@ -52,11 +59,17 @@ typedef struct {
     const char *rule, *spread; /* what `mean` is, "mean" or the rule of several records; of the plan */
     size_t n_records, n_replicates, n_failed; /* n_replicates of each record; n_failed of all simulations */
     double mean[N_MEASURES], sd[N_MEASURES];  /* natural; not finite where a simulation failed; sd NAN: one replicate */
+    double error[N_MEASURES];                 /* standard errors; NAN: one record, or not asked for */
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
 /* parts (n_replicates, n_records), each of `size` bytes that begin with its Measured numbers. */
 void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out);
 
-/* v (n), sorted by this call: mean_plus_sd or quantile, sense +1: large values are bad. sd NAN: one value. */
+enum { BOOTSTRAP = 200 };
+
+/* error of the same parts and their summary. */
+void replicates_errors(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out);
+
+/* v (n), sorted by this call: mean_plus_sd, quantile or cvar, sense +1: large values are bad. sd NAN: one value. */
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);

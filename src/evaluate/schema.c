@@ -15,23 +15,22 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
     MeasureOrder order;
     DesignSpace design;
     TRY(design_space_make(&design, &s->design, core_section(&s->core), n_floors, err));
-    TRY(measures_order(&order, s->search.objectives, n_floors, err));
+    TRY(measures_order(&order, s->search.objectives, s->search.limits, n_floors, err));
     *schema = (Schema){.n_var = design.n_var,
                        .design = design,
                        .n_obj = order.n_obj,
-                       .n_extra = N_MEASURES - order.n_obj,
+                       .n_extra = order.n - order.n_obj,
                        .order = order};
     TRY(allocate(schema, err));
     for (int j = 0; j < design.n_var; j++)
         design_variable_name(&design, j, schema->column[j].name);
-    for (int k = 0; k < N_MEASURES; k++) {
+    for (int k = 0; k < order.n; k++) {
         Column *c = &schema->column[design.n_var + k];
-        snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
+        snprintf(c->name, sizeof c->name, "%s", measures_name(&order, order.of[k]));
         c->sense = measure(order.of[k])->sense;
     }
-    const MeasureSet limited = measures_limited(s->search.limits);
-    for (int k = order.n_obj; k < N_MEASURES; k++)
-        if (limited >> order.of[k] & 1)
+    for (int k = order.n_obj; k < order.n; k++)
+        if (order.limited >> order.of[k] & 1)
             schema->limited[schema->n_limited++] = k - order.n_obj;
     return STATUS_OK;
 }
@@ -77,6 +76,12 @@ static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
     Column *objectives = schema->column + schema->n_var;
     TRY(take_names("problem.variable_names", s->problem.variable_names, "x", schema->n_var, schema->column, err));
     TRY(take_names("problem.objective_names", s->problem.objective_names, "f", schema->n_obj, objectives, err));
+    for (size_t c = 0; c < schema->n_extra; c++) {
+        Column *constraint = objectives + schema->n_obj + c;
+        snprintf(constraint->name, sizeof constraint->name, "g_%zu", c + 1);
+        constraint->sense = 1.0;
+        schema->limited[schema->n_limited++] = c;
+    }
     return take_senses(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.senses : "min", schema->n_obj, objectives, err);
 }
 
@@ -98,6 +103,7 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
     }
     *schema = (Schema){.n_var = s->problem.variables,
                        .n_obj = s->problem.objectives,
+                       .n_extra = s->problem.constraints > 0 ? s->problem.constraints : 0,
                        .replicates = s->sim.replicates,
                        .is_noisy = schema_is_noisy(s),
                        .has_spread = schema_is_noisy(s)};
@@ -142,7 +148,7 @@ size_t schema_find_objective(const Schema *schema, const char *name)
 static Status pick(const Schema *schema, size_t n, const char *noun, const char *where, const char *name, Status status,
                    size_t *k, Err *err)
 {
-    const char *names[OBJECTIVES_MAX + N_MEASURES];
+    const char *names[OBJECTIVES_MAX + EXTRA_MAX];
     for (*k = 0; *k < n; ++*k)
         if (strcmp(schema_objective(schema, *k)->name, name) == 0)
             return STATUS_OK;

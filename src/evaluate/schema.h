@@ -1,6 +1,7 @@
 /* evaluate/schema.h -- the columns of a run: variables, objectives, and further results.
  *
- *   column 0..n_var-1, then n_obj objectives, then n_extra measures that are only written down
+ *   column 0..n_var-1, then n_obj objectives, then n_extra: measures of a tower that are only written down, else the
+ *   constraint values g_1 ... that external workers answer (ProblemOptions.constraints)
  *
  * Internally every objective is minimised, f = sense * value; every file shows the natural value.
  * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
@@ -16,6 +17,7 @@
 typedef struct Settings Settings;
 
 enum { OBJECTIVES_MAX = 100 };
+enum { EXTRA_MAX = (int)CONSTRAINTS_MAX > (int)N_MEASURES ? (int)CONSTRAINTS_MAX : (int)N_MEASURES };
 
 typedef struct {
     char name[TABLE_NAME_MAX];
@@ -31,7 +33,7 @@ typedef struct {
     long replicates;             /* simulations of each record behind one evaluation: sim.replicates */
     int is_noisy;                /* schema_is_noisy */
     int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations */
-    size_t n_limited, limited[N_MEASURES]; /* measures among the n_extra that search.limits limits, ascending */
+    size_t n_limited, limited[EXTRA_MAX]; /* those of the n_extra that have to keep a limit, ascending */
 } Schema;
 
 /* Whether designs are simulated again because they answer differently each time. */

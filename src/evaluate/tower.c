@@ -3,10 +3,10 @@
 #include <pthread.h>
 
 #include "base/hash.h"
-#include "base/list.h"
 #include "evaluate/device.h"
 #include "evaluate/tasks.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/settings.h"
 #include "scene/neighbour.h"
 
@@ -38,6 +38,9 @@ struct Tower {
     DesignSpace design;
     MeasureOrder order;
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    VariableKind kind[DESIGN_VARIABLES_MAX];
+    Steps steps[DESIGN_VARIABLES_MAX];
+    int has_kinds;      /* some are not real */
     Record *record;     /* (n_records) */
     size_t n_places;    /* twice the scenes: the second half are the same with twice the steps */
     Place *place;       /* (n_places) */
@@ -219,6 +222,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     }
     sim_worker_device(w, &device);
     TRY(sim_run_built(w, kind, &design, result, err));
+    measures_chances(&t->order, result);
     if (kind == SCENE_IMPACT)
         measures_settle(result, t->judged);
     *(Measured *)task->result = measured(result);
@@ -247,7 +251,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
         e->f[i] = sum.mean[t->order.of[i]];
         e->sd[i] = sum.sd[t->order.of[i]];
     }
-    for (int i = t->order.n_obj; i < N_MEASURES; i++)
+    for (int i = t->order.n_obj; i < t->order.n; i++)
         e->extra[i - t->order.n_obj] = sum.mean[t->order.of[i]];
     e->seconds = sum.seconds;
     e->replicates = (int)sum.n_replicates;
@@ -276,19 +280,29 @@ static const Simulator TOWER = {simulate, combine, tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
-/* The records of a search: motion.record, then motion.records where they are wanted. */
-static Status list_records(const Settings *s, TowerUse use, char (*names)[OPTION_TEXT_MAX], size_t *n, Err *err)
+/* The records of a search. */
+typedef struct {
+    size_t n;
+    char path[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
+} RecordList;
+
+static Status list_record(const char *source, void *user, Err *err)
 {
-    const char *list = use == TOWER_SINGLE ? "none" : s->motion.records;
-    memcpy(names[0], s->motion.record, sizeof names[0]);
-    *n = 1;
-    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++, ++*n) {
-        if (*n == TOWER_RECORDS_MAX)
-            return bad_data(err, "more than %d records", TOWER_RECORDS_MAX);
-        if (!list_item(list, i, names[*n], sizeof names[0]))
-            return bad_data(err, "motion.records: item %zu is empty or too long", i + 1);
-    }
-    return STATUS_OK;
+    RecordList *list = user;
+    if (list->n == TOWER_RECORDS_MAX)
+        return bad_data(err, "motion.records: more than %d records", TOWER_RECORDS_MAX);
+    return option_put_path(list->path[list->n++], source, err);
+}
+
+/* All of the study, or motion.record alone. */
+static Status list_records(const Settings *s, TowerUse use, RecordList **out, Err *err)
+{
+    TRY_ROOM(*out, 1, "a list of records", err);
+    const Status status = use == TOWER_SINGLE ? list_record(s->motion.record, *out, err)
+                                              : suite_of_study(&s->motion, list_record, *out, err);
+    if (status != STATUS_OK)
+        free(*out);
+    return status;
 }
 
 static Status open_all(Tower *t, Err *err)
@@ -348,9 +362,11 @@ static Problem problem_on(Tower *t)
 {
     return (Problem){.n_var = t->design.n_var,
                      .n_obj = t->order.n_obj,
-                     .n_extra = N_MEASURES - t->order.n_obj,
+                     .n_extra = t->order.n - t->order.n_obj,
                      .lower = t->lower,
                      .upper = t->upper,
+                     .kind = t->has_kinds ? t->kind : NULL,
+                     .steps = t->steps,
                      .repair = swap_if_top_heavy,
                      .simulator = &TOWER,
                      .self = t,
@@ -360,16 +376,58 @@ static Problem problem_on(Tower *t)
                      .n_workers = t->n_workers};
 }
 
+/* Multiples of the step of gaps that lie within their bounds. */
+static Status take_gap_steps(const DesignOptions *o, Steps *s, Err *err)
+{
+    const double step = o->step_gap_m, first = ceil(o->gap_m.at[0] / step - 1e-9);
+    const double last = floor(o->gap_m.at[1] / step + 1e-9);
+    if (step < 1e-4)
+        return bad_data(err, "design.step_gap_m: %g m is no step that is kept on site; give 0.0001 or more", step);
+    if (first > last)
+        return bad_data(err, "design.step_gap_m: no multiple of %g lies within design.gap_m", step);
+    *s = (Steps){.n = (size_t)(last - first) + 1, .first = first, .step = step};
+    return STATUS_OK;
+}
+
+static Status take_steps(Tower *t, const DesignOptions *o, Err *err)
+{
+    const DesignSpace *space = &t->design;
+    const NumberList *plates = &o->step_thickness_m;
+    Steps gaps = {0}, walls = {.n = plates->n, .at = plates->at};
+    for (int i = 1; i < plates->n; i++)
+        if (!(plates->at[i] > plates->at[i - 1]))
+            return bad_data(err, "design.step_thickness_m: %g stands behind %g; give them in ascending order",
+                            plates->at[i], plates->at[i - 1]);
+    if (o->step_gap_m > 0.0)
+        TRY(take_gap_steps(o, &gaps, err));
+    for (int j = 0; j < space->n_gaps + space->n_walls; j++) {
+        const Steps *s = j < space->n_gaps ? &gaps : &walls;
+        if (s->n == 0)
+            continue;
+        t->has_kinds = 1;
+        t->kind[j] = VARIABLE_STEPPED;
+        t->steps[j] = *s;
+        t->lower[j] = steps_at(s, 0);
+        t->upper[j] = steps_at(s, s->n - 1);
+    }
+    return STATUS_OK;
+}
+
 static Status prepare(Tower *t, Err *err)
 {
     const Settings *s = &t->recipe->settings;
     TRY(make_room(t, err));
     TRY(t->recipe->is_sweep ? tower_space(&t->recipe->settings, &t->design, err) : open_all(t, err));
     t->n_floors = t->design.n_floors;
-    TRY(measures_order(&t->order, s->search.objectives, (int)t->n_floors, err));
-    t->judged |= t->order.objectives;
+    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->n_floors, err));
+    t->judged |= t->order.judged;
     design_bounds(&t->design, &s->design, t->lower, t->upper);
-    return STATUS_OK;
+    for (int j = 0; j < t->design.n_var; j++)
+        if (design_is_log(&t->design, j) || design_is_choice(&t->design, j)) {
+            t->has_kinds = 1;
+            t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
+        }
+    return take_steps(t, &s->design, err);
 }
 
 /* Hash of the building and of the records that were read. */
@@ -397,10 +455,10 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
                               .n_replicates = s->sim.replicates,
                               .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
-                              .quantile = s->sim.quantile,
+                              .quantile = s->sim.quantile > 0 ? s->sim.quantile : 1 - s->sim.tail,
                               .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
-    Status status = measures_order(&order, s->search.objectives, 0, err);
-    t->judged = status == STATUS_OK ? order.objectives | measures_limited(s->search.limits) : 0;
+    Status status = measures_order(&order, s->search.objectives, s->search.limits, 0, err);
+    t->judged = status == STATUS_OK ? order.judged : 0;
     if (status == STATUS_OK)
         status = prepare(t, err);
     if (status != STATUS_OK) {
@@ -432,13 +490,15 @@ static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes,
 
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
-    char names[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
-    size_t n;
-    TRY(list_records(s, use, names, &n, err));
+    RecordList *list;
+    TRY(list_records(s, use, &list, err));
+    const size_t n = list->n;
     Recipe *r = make_recipe(s, n, n, err);
+    if (r)
+        memcpy(recipe_record(r, 0), list->path, n * sizeof list->path[0]);
+    free(list);
     if (!r)
         return err->code;
-    memcpy(recipe_record(r, 0), names, n * sizeof names[0]);
     for (size_t i = 0; i < n; i++)
         r->scene[i].record = i;
     if (use == TOWER_SINGLE)
@@ -520,8 +580,10 @@ static void take(const Problem *p, const SimTask *task, SimResult *result, const
     const ReplicatePlan plan = plan_of(p->self, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, parts, p->part_size, &sum);
-    if (task->summary)
+    if (task->summary) {
+        replicates_errors(&plan, parts, p->part_size, &sum);
         *task->summary = sum;
+    }
     if (result)
         *result = ((const Whole *)(const void *)(parts + sum.shown * p->part_size))->result;
     for (size_t i = 0; task->parts && i < n; i++)

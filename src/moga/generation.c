@@ -186,7 +186,10 @@ static Status sample_again(Search *s, Err *err)
     const size_t first = s->common.archive.n, n = add_samples(s, 0, s->common.config->population);
     surrogate_drop(s->surrogate); /* a resumed search has none here either */
     TRY(evaluate(s, n, n, err));
-    join(&s->population, &s->common.archive, first);
+    if (s->population.n < 2)
+        join(&s->population, &s->common.archive, first);
+    else
+        renew_population(s, first);
     return STATUS_OK;
 }
 

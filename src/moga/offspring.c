@@ -48,8 +48,6 @@ static void breed_mixed(Offspring *o, const Problem *p, Random *r, double eta, c
 {
     const size_t n = p->n_var;
     double *child = o->children, *lower = o->mixed, *upper = lower + n, *parent = upper + n, *before = parent + 2 * n;
-    to_scale(p, p->lower, lower);
-    to_scale(p, p->upper, upper);
     to_scale(p, mother, parent);
     to_scale(p, father, parent + n);
     crossover_sbx(r, n, lower, upper, SBX_ETA, parent, parent + n, child, child + n);
@@ -57,7 +55,7 @@ static void breed_mixed(Offspring *o, const Problem *p, Random *r, double eta, c
     for (int i = 0; i < 2; i++, child += n) {
         memcpy(before, child, n * sizeof *child);
         mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, eta, child);
-        mutate_discrete(r, n, p->kind, lower, upper, before, child);
+        mutate_discrete(r, p, before, child);
         from_scale(p, child);
     }
 }
@@ -79,6 +77,10 @@ static void breed(Offspring *o, const Common *c, Population *population, uint32_
     const Problem *p = c->problem;
     const Population parents = *population;
     const size_t n = c->config->population;
+    if (p->kind) {
+        to_scale(p, p->lower, o->mixed);
+        to_scale(p, p->upper, o->mixed + p->n_var);
+    }
     for (size_t j = 0; 2 * j < n; j++) {
         const uint32_t name = step * (uint32_t)n + (uint32_t)j;
         Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
@@ -135,8 +137,9 @@ static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[
         if (!problem_is_discrete(p, d) || !(p->upper[d] > p->lower[d]))
             continue;
         memcpy(y, x, p->n_var * sizeof *y);
-        y[d] += random_uniform(r) < 0.5 ? 1.0 : -1.0;
-        mutate_discrete(r, 1, p->kind + d, p->lower + d, p->upper + d, x + d, y + d);
+        const double less = problem_kind(p, d) == VARIABLE_STEPPED ? 1e-9 * (p->upper[d] - p->lower[d]) : 1.0;
+        y[d] += random_uniform(r) < 0.5 ? less : -less;
+        mutate_discrete(r, p, x, y);
         problem_repair(p, y);
         population_add(&o->members, y);
         n++;

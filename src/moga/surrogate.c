@@ -53,12 +53,8 @@ static void set_corner(size_t n, size_t word, double u[])
 
 static void set_coordinates(const Problem *p, const double x[], double u[])
 {
-    if (!p->kind) {
-        problem_to_cube(p, x, u);
-        return;
-    }
     for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
-        if (p->kind[d] == VARIABLE_CHOICE)
+        if (problem_kind(p, d) == VARIABLE_CHOICE)
             set_corner(n_coordinates(p, d), (size_t)x[d], u);
         else
             *u = problem_to_unit(p, d, x[d]);

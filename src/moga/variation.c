@@ -92,14 +92,23 @@ static double other_number(double lower, double upper, double before, double x)
     return to < lower || to > upper ? round(before) + (x < before ? 1.0 : -1.0) : to;
 }
 
-void mutate_discrete(Random *r, size_t n_var, const VariableKind kind[], const double lower[], const double upper[],
-                     const double before[], double x[])
+static double other_step(const Steps *s, double before, double x)
 {
-    for (size_t d = 0; d < n_var; d++)
-        if (kind[d] < VARIABLE_WHOLE || x[d] == before[d])
+    const size_t was = steps_nearest(s, before), to = steps_nearest(s, x);
+    if (to != was || s->n == 1)
+        return steps_at(s, to);
+    return steps_at(s, was == 0 || (x > before && was + 1 < s->n) ? was + 1 : was - 1);
+}
+
+void mutate_discrete(Random *r, const Problem *p, const double before[], double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        if (!problem_is_discrete(p, d) || x[d] == before[d])
             continue;
-        else if (kind[d] == VARIABLE_CHOICE)
-            x[d] = other_word(r, upper[d], before[d]);
+        else if (problem_kind(p, d) == VARIABLE_CHOICE)
+            x[d] = other_word(r, p->upper[d], before[d]);
+        else if (problem_kind(p, d) == VARIABLE_STEPPED)
+            x[d] = other_step(&p->steps[d], before[d], x[d]);
         else
-            x[d] = other_number(lower[d], upper[d], before[d], x[d]);
+            x[d] = other_number(p->lower[d], p->upper[d], before[d], x[d]);
 }

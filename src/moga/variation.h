@@ -30,6 +30,6 @@ void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var,
 void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const double mother[], const double father[],
                    double child1[], double child2[]);
 
-/* After mutation: a whole number or a choice that is no longer what it was moves by 1 at least, to another word. */
-void mutate_discrete(Random *r, size_t n_var, const VariableKind kind[], const double lower[], const double upper[],
-                     const double before[], double x[]);
+/* After mutation: what is not real and no longer what it was before moves by 1 at least, to another word, to another
+ * value that is sold. */
+void mutate_discrete(Random *r, const Problem *p, const double before[], double x[]);

@@ -21,6 +21,7 @@
 
 #include "base/csv.h"
 #include "base/hash.h"
+#include "motion/synthetic.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -150,24 +151,47 @@ static Status make_motion(Motion *m, const Model *model, Err *err)
     TRY_ROOM(m->accel, m->n, "samples of a motion", err);
     generate(model, m->n, m->accel);
     normalize(model->pga_m_s2, m->n, m->accel);
-    m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);
     return STATUS_OK;
+}
+
+/* Number of a motion of the suite from 1; 0: it is none. */
+static size_t number_in_suite(const char *source)
+{
+    char name[sizeof SUITE_SOURCE + 8];
+    size_t i = SUITE_MOTIONS;
+    do
+        snprintf(name, sizeof name, SUITE_SOURCE "-%02zu", i);
+    while (strcmp(source, name) != 0 && --i > 0);
+    return i;
+}
+
+/* source: a word of the table. */
+static Status make_of_table(Motion *m, const char *source, int k, Err *err)
+{
+    Table t;
+    TRY(table_parse(&t, source, TABLE[0], TABLE[1] - TABLE[0], TABLE_PLAIN, err));
+    const Status status = make_motion(m, (const Model *)t.values + k, err);
+    table_free(&t);
+    return status;
 }
 
 Status builtin_motion(Motion *m, const char *source, Err *err)
 {
     static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
-    Table t;
+    const size_t of_suite = number_in_suite(source);
     int k = 0;
     while (k < N_MOTIONS && strcmp(source, NAMES[k]) != 0)
         k++;
     memset(m, 0, sizeof *m);
-    if (k == N_MOTIONS)
+    if (strcmp(source, SUITE_SOURCE) == 0)
+        return bad_data(err, "motion.record: %s is a suite of motion.records; its motions are %s-01 to -%02d", source,
+                        source, SUITE_MOTIONS);
+    if (k == N_MOTIONS && of_suite == 0)
         return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, k);
-    TRY(table_parse(&t, source, TABLE[0], TABLE[1] - TABLE[0], TABLE_PLAIN, err));
-    const Status status = make_motion(m, (const Model *)t.values + k, err);
-    table_free(&t);
+    TRY(of_suite > 0 ? synthetic_motion(m, of_suite - 1, err) : make_of_table(m, source, k, err));
+    m->is_corrected = of_suite > 0; /* its ground ends where it began */
+    m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);
     snprintf(m->name, sizeof m->name, "%s", source);
     snprintf(m->format, sizeof m->format, "builtin");
-    return status;
+    return STATUS_OK;
 }

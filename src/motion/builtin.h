@@ -10,6 +10,9 @@
 #define BUILTIN_MOTION_LIST(X)                                                                                         \
     X(KOBE, "builtin:kobe-like") X(ELCENTRO, "builtin:elcentro-like") X(SYLMAR, "builtin:sylmar-like")
 
+/* builtin:suite is a suite (motion/suite.h): builtin:suite-01, ... (motion/synthetic.h). */
+#define SUITE_SOURCE "builtin:suite"
+
 /* What follows "builtin:"; NULL: the source is a file. */
 const char *builtin_name(const char *source);
 

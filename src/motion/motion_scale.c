@@ -3,6 +3,7 @@
 #include <stdarg.h>
 
 #include "base/filter.h"
+#include "base/hash.h"
 #include "base/keyed.h"
 #include "base/list.h"
 #include "base/units.h"
@@ -10,6 +11,7 @@
 #include "motion/forces.h"
 #include "motion/motion_read.h"
 #include "motion/spectrum.h"
+#include "motion/suite.h"
 
 enum { PADDING_MAX = 10000000 };                        /* samples: 80 MB */
 static const double HIGHPASS_PAD = 0.75 * FILTER_ORDER; /* [-] times 1 / fc, before and behind */
@@ -212,7 +214,8 @@ double target_misfit(const Motion *m, const CodeSpectrum *c)
 
 /* ---- scaling ----------------------------------------------------------------------------------------------------- */
 
-static double factor_of(const Motion *m, const MotionOptions *o, const CodeSpectrum *c)
+/* own: of the source. */
+static double factor_of(const Motion *m, const MotionOptions *o, const CodeSpectrum *c, double own)
 {
     double psa, mean, rms;
     if (o->sa_g > 0) {
@@ -223,7 +226,7 @@ static double factor_of(const Motion *m, const MotionOptions *o, const CodeSpect
         compare(m, c, &mean, &rms);
         return exp(mean);
     }
-    return o->factor;
+    return o->factor * own;
 }
 
 /* Behind what the reader has to say. */
@@ -237,10 +240,10 @@ static void warn_of_scale(Motion *m)
 }
 
 /* A record that must be multiplied by so much is not what it is taken for. A factor of one's own may convert units. */
-static Status check_scale(const Motion *m, const MotionOptions *o, double peak_g, Err *err)
+static Status check_scale(const Motion *m, const MotionOptions *o, double own, double peak_g, Err *err)
 {
     char scaling[SCALINGS_TEXT_MAX];
-    if (o->factor != 1 || m->scale <= SCALE_MAX)
+    if (o->factor != 1 || own != 1 || m->scale <= SCALE_MAX)
         return STATUS_OK;
     motion_scalings(o, scaling);
     return bad_data(
@@ -260,20 +263,27 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 {
     const double peak_g = motion_peak(m) / GRAVITY;
     CodeSpectrum target;
+    Source source;
     if (is_still(o)) {
         m->scale = m->stretch = 1;
         return forces_place(m, err);
     }
     TRY(target_parse(o->target, &target, err));
+    TRY(source_read(o->record, &source, err));
+    if (source.factor != 1 && (o->pga_g > 0 || o->sa_g > 0 || target.kind != TARGET_NONE))
+        return bad_data(err,
+                        "%s: has a factor of its own, and all records are scaled otherwise too (motion.pga_g, "
+                        "motion.sa_g or motion.target): leave one out",
+                        source.path);
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
-    const double factor = factor_of(m, o, &target);
+    const double factor = factor_of(m, o, &target, source.factor);
     if (!(factor > 0 && isfinite(factor)))
         return bad_data(err, "%s: cannot be scaled to a response spectrum: it moves no such oscillator", m->name);
     for (size_t i = 0; i < m->n && factor != 1; i++)
         m->accel[i] *= factor;
     m->scale *= factor;
     warn_of_scale(m);
-    TRY(check_scale(m, o, peak_g, err));
+    TRY(check_scale(m, o, source.factor, peak_g, err));
     return forces_place(m, err);
 }
 
@@ -317,20 +327,6 @@ Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
     return load(m, source, &(MotionHow){.unit = unit}, err);
 }
 
-size_t motion_n_records(const MotionOptions *o)
-{
-    return 1 + (list_is_given(o->records) ? list_count(o->records) : 0);
-}
-
-Status motion_record(const MotionOptions *o, size_t i, char path[OPTION_TEXT_MAX], Err *err)
-{
-    if (i == 0)
-        memcpy(path, o->record, OPTION_TEXT_MAX);
-    else if (!list_item(o->records, i - 1, path, OPTION_TEXT_MAX))
-        return bad_data(err, "motion.records: item %zu is empty or too long", i);
-    return STATUS_OK;
-}
-
 /* The ground at rest, for forces on the floors alone. */
 static Status stand_still(Motion *m, const MotionOptions *o, Err *err)
 {
@@ -342,9 +338,14 @@ static Status stand_still(Motion *m, const MotionOptions *o, Err *err)
 
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
-    MotionHow how = {.channel = o->channel, .dt_s = o->dt_s};
+    Source source;
+    TRY(source_read(o->record, &source, err));
+    MotionHow how = {.channel = source.channel[0] ? source.channel : o->channel, .dt_s = o->dt_s};
     TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
-    TRY(is_still(o) ? stand_still(m, o, err) : load(m, o->record, &how, err));
+    TRY(is_still(o) ? stand_still(m, o, err) : load(m, source.path, &how, err));
+    const char *words = o->record + source_path_length(o->record);
+    if (*words)
+        m->file_hash = hash_fnv1a(words, strlen(words), m->file_hash);
     Status status = is_still(o) ? STATUS_OK : motion_process(m, o, err);
     if (status == STATUS_OK && list_is_given(o->forces))
         status = forces_read(m, o->forces, err);

@@ -1,6 +1,7 @@
 #include "report/report.h"
 
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/options.h"
 
 /* The chosen design simulated with the run's own settings, its records where they are now. */
@@ -20,7 +21,7 @@ Report report_brief(const Run *run)
     const int is_tower = s->problem.kind == PROBLEM_TOWER;
     return (Report){.run = run,
                     .has_detail = is_tower,
-                    .is_robust = is_tower && (s->sim.replicates > 1 || motion_n_records(&s->motion) > 1)};
+                    .is_robust = is_tower && (s->sim.replicates > 1 || suite_count(&s->motion) > 1)};
 }
 
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)

@@ -329,6 +329,20 @@ static size_t n_evaluated(const Run *run)
     return n;
 }
 
+/* The chosen design as found and to be built. */
+static json_t *json_of_pair(const Run *run, size_t chosen)
+{
+    size_t pair[2];
+    if (!run_simplified(run, chosen, pair))
+        return json_null();
+    json_t *list = json_array();
+    for (int i = 0; i < 2; i++)
+        json_array_append_new(list, json_of("id=%ld x=%p f=%p", run->table.row[pair[i]].id,
+                                            json_numbers(run->schema.n_var, run_x(run, pair[i])),
+                                            json_numbers(run->schema.n_obj, run_f(run, pair[i]))));
+    return list;
+}
+
 json_t *report_json(const Report *r)
 {
     const Run *run = r->run;
@@ -344,13 +358,13 @@ json_t *report_json(const Report *r)
     return json_of(
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s tower=%c robust=%c building=%s spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
-        "convergence=%p detail=%p named=%p settings=%p provenance=%s",
+        "convergence=%p detail=%p pair=%p named=%p settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
         slash && slash[1] ? slash + 1 : name, name, r->has_detail, r->is_robust, run->settings->building.model,
         spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), run->table.row[r->knee].id,
         run->table.row[r->chosen].id, json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run),
         run->n_failed, run->n_front, json_of_names(r), json_of_beyond_law(r),
         json_of_importance(&r->importance, &run->schema), growth_json(run),
-        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(), json_of_named(r),
-        json_of_settings(run->settings), run->provenance);
+        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
+        json_of_pair(run, r->chosen), json_of_named(r), json_of_settings(run->settings), run->provenance);
 }

@@ -1,6 +1,7 @@
 #include "report/words.h"
 
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/options.h"
 
 /* A measure without a line here is shown by its name in its own unit. */
@@ -47,7 +48,7 @@ Words words_of_measure(int k)
 Words words_of_objective(const Schema *schema, size_t k)
 {
     const char *name = schema_objective(schema, k)->name;
-    if (schema->order.n_obj > 0)
+    if (schema->order.n_obj > 0 && schema->order.of[k] < MEASURES_LISTED)
         return words_of_measure(schema->order.of[k]);
     return (Words){name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1])), "", 1};
 }
@@ -55,7 +56,7 @@ Words words_of_objective(const Schema *schema, size_t k)
 void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX])
 {
     static const char *const RULES[] = {ROBUST_LIST(CHOICE_WORD)};
-    const size_t n = motion_n_records(&s->motion);
+    const size_t n = suite_count(&s->motion);
     const long each = s->sim.replicates;
     char rule[40], spread[40] = "";
     if (s->sim.quantile > 0)

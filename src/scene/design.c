@@ -4,12 +4,12 @@
 
 /* -- variables ----------------------------------------------------------------------------------------------------- */
 
-enum { HAS_GAPS = 1, HAS_THICKNESS = 2, HAS_BUMPER = 4, HAS_SIDE = 8 };
+enum { HAS_GAPS = 1, HAS_THICKNESS = 2, HAS_BUMPER = 4, HAS_SIDE = 8, HAS_LINKS = 16, HAS_MASS = 32 };
 
 /* The words of design.variables as a set. */
 static Status take_words(const char *list, unsigned *set, Err *err)
 {
-    static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side"};
+    static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side", "links", "tuned_mass"};
     enum { N = N_OF(WORDS) };
     char word[64];
     *set = 0;
@@ -34,6 +34,36 @@ static Status take_words(const char *list, unsigned *set, Err *err)
                : bad_data(err, "design.variables: gaps and thickness are always there; add to them");
 }
 
+/* The words of design.devices, in their order. */
+static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set, Err *err)
+{
+    static const char *const WORDS[] = {
+        [FLOOR_GAP] = "gap", [FLOOR_BUMPER] = "bumper", [FLOOR_LINK] = "link", [FLOOR_NONE] = "none"};
+    static const unsigned NEEDS[] = {
+        [FLOOR_GAP] = 0, [FLOOR_BUMPER] = HAS_BUMPER, [FLOOR_LINK] = HAS_LINKS, [FLOOR_NONE] = 0};
+    char word[64] = "";
+    unsigned seen = 0;
+    s->n_words = 0;
+    for (size_t i = 0; o->devices[0] && strcmp(o->devices, "all") != 0 && i < list_count(o->devices); i++) {
+        int k = 0;
+        const int is_word = list_item(o->devices, i, word, sizeof word);
+        while (k < N_FLOOR_DEVICES && strcmp(WORDS[k], word) != 0)
+            k++;
+        if (!is_word || k == N_FLOOR_DEVICES)
+            return fail_no_word(err, STATUS_BAD_DATA, "design.devices", word, "device", WORDS, N_FLOOR_DEVICES);
+        if (seen >> k & 1)
+            return bad_data(err, "design.devices: %s stands there twice", word);
+        if ((set & NEEDS[k]) != NEEDS[k])
+            return bad_data(err, "design.devices: %s: add %s to design.variables, which says how large it is", word,
+                            k == FLOOR_LINK ? "links" : "bumper");
+        seen |= 1U << k;
+        s->word[s->n_words++] = (FloorDevice)k;
+    }
+    if (s->n_words == 1)
+        return bad_data(err, "design.devices: %s alone is no choice; name two or more, or all", word);
+    return STATUS_OK;
+}
+
 static Status check_zones(const char *key, long zones, int n_floors, Err *err)
 {
     return n_floors == 0 || zones <= n_floors
@@ -50,15 +80,27 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection
     const int has_bumper = (set & HAS_BUMPER) != 0;
     if (has_bumper)
         TRY(check_zones("design.bumper_zones", o->bumper_zones, n_floors, err));
+    const int has_links = (set & HAS_LINKS) != 0;
+    if (has_links)
+        TRY(check_zones("design.link_zones", o->link_zones, n_floors, err));
     *space = (DesignSpace){.n_floors = n_floors,
                            .n_walls = section == CORE_EFFECTIVE ? 0 : 2,
                            .gap_zones = (int)o->gap_zones,
                            .gap_sides = o->gap_sides,
                            .bumper_zones = (int)o->bumper_zones,
-                           .has_side = (set & HAS_SIDE) != 0};
+                           .has_side = (set & HAS_SIDE) != 0,
+                           .link_zones = (int)o->link_zones,
+                           .n_mass = set & HAS_MASS ? 3 : 0,
+                           .device_zones = (int)o->device_zones};
+    TRY(take_devices(space, o, set, err));
+    if (space->n_words > 0)
+        TRY(check_zones("design.device_zones", o->device_zones, n_floors, err));
+    space->n_choices = space->n_words == 0 ? 0 : space->device_zones ? space->device_zones : n_floors;
     space->n_gaps = (space->gap_sides == GAPS_EACH ? SIDES : 1) * (space->gap_zones ? space->gap_zones : n_floors);
     space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
-    space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side;
+    space->n_links = !has_links ? 0 : space->link_zones ? space->link_zones : n_floors;
+    space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side + space->n_links +
+                   space->n_mass + space->n_choices;
     return STATUS_OK;
 }
 
@@ -68,7 +110,10 @@ int design_space_floors(const DesignOptions *o, CoreSection section, int n_var)
     Err unused;
     for (int n = 1; n <= FLOORS_MAX; n++)
         if (design_space_make(&s, o, section, n, &unused) == STATUS_OK && s.n_var == n_var)
-            return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) ? 0 : n;
+            return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) && (s.n_links == 0 || s.link_zones) &&
+                           (s.n_choices == 0 || s.device_zones)
+                       ? 0
+                       : n;
     return 0;
 }
 
@@ -93,14 +138,14 @@ static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *
 }
 
 /* The variables in their order. */
-typedef enum { GAP, WALL, BUMPER, SIDE } Group;
+typedef enum { GAP, WALL, BUMPER, SIDE, LINK, MASS, DEVICE } Group;
 
 /* Of variable j, which becomes its number in the group. */
 static Group group_of(const DesignSpace *s, int *j)
 {
-    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers};
+    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers, s->has_side, s->n_links, s->n_mass};
     Group group = GAP;
-    for (; group < SIDE && *j >= n[group]; group++)
+    for (; group < DEVICE && *j >= n[group]; group++)
         *j -= n[group];
     return group;
 }
@@ -114,18 +159,37 @@ void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX]
         zoned_name(name, stem, "m", s->gap_zones, j);
     } else if (group == BUMPER) {
         zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j);
+    } else if (group == LINK) {
+        zoned_name(name, "link", "n_s_m", s->link_zones, j);
+    } else if (group == DEVICE) {
+        snprintf(name, TABLE_NAME_MAX, s->device_zones ? "device_zone_%d" : "device_%02d", j + 1);
+    } else if (group == MASS) {
+        snprintf(name, TABLE_NAME_MAX, "tuned_mass_%s", (const char *const[]){"kg", "hz", "damping"}[j]);
     } else {
         snprintf(name, TABLE_NAME_MAX, "%s", group == SIDE ? "side_m" : j == 0 ? "t_base_m" : "t_top_m");
     }
 }
 
+int design_is_choice(const DesignSpace *s, int j)
+{
+    return group_of(s, &j) == DEVICE;
+}
+
+int design_is_log(const DesignSpace *s, int j)
+{
+    const Group group = group_of(s, &j);
+    return group == LINK || group == MASS;
+}
+
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
 {
-    const NumberList *const lists[] = {&o->gap_m, &o->thickness_m, &o->bumper_n_m, &o->width_m};
+    const NumberList *const lists[] = {&o->gap_m,      &o->thickness_m, &o->bumper_n_m, &o->width_m,
+                                       &o->link_n_s_m, &o->mass_kg,     &o->mass_hz,    &o->mass_damping};
     for (int j = 0; j < s->n_var; j++) {
         int i = j;
         const Group group = group_of(s, &i);
-        const double *l = lists[group]->at;
+        const double words[] = {0, s->n_words - 1.0};
+        const double *l = group == DEVICE ? words : lists[group == MASS ? (int)group + i : (int)group]->at;
         lower[j] = group == BUMPER ? log10(l[0]) : l[0];
         upper[j] = group == BUMPER ? log10(l[1]) : l[1];
     }
@@ -137,10 +201,23 @@ static int zone_of(int count, int n_floors, int j)
     return j * count / n_floors;
 }
 
+/* What floor j does not have by its word. */
+static void leave_out(FloorDevice word, int j, Design *d)
+{
+    if (word == FLOOR_LINK || word == FLOOR_NONE)
+        d->gap[0][j] = d->gap[1][j] = INFINITY;
+    if (word != FLOOR_LINK)
+        d->link[j] = 0;
+    if (word == FLOOR_GAP)
+        d->bumper[j] = 0;
+}
+
 void design_of(const DesignSpace *s, const double x[], Design *d)
 {
     const int per_side = s->gap_sides == GAPS_EACH ? s->n_gaps / SIDES : s->n_gaps;
-    const double *bumper = x + s->n_gaps + s->n_walls;
+    const double *bumper = x + s->n_gaps + s->n_walls, *link = bumper + s->n_bumpers + s->has_side;
+    const double *mass = link + s->n_links, *choice = mass + s->n_mass;
+    d->n_devices = s->n_mass > 0;
     for (int j = 0; j < s->n_floors; j++) {
         const double gap = x[zone_of(per_side, s->n_floors, j)];
         d->gap[0][j] = s->gap_sides == GAPS_EACH   ? x[per_side + zone_of(per_side, s->n_floors, j)]
@@ -148,10 +225,17 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
                                                    : gap;
         d->gap[1][j] = s->gap_sides == GAPS_RIGHT ? INFINITY : gap;
         d->bumper[j] = s->n_bumpers ? pow(10, bumper[zone_of(s->n_bumpers, s->n_floors, j)]) : -1;
+        d->link[j] = s->n_links ? link[zone_of(s->n_links, s->n_floors, j)] : 0;
+        if (s->n_choices)
+            leave_out(s->word[(int)choice[zone_of(s->n_choices, s->n_floors, j)]], j, d);
+        d->n_devices += !isinf(design_gap(d, j)) + (d->link[j] > 0);
     }
     d->t_base = s->n_walls ? x[s->n_gaps] : 0;
     d->t_top = s->n_walls ? x[s->n_gaps + 1] : 0;
     d->side = s->has_side ? bumper[s->n_bumpers] : 0;
+    d->mass_kg = s->n_mass ? mass[0] : 0;
+    d->mass_hz = s->n_mass ? mass[1] : 0;
+    d->mass_damping = s->n_mass ? mass[2] : 0;
 }
 
 double design_gap(const Design *d, int j)
@@ -194,6 +278,9 @@ static Status check_values(const Designs *d, const char *path, Err *err)
         [WALL] = "a thickness must be above 0",
         [BUMPER] = "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m",
         [SIDE] = "it must be above 0",
+        [LINK] = "a dashpot is not negative; 0: there is none",
+        [MASS] = "it must be above 0",
+        [DEVICE] = "it is the place, from 0, of a word of design.devices",
     };
     const size_t n_var = d->space.n_var;
     for (size_t i = 0; i < d->n * n_var; i++) {
@@ -204,7 +291,9 @@ static Status check_values(const Designs *d, const char *path, Err *err)
             return bad_data(err, "%s:%d: column %d of %zu is missing", path, d->line[i / n_var], j + 1, n_var);
         design_variable_name(&d->space, j, name);
         const Group group = group_of(&d->space, &j);
-        if (group == GAP ? value < 0 : !(value > 0 && (group != BUMPER || value < 15)))
+        if (group == DEVICE                 ? !(value >= 0 && value < d->space.n_words && value == floor(value))
+            : group == GAP || group == LINK ? value < 0
+                                            : !(value > 0 && (group != BUMPER || value < 15)))
             return bad_data(err, "%s:%d: %s is %g; %s", path, d->line[i / n_var], name, value, MUST[group]);
     }
     return STATUS_OK;

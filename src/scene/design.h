@@ -9,7 +9,14 @@
  *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. |
  *                  bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
+ *   ..., links     design.link_zones = 0              link_01_n_s_m.. of dashpots between floors and core
+ *   ..., tuned_mass                                   tuned_mass_kg, tuned_mass_hz, tuned_mass_damping, at the roof
+ *   design.devices = gap, link, none                  device_01.. : 0, 1, 2 of these words for every floor, or, with
+ *                                                     design.device_zones = 4, device_zone_1..
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
+ *
+ * Of a floor, gap is a stop, bumper one with a bumper, link a dashpot without a stop, none nothing at all; variables of
+ * what a floor does not have do nothing there. Without design.devices every floor has all that design.variables name.
  *
  * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales
  * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. The right gap is how far a floor may go to the right,
@@ -28,12 +35,16 @@
 #include "base/csv.h"
 #include "scene/options.h"
 
-enum { DESIGN_VARIABLES_MAX = (SIDES + 1) * FLOORS_MAX + 3 };
+enum { DESIGN_VARIABLES_MAX = (SIDES + 3) * FLOORS_MAX + 6 };
 
-/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides. */
+/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides,
+ * n_links links, the tuned mass (n_mass = 3), n_choices choices of n_words devices. */
+typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
+
 typedef struct {
-    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side;
-    int gap_zones, bumper_zones; /* 0: a variable per floor */
+    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_mass, n_choices, n_words;
+    FloorDevice word[N_FLOOR_DEVICES];                     /* (n_words) */
+    int gap_zones, bumper_zones, link_zones, device_zones; /* 0: a variable per floor */
     GapSides gap_sides;
 } DesignSpace;
 
@@ -46,15 +57,24 @@ int design_space_floors(const DesignOptions *o, CoreSection section, int n_var);
 /* Name of variable j = 0..n_var-1. */
 void design_variable_name(const DesignSpace *space, int j, char name[TABLE_NAME_MAX]);
 
+/* Is it a choice, of 0..n_words-1? */
+int design_is_choice(const DesignSpace *space, int j);
+
+/* Is it searched on a logarithmic scale? */
+int design_is_log(const DesignSpace *space, int j);
+
 /* The box of the search (n_var). */
 void design_bounds(const DesignSpace *space, const DesignOptions *o, double lower[], double upper[]);
 
 /* A design as it is built. */
 typedef struct {
-    double gap[SIDES][FLOORS_MAX]; /* [m]; INFINITY: there is nothing on that side */
-    double bumper[FLOORS_MAX];     /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
-    double t_base, t_top;          /* [m]; 0: there are none */
-    double side;                   /* [m]; 0: as core.width_m says */
+    double gap[SIDES][FLOORS_MAX];         /* [m]; INFINITY: there is nothing on that side */
+    double bumper[FLOORS_MAX];             /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
+    double t_base, t_top;                  /* [m]; 0: there are none */
+    double side;                           /* [m]; 0: as core.width_m says */
+    double link[FLOORS_MAX];               /* [N (s/m)^exponent]; 0: none */
+    int n_devices;                         /* stops, links, the tuned mass */
+    double mass_kg, mass_hz, mass_damping; /* of the tuned mass; 0: none */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);
 

@@ -70,7 +70,12 @@ typedef enum { GAP_SIDES_LIST(CHOICE_NAME) } GapSides;
 
 typedef struct {
     char variables[OPTION_TEXT_MAX]; /* words (scene/design.h); empty: gaps, thickness */
+    char devices[OPTION_TEXT_MAX];   /* words, of which each zone has one; empty, all: whatever variables name */
     GapSides gap_sides;
-    long gap_zones, bumper_zones;                       /* 0: one per floor */
-    NumberList gap_m, thickness_m, bumper_n_m, width_m; /* each from, to */
-} DesignOptions;                                        /* the design variables and their bounds */
+    long gap_zones, bumper_zones, link_zones, device_zones; /* 0: one per floor */
+    NumberList gap_m, thickness_m, bumper_n_m, width_m;     /* each from, to */
+    double step_gap_m;                                      /* gaps are multiples of it; 0: any */
+    NumberList step_thickness_m;                            /* plates that are sold; none: any */
+    NumberList link_n_s_m, mass_kg, mass_hz, mass_damping;
+    double link_exponent; /* [-] */
+} DesignOptions;          /* the design variables and their bounds */

@@ -8,6 +8,7 @@
 #include "evaluate/tower.h"
 #include "base/dominance.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "report/report_json.h"
 #include "settings/settings.h"
 
@@ -36,6 +37,7 @@ struct OnDemand {
     Ground own, ground;    /* of the run, pga_g as its motion has it; of the scene that is open */
     atomic_size_t n_var;   /* 0: none was opened yet; once it is set the settings, the run's ground and bounds stay */
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    json_t *values;  /* values_of */
     Problem problem; /* on that ground */
     int is_open;
     SimResult no_core, result;
@@ -84,6 +86,7 @@ void on_demand_close(OnDemand *o)
     pthread_mutex_destroy(&o->designs);
     pthread_mutex_destroy(&o->scene);
     free(o->provenance);
+    json_decref(o->values);
     free(o);
 }
 
@@ -185,6 +188,26 @@ static Status open_scene(OnDemand *o, const Ground *g, Err *err)
     return tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_NO_CORE}, &o->no_core, err);
 }
 
+/* Of every variable that is not real the values that it takes, of a choice its words; of others null. */
+static json_t *values_of(const Problem *p, const Schema *schema)
+{
+    json_t *all = json_array();
+    char word[KIND_WORD_MAX];
+    for (size_t d = 0; d < p->n_var; d++) {
+        json_t *list = problem_is_discrete(p, d) ? json_array() : json_null();
+        const int is_stepped = problem_kind(p, d) == VARIABLE_STEPPED;
+        const size_t n = !json_is_array(list) ? 0
+                         : is_stepped         ? p->steps[d].n
+                                              : (size_t)(p->upper[d] - p->lower[d]) + 1;
+        for (size_t i = 0; i < n; i++) {
+            const double x = is_stepped ? steps_at(&p->steps[d], i) : p->lower[d] + (double)i;
+            json_array_append_new(list, schema_word(schema, d, x, word) ? json_words(word) : json_number(x));
+        }
+        json_array_append_new(all, list);
+    }
+    return all;
+}
+
 /* The scene of the run itself. The mutex is held. */
 static Status open_first(OnDemand *o, const Run *run, Err *err)
 {
@@ -194,7 +217,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
         return fail(err, STATUS_MISSING, "%s: is no run of the tower: nothing to change", run->folder);
     o->used = o->settings;
     o->used.search.threads = 1;
-    o->is_single = o->used.sim.replicates == 1 && motion_n_records(&o->used.motion) == 1;
+    o->is_single = o->used.sim.replicates == 1 && suite_count(&o->used.motion) == 1;
     o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution};
     TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
     TRY(open_scene(o, &o->own, err));
@@ -203,6 +226,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
     o->own.pga_g = motion_peak(&tower_record(tower_of(&o->problem), 0)->motion) / GRAVITY;
     memcpy(o->lower, o->problem.lower, o->problem.n_var * sizeof *o->lower);
     memcpy(o->upper, o->problem.upper, o->problem.n_var * sizeof *o->upper);
+    o->values = values_of(&o->problem, &run->schema);
     o->n_var = o->problem.n_var;
     return STATUS_OK;
 }
@@ -235,12 +259,13 @@ Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err)
     const int scales_otherwise = o->used.motion.pga_g == 0 && motion_scalings(&o->used.motion, scalings) > 0;
     snprintf(options, sizeof options, "%s%s", o->is_single ? "" : ONCE,
              is_uncertain(&o->used.sim.uncertain) ? CERTAIN : "");
-    *bounds = json_of("lower=%p upper=%p pga_g=%p stretch=%p restitution=%p is_comparable=%c options=%s pga_options=%s",
-                      json_numbers(o->n_var, o->lower), json_numbers(o->n_var, o->upper),
-                      json_numbers(3, (double[]){g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE}),
-                      json_numbers(3, (double[]){g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE}),
-                      json_numbers(3, (double[]){RESTITUTION[0], g->restitution, RESTITUTION[1]}), o->is_single,
-                      options, scales_otherwise ? SCALED_OTHERWISE : "");
+    *bounds = json_of(
+        "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p is_comparable=%c options=%s pga_options=%s",
+        json_numbers(o->n_var, o->lower), json_numbers(o->n_var, o->upper), json_deep_copy(o->values),
+        json_numbers(3, (double[]){g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE}),
+        json_numbers(3, (double[]){g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE}),
+        json_numbers(3, (double[]){RESTITUTION[0], g->restitution, RESTITUTION[1]}), o->is_single, options,
+        scales_otherwise ? SCALED_OTHERWISE : "");
     return STATUS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <zlib.h>
 
 #include "base/json.h"
 #include "report/report.h"
@@ -13,7 +14,7 @@
 #include "serve/guard.h"
 
 /* FILES_OWN: of the process beside its connections. */
-enum { STALL_S = 15, EVENT_MAX = 2048, FILES_OWN = 40 };
+enum { STALL_S = 15, EVENT_MAX = 2048, FILES_OWN = 40, PACKED_MIN = 16384 };
 static const double BEAT_S = 5; /* between events at most */
 
 /* A run is kept in memory after a page asked for it, after all were listed. */
@@ -48,6 +49,7 @@ typedef struct {
     unsigned code;
     const char *type;
     char *text;                 /* malloc'd */
+    size_t n_packed;            /* bytes of text where it is gzip; 0: a text with its NUL */
     Stream *stream;             /* in the place of the text */
     char place[TOKEN_TEXT + 8]; /* of a redirection; empty: none */
     const char *allow;          /* methods; NULL: not said */
@@ -123,11 +125,37 @@ static unsigned code_of(Status status)
 
 static ssize_t read_events(void *user, uint64_t position, char *out, size_t room);
 
+/* gzip in the place of a long text, where the client takes it: a page of two thousand designs is 1.5 MB, a third of it
+ * packed. What cannot be packed stays. */
+static void pack(struct MHD_Connection *c, Answer *a)
+{
+    const char *takes = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT_ENCODING);
+    const size_t n = a->text ? strlen(a->text) : 0;
+    z_stream z = {.next_in = (Bytef *)a->text, .avail_in = (uInt)n};
+    if (n < PACKED_MIN || n > INT_MAX || !takes || !strstr(takes, "gzip") || strstr(takes, "gzip;q=0") ||
+        deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + 16, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
+        return;
+    const uLong most = deflateBound(&z, n);
+    char *packed = malloc(most);
+    z.next_out = (Bytef *)packed;
+    z.avail_out = (uInt)most;
+    if (packed && deflate(&z, Z_FINISH) == Z_STREAM_END) {
+        free(a->text);
+        a->text = packed;
+        a->n_packed = z.total_out;
+    } else
+        free(packed);
+    deflateEnd(&z);
+}
+
 static struct MHD_Response *response_of(const Answer *a)
 {
     struct MHD_Response *r =
         a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, free)
-                  : MHD_create_response_from_buffer(a->text ? strlen(a->text) : 0, a->text, MHD_RESPMEM_MUST_FREE);
+                  : MHD_create_response_from_buffer(a->n_packed > 0 ? a->n_packed
+                                                    : a->text       ? strlen(a->text)
+                                                                    : 0,
+                                                    a->text, MHD_RESPMEM_MUST_FREE);
     if (!r && a->stream)
         free(a->stream);
     else if (!r)
@@ -135,11 +163,13 @@ static struct MHD_Response *response_of(const Answer *a)
     return r;
 }
 
-static enum MHD_Result send_answer(struct MHD_Connection *c, const Answer *a)
+static enum MHD_Result send_answer(struct MHD_Connection *c, Answer *a)
 {
+    pack(c, a);
     const char *const HEADERS[][2] = {{MHD_HTTP_HEADER_CONTENT_TYPE, a->type},
                                       {MHD_HTTP_HEADER_LOCATION, a->place[0] ? a->place : NULL},
                                       {MHD_HTTP_HEADER_ALLOW, a->allow},
+                                      {MHD_HTTP_HEADER_CONTENT_ENCODING, a->n_packed > 0 ? "gzip" : NULL},
                                       {"Cache-Control", "no-store"},
                                       {"X-Content-Type-Options", "nosniff"},
                                       {"Referrer-Policy", "no-referrer"},
@@ -167,9 +197,23 @@ static Status answer_json(json_t *all, int precision, Answer *a)
     return STATUS_OK;
 }
 
-static Answer refusal(unsigned code, const char *words)
+static const char REFUSED[] =
+    "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>imtet: %u</title></head><body><h1>%u: "
+    "%s</h1>"
+    "<p>The address that <code>imtet serve</code> printed when it started leads to the newest run; every run links to "
+    "the others.</p></body></html>\n";
+
+/* A page for a person, who asks for one, JSON for a script. */
+static Answer refusal(struct MHD_Connection *c, unsigned code, const char *words)
 {
-    Answer a;
+    const char *wanted = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT);
+    Answer a = {.code = code, .type = "text/html; charset=utf-8"};
+    char said[sizeof(Err)];
+    snprintf(said, sizeof said, "%s", words);
+    for (char *p = said; (p = strpbrk(p, "<&")); *p = ' ') /* of a path, say */
+        ;
+    if (wanted && strstr(wanted, "text/html") && asprintf(&a.text, REFUSED, code, code, said) > 0)
+        return a;
     answer_json(json_of("error=%s", words), 6, &a);
     a.code = code;
     return a;
@@ -380,7 +424,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = show(&v, &a, &err);
     watch_give(&v.view);
     if (status != STATUS_OK)
-        a = refusal(code_of(status), err.text);
+        a = refusal(c, code_of(status), err.text);
     if (a.stream && strcmp(method, "HEAD") == 0) { /* libmicrohttpd would send the end of its chunks */
         free(a.stream);
         a.stream = NULL;
@@ -397,16 +441,16 @@ static void judge(const Server *s, struct MHD_Connection *c, const char *url, co
     const int posts = strcmp(method, "POST") == 0, gets = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
     const PathVerdict verdict = guard_path(s->token, url, &r->path);
     if (!guard_host(host) || !guard_origin(origin, host) || verdict == PATH_NONE)
-        *a = refusal(MHD_HTTP_FORBIDDEN, "refused");
+        *a = refusal(c, MHD_HTTP_FORBIDDEN, "refused");
     else if (verdict == PATH_UNENDED)
         *a = redirection(strrchr(url, '/') + 1);
     else if (verdict == PATH_UNKNOWN || !(r->route = route_of(&r->path)))
-        *a = refusal(MHD_HTTP_NOT_FOUND, "there is no such part");
+        *a = refusal(c, MHD_HTTP_NOT_FOUND, "there is no such part");
     else if (!gets && !(posts && r->route->post)) {
-        *a = refusal(MHD_HTTP_METHOD_NOT_ALLOWED, "this method is not known here");
+        *a = refusal(c, MHD_HTTP_METHOD_NOT_ALLOWED, "this method is not known here");
         a->allow = r->route->post ? "GET, HEAD, POST" : "GET, HEAD";
     } else if (length && strtoull(length, NULL, 10) > (posts ? BODY_MAX : 0))
-        *a = refusal(MHD_HTTP_CONTENT_TOO_LARGE, "too large");
+        *a = refusal(c, MHD_HTTP_CONTENT_TOO_LARGE, "too large");
 }
 
 /* Called when the headers are there, for every piece of the body, and at its end. */
@@ -427,7 +471,7 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *
     if (*n_piece == 0 && !r->is_too_large)
         return respond(s, c, method, r);
     if (*n_piece == 0) {
-        a = refusal(MHD_HTTP_CONTENT_TOO_LARGE, "too large");
+        a = refusal(c, MHD_HTTP_CONTENT_TOO_LARGE, "too large");
         return send_answer(c, &a);
     }
     r->is_too_large |= *n_piece > sizeof r->body - r->n; /* chunks: what is too much is dropped, until it is ended */

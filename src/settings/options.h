@@ -35,7 +35,8 @@ typedef struct {
     char senses[OPTION_TEXT_MAX];                        /* min or max, one word or a list */
     char variable_names[OPTION_TEXT_MAX], objective_names[OPTION_TEXT_MAX];
     Noisy noisy;
-    double noise; /* [-] of a textbook problem's answers */
+    long constraints; /* values g of every answer; below 0: the first one tells. No setting: of each run */
+    double noise;     /* [-] of a textbook problem's answers */
 } ProblemOptions;
 
 /* -- [search], [run] -- */

@@ -6,6 +6,7 @@
 #include "base/list.h"
 #include "base/text.h"
 #include "motion/builtin.h"
+#include "motion/suite.h"
 #include "settings/rules.h"
 #include "settings/table.h"
 
@@ -153,7 +154,9 @@ static const Option OPTIONS[] = {
          "ground motion: one of the program, a file, or none: at rest under motion.forces (docs/motions.md)",
          .flags = SETTING_BASIC | SETTING_FREE),
     PATH_LIST(motion.records, "none",
-              "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
+              "further records of the same study, a comma list of files, folders, *list.txt or builtin:suite: every "
+              "design is "
+              "simulated under each (sim.robust, docs/motions.md)",
               .flags = SETTING_FREE),
     REAL(motion.pga_g, "g", "0", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded",
          .flags = SETTING_BASIC),
@@ -201,8 +204,10 @@ static const Option OPTIONS[] = {
     REAL(sim.filter_hz, "Hz", "25", 0.01, 1000, "low-pass of j3_filtered_g, the acceleration that equipment feels"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
            "several records: worst or mean of their means over the replicates; of all replicates of all records "
-           "mean_plus_sd, or a number: the quantile on the bad side, 0.9: nine in ten are better",
+           "mean_plus_sd, cvar (mean of the worst, sim.tail), or a number: the quantile on the bad side, 0.9: nine in "
+           "ten are better. Chances p(NAME>NUMBER) of search.objectives are shares of all, whatever stands here",
            .number = AT_TYPED(sim.quantile, double), .min = 1e-6, .max = 1),
+    REAL(sim.tail, "-", "0.2", 1e-3, 1, "cvar: share of all simulations, the worst, whose mean counts"),
 
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",
@@ -210,8 +215,10 @@ static const Option OPTIONS[] = {
         "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness, of the "
         "damping ratios and of the strength (building.yield_drift); needs sim.replicates >= 2"),
 
-    TEXT(design.variables, "gaps, thickness",
-         "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
+    TEXT(
+        design.variables, "gaps, thickness",
+        "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box), links "
+        "(dashpots between floors and core), tuned_mass (at the roof: mass, frequency, damping ratio)"),
     CHOICE(
         design.gap_sides, GapSides, CHOICE_WORDS(GAP_SIDES_LIST), "both",
         "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
@@ -222,9 +229,25 @@ static const Option OPTIONS[] = {
            .flags = SETTING_BASIC),
     BOUNDS(design.thickness_m, "m", "0.004, 0.04", 1e-6, 10, "bounds of the search: core thickness",
            .flags = SETTING_BASIC),
+    REAL(design.step_gap_m, "m", "0", 0, 1, "gaps as set on site: multiples of this, 0.005 say; 0: any"),
+    LIST(design.step_thickness_m, "m", "none", 1e-6, 10,
+         "core thicknesses as sold, ascending, in the place of design.thickness_m; none: any"),
     BOUNDS(design.bumper_n_m, "N/m", "1e7, 1e10", 1e3, 1e14, "bounds of the search: stiffness of a bumper"),
     BOUNDS(design.width_m, "m", "6, 15", 0.1, 200,
            "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
+    TEXT(design.devices, "all",
+         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, none; all: no choice, every "
+         "floor "
+         "has what design.variables name"),
+    WHOLE(design.device_zones, "0", 0, 128,
+          "0: a choice for every floor; else one for each of so many zones of floors"),
+    WHOLE(design.link_zones, "0", 0, 128, "0: a link for every floor; else links of so many zones of floors differ"),
+    REAL(design.link_exponent, "", "1", 0.1, 2,
+         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold; c is then in N (s/m)^a"),
+    BOUNDS(design.link_n_s_m, "N s/m", "1e4, 1e7", 1e-3, 1e12, "bounds of the search: c of a link"),
+    BOUNDS(design.mass_kg, "kg", "1e4, 5e5", 1e-3, 1e9, "bounds of the search: tuned mass"),
+    BOUNDS(design.mass_hz, "Hz", "0.1, 2", 1e-3, 1e3, "bounds of the search: frequency of the tuned mass"),
+    BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
@@ -252,9 +275,9 @@ static const Option OPTIONS[] = {
     WHOLE(search.population, "92", 4, 100000, "designs per generation"),
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
-    PATH(search.start, "none", NULL,
-         "initial designs: a CSV with a column per variable, or the folder of a run, whose front is taken",
-         .flags = SETTING_FREE),
+    PATH_LIST(search.start, "none",
+              "initial designs: CSVs with a column per variable, folders of runs, whose fronts are taken, or a list",
+              .flags = SETTING_FREE),
     WHOLE(search.generations, "1000", 1, 1e9, "stop after so many generations", .flags = SETTING_LIMIT),
     WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_BASIC | SETTING_LIMIT),
     REAL(search.max_hours, "h", "0", 0, 1e4,
@@ -285,7 +308,7 @@ static const Option OPTIONS[] = {
           "noisy"),
     TEXT(search.objectives, "auto",
          "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
-         "those of them that the building has"),
+         "those of them that the building has; also p(NAME>NUMBER), the probability that one is exceeded"),
     TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
          .flags = SETTING_BASIC),
 
@@ -505,12 +528,18 @@ typedef struct {
     void *user;
 } Change;
 
-/* builtin:NAME and none are no files. */
+/* builtin:NAME and none are no files; what is said of a record behind its path stays there. */
 static void change_file(char path[OPTION_TEXT_MAX], void *user)
 {
     const Change *c = user;
-    if (!builtin_name(path) && strcmp(path, "none") != 0)
-        c->change(path, c->user);
+    char words[OPTION_TEXT_MAX];
+    const size_t n = source_path_length(path);
+    if (builtin_name(path) || strcmp(path, "none") == 0)
+        return;
+    memcpy(words, path + n, strlen(path + n) + 1);
+    path[n] = 0;
+    c->change(path, c->user);
+    snprintf(path + strlen(path), OPTION_TEXT_MAX - strlen(path), "%s", words);
 }
 
 void table_change_files(Settings *s, int i, ListItemFn change, void *user)

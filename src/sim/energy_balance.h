@@ -1,6 +1,7 @@
 /* sim/energy_balance.h -- the energy balance of a run, and the shares of the input that are read from it.
  *
  *   input = kinetic + strain + damped + contacts (stored + lost + removed by the no-tension condition) + hysteresis
+ *           + devices
  *
  * Threads  no state */
 #ifndef IMTET_SIM_ENERGY_BALANCE_H
@@ -47,8 +48,9 @@ static inline void energy_balance_close(SimResult *result, int nb, const int lik
     energy_balance_sum_shares(result);
     result->edcs_pct = energy_share(core, input);
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
-                       result->clamp_j + result->hysteresis_j;
+                       result->clamp_j + result->hysteresis_j + result->device_loss_j;
     result->ed_hysteresis_pct = energy_share(result->hysteresis_j, input);
+    result->ed_devices_pct = energy_share(result->device_loss_j, input);
     result->energy_balance_error = fabs(input - out) / energy_balance_scale(input, out);
     if (!isfinite(input - out)) {
         result->outcome = RUN_NOT_FINITE;

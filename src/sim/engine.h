@@ -61,9 +61,9 @@ typedef struct EngineEntry {
     ToleranceKind tolerance;
     EngineFn run;
     int refines; /* follows EngineOptions.refinement: a run whose energy balance does not close may be repeated */
-    /* Work space for any number of runs of up to n_floors and nb building modes, one at a time, where storeys yield or
-     * none does; both NULL: the engine keeps none. */
-    Status (*work_create)(void **work, int n_floors, int nb, int yields, Err *err);
+    /* Work space for any number of runs of up to n_floors, nb building modes and so many devices, one at a time, where
+     * storeys yield or none does; both NULL: the engine keeps none. */
+    Status (*work_create)(void **work, int n_floors, int nb, int yields, int devices, Err *err);
     void (*work_free)(void *work); /* NULL is fine */
 } EngineEntry;
 
@@ -87,7 +87,7 @@ ENGINE_LIST(X)
 #undef X
 
 /* The work space of engine_fast. */
-Status engine_fast_create(void **work, int n_floors, int nb, int yields, Err *err);
+Status engine_fast_create(void **work, int n_floors, int nb, int yields, int devices, Err *err);
 void engine_fast_free(void *work);
 
 #endif

@@ -10,8 +10,8 @@ static int padded(int n)
 Status model_create(SimModel *model, int n, int nb_max, Err *err)
 {
     memset(model, 0, sizeof *model);
-    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n);
-    const size_t need = 2 * m_max * n_pad + 3 * m_max + 3 * n_pad;
+    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n + 1);
+    const size_t need = (2 * n_pad + (size_t)n + 1 + 3) * m_max + 3 * n_pad;
     double *p = aligned_alloc(64, need * sizeof *p);
     model->like = malloc((size_t)nb_max * sizeof *model->like);
     model->store = p;
@@ -25,7 +25,8 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
     model->n_pad = (int)n_pad;
     model->R = p;
     model->RT = model->R + m_max * n_pad;
-    model->omega = model->RT + m_max * n_pad;
+    model->B = model->RT + m_max * n_pad;
+    model->omega = model->B + m_max * (size_t)(n + 1);
     model->zeta = model->omega + m_max;
     model->gamma = model->zeta + m_max;
     model->gap = model->gamma + m_max;
@@ -82,6 +83,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     model->nb = building->n;
     model->nc = core ? n : 0;
     model->m = model->nb + model->nc;
+    model->n_devices = model->has_mass = 0;
     model->m_pad = padded(model->m);
     memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
@@ -112,6 +114,36 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->middle[j] = 0;
     }
     return core && gaps ? model_set_gaps(model, gaps, gaps, err) : STATUS_OK;
+}
+
+void model_add_mass(SimModel *model, double mass)
+{
+    const int i = model->m++;
+    model->nc++;
+    model->has_mass = 1;
+    model->m_pad = padded(model->m);
+    memset(model->R + (size_t)i * (size_t)model->n_pad, 0,
+           sizeof(double) * (size_t)((model->m_pad - i) * model->n_pad));
+    for (int k = i; k < model->m_pad; k++) {
+        model->omega[k] = k > i;
+        model->zeta[k] = k > i ? 0.5 : 0;
+        model->gamma[k] = k > i ? 0 : sqrt(mass);
+    }
+    for (int j = 0; j < model->n_pad; j++)
+        for (int k = 0; k < model->m_pad; k++)
+            model->RT[j * model->m_pad + k] = model->R[k * model->n_pad + j];
+}
+
+void model_add_device(SimModel *model, const Device *device, int on_mass)
+{
+    const int e = model->n_devices++, last = model->m - 1;
+    const double *row = model->RT + (size_t)device->floor * (size_t)model->m_pad;
+    double *b = model->B + (size_t)e * (size_t)model->m_pad;
+    model->device[e] = *device;
+    for (int i = 0; i < model->m_pad; i++)
+        b[i] = on_mass && i >= model->nb ? 0 : row[i];
+    if (on_mass)
+        b[last] = -1 / model->gamma[last];
 }
 
 void model_plastic_forces(const SimModel *model, const double p[], double f[])

@@ -12,6 +12,9 @@
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
  * since sum_{i<nb} R_ij gamma_i = 1: the motion of the ground is in the span of the building's modes.
  *
+ * A device e (sim/device.h) adds -B_ei F_e to mode i. The tuned mass is the last mode, of frequency 0, which moves no
+ * floor: x = q / sqrt(mass) from the ground.
+ *
  * A floor that may go right (u > v) by g_R and left by g_L has gap = (g_R + g_L) / 2 around middle = (g_R - g_L) / 2.
  *
  * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
@@ -23,6 +26,7 @@
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
+#include "sim/device.h"
 #include "sim/result.h"
 #include "sim/storey.h"
 
@@ -43,6 +47,9 @@ typedef struct {
     int yields;                  /* any storey does: */
     StoreyLaw storey_law;
     double yield_m[FLOORS_MAX], yield_n_m[FLOORS_MAX]; /* (n) [m], [N/m]; of a storey that stays elastic 1e300, 0 */
+    int n_devices, has_mass;
+    Device device[FLOORS_MAX + 1]; /* (n_devices) */
+    double *B;                     /* (n + 1, m_pad) [1/sqrt(kg)] a row per device */
     void *store;
 } SimModel;
 
@@ -56,6 +63,12 @@ void model_free(SimModel *model);
 
 /* Gaps (n) [m] side by side (SIDES); INFINITY: there is nothing on that side. A negative gap and NAN are refused. */
 Status model_set_gaps(SimModel *model, const double right[], const double left[], Err *err);
+
+/* A tuned mass [kg] on a model without devices: one mode more. */
+void model_add_mass(SimModel *model, double mass);
+
+/* A device between its floor and the core beside it, or the tuned mass. */
+void model_add_device(SimModel *model, const Device *device, int on_mass);
 
 /* Of floor j on side s = 1, -1 where u_j - v_j is w [m]. */
 static inline double penetration(const SimModel *model, int j, int s, double w)

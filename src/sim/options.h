@@ -39,7 +39,8 @@ typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
 #define ROBUST_LIST(X)                                                                                                 \
     X(ROBUST_WORST, "worst")                                                                                           \
     X(ROBUST_MEAN, "mean")                                                                                             \
-    X(ROBUST_MEAN_PLUS_SD, "mean_plus_sd")
+    X(ROBUST_MEAN_PLUS_SD, "mean_plus_sd")                                                                             \
+    X(ROBUST_CVAR, "cvar")
 typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.quantile */ } Robust;
 
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
@@ -59,6 +60,7 @@ typedef struct {
     double duration_s;        /* 0: the whole motion */
     long replicates;          /* simulations of a design under each record */
     Robust robust;            /* how a design's results under several records become one */
+    double tail;              /* of ROBUST_CVAR: share of the simulations */
     double quantile;          /* a number as sim.robust: on the bad side; 0: robust is one of the words */
     UncertainOptions uncertain;
     double gap_tolerance_m; /* standard deviation of a gap as built */

@@ -55,6 +55,8 @@ typedef struct {
     double peak_velocity_m_s[FLOORS_MAX];                  /* of the floors relative to the ground */
 } SimForces;
 
+enum { CHANCES_MAX = 4 };
+
 typedef struct {
     RunOutcome outcome;
     char reason[160]; /* empty when outcome is RUN_OK */
@@ -88,16 +90,19 @@ typedef struct {
     int bumper_bottoms_out;                     /* the strain exceeds ContactOptions.bumper_strain_max */
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
-    double stroke_m,
-        dashpot_n; /* SCENE_TMD, SCENE_LINKS: largest distance across a device, largest force of a dashpot */
-    long steps, force_evaluations; /* what the run cost */
-    int repeated;                  /* times the run was repeated with shorter steps, its energy balance open */
-    double seconds;                /* wall time */
+    double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one (SCENE_TMD,
+                                              SCENE_LINKS: of its dashpot) */
+    int n_devices;                              /* of SCENE_IMPACT: stops, links, tuned masses */
+    double device_loss_j, ed_devices_pct;       /* dissipated by devices of the design; of input_energy_j */
+    long steps, force_evaluations;              /* what the run cost */
+    int repeated;   /* times the run was repeated with shorter steps, its energy balance open */
+    double seconds; /* wall time */
 
     int filtered_known; /* it was asked for: SimOptions.filtered */
     double peak_filtered_g[FLOORS_MAX],
-        j3_filtered_g; /* as peak_acceleration_g behind a low-pass (sim/floor_filter.h) */
-    int forces_known;  /* they were asked for: SimOptions.forces */
+        j3_filtered_g;          /* as peak_acceleration_g behind a low-pass (sim/floor_filter.h) */
+    double chance[CHANCES_MAX]; /* 1 where a limit of the search is exceeded, set by who asks (evaluate/measures.h) */
+    int forces_known;           /* they were asked for: SimOptions.forces */
     SimForces forces;
 } SimResult;
 

@@ -170,6 +170,12 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     return status;
 }
 
+/* A link on every floor, the tuned mass. */
+static int sim_devices_max(const DesignSpace *s)
+{
+    return (s->n_links > 0 ? s->n_floors : 0) + (s->n_mass > 0);
+}
+
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
 {
     *out = NULL;
@@ -187,7 +193,7 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n,
-                                            scene->building.yields, err);
+                                            scene->building.yields, sim_devices_max(&scene->design), err);
     if (status == STATUS_OK)
         *out = w;
     else
@@ -462,6 +468,26 @@ Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSk
     return status;
 }
 
+/* The dashpot of the tuned mass: c = 2 zeta m w, its spring m w^2. */
+static void add_devices(SimWorker *w, const Design *d)
+{
+    SimModel *model = &w->model;
+    const double omega = 2 * M_PI * d->mass_hz;
+    if (d->mass_kg > 0)
+        model_add_mass(model, d->mass_kg);
+    for (int j = 0; j < w->core.top; j++)
+        if (d->link[j] > 0)
+            model_add_device(
+                model, &(Device){.floor = j, .damping = d->link[j], .exponent = w->options->design.link_exponent}, 0);
+    if (d->mass_kg > 0)
+        model_add_device(model,
+                         &(Device){.floor = model->n - 1,
+                                   .stiffness = d->mass_kg * omega * omega,
+                                   .damping = 2 * d->mass_damping * d->mass_kg * omega,
+                                   .exponent = 1},
+                         1);
+}
+
 static Status set_impacts(SimWorker *w, const Design *d, Err *err)
 {
     TRY(model_set(&w->model, w->options, w->building, &w->core, NULL, err));
@@ -475,6 +501,7 @@ static Status set_impacts(SimWorker *w, const Design *d, Err *err)
     for (int j = 0; j < w->model.n; j++)
         if (d->bumper[j] >= 0)
             w->model.contact[j].bumper = built * d->bumper[j];
+    add_devices(w, d);
     return STATUS_OK;
 }
 
@@ -516,6 +543,7 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(filter_floors(w, result, err));
     set_drift_ratios(w->building->storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
+    result->n_devices = kind == SCENE_IMPACT ? d->n_devices : 0;
     set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;

@@ -153,7 +153,7 @@ static void put_object(FILE *f, const Run *run, size_t i)
     if (e->err)
         put_list(f, ",\"err\":", s->n_obj + s->n_extra, e->err);
     if (s->n_extra > 0) {
-        fputs(",\"measures\":", f);
+        fputs(s->order.n_obj > 0 ? ",\"measures\":" : ",\"g\":", f);
         print_list(f, s->n_extra, e->extra);
     }
     fputc('}', f);
@@ -265,9 +265,10 @@ static json_t *json_columns(const Schema *schema)
     for (size_t c = 0; c < schema->n_var + schema->n_obj + schema->n_extra; c++) {
         const int is_objective = c >= schema->n_var && c < schema->n_var + schema->n_obj;
         json_array_append_new(list, json_of("name=%s role=%s sense=%s", schema->column[c].name,
-                                            c < schema->n_var ? "variable"
-                                            : is_objective    ? "objective"
-                                                              : "measure",
+                                            c < schema->n_var         ? "variable"
+                                            : is_objective            ? "objective"
+                                            : schema->order.n_obj > 0 ? "measure"
+                                                                      : "constraint",
                                             !is_objective                   ? NULL
                                             : schema->column[c].sense > 0.0 ? "min"
                                                                             : "max"));

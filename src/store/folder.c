@@ -152,6 +152,12 @@ void folder_note(const Folder *folder, size_t n_stored)
 
 void folder_release(Folder *folder)
 {
+    char path[PATH_MAX];
+    if (folder->lock >= 0 && folder->is_new && !folder_has(folder, "run.sqlite")) {
+        folder_path(folder, "lock", path);
+        unlink(path);
+        rmdir(folder->path);
+    }
     if (folder->lock >= 0)
         close(folder->lock);
     folder->lock = -1;
@@ -174,6 +180,7 @@ int lock_is_held(const char *path, LockHolder *holder)
 static Status take_lock(Folder *folder, Err *err)
 {
     char path[PATH_MAX];
+    folder->is_new = access(folder->path, F_OK) != 0;
     TRY(make_folders(folder->path, err));
     folder_path(folder, "lock", path);
     return lock_take(folder, path, err);

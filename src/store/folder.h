@@ -18,6 +18,7 @@
 typedef struct {
     char path[PATH_MAX - 64];
     int lock;        /* -1: not taken */
+    int is_new;      /* made by folder_take: removed again where no run came of it */
     size_t n_stored; /* evaluations that the database had when the folder was taken, as the lock says */
 } Folder;
 

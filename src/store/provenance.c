@@ -154,8 +154,10 @@ static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
 
 static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
 {
-    return t ? inputs_of_tower(tower_record(t, 0), hashes)
-             : json_of("command=%s", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+    if (t)
+        return inputs_of_tower(tower_record(t, 0), hashes);
+    json_t *all = json_of("command=%s", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+    return s->problem.constraints > 0 ? json_put(all, "constraints=%ld", s->problem.constraints) : all;
 }
 
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)

@@ -299,9 +299,35 @@ size_t run_nearest(const Run *run, size_t rows[NEAREST_MAX])
 
 /* -- a design by its name ------------------------------------------------------------------------------------------ */
 
+/* Row of the design that this one was made of, or run->table.n. */
+static size_t made_of(const Run *run, size_t row)
+{
+    const char *reason = run->table.row[row].reason;
+    const size_t n = sizeof SIMPLIFIED_FROM - 1;
+    return strncmp(reason, SIMPLIFIED_FROM, n) == 0 ? run_find(run, strtol(reason + n, NULL, 10)) : run->table.n;
+}
+
+int run_simplified(const Run *run, size_t row, size_t pair[2])
+{
+    const size_t n = run->table.n;
+    pair[0] = made_of(run, row);
+    pair[1] = row;
+    for (size_t i = run_first_polished(run); pair[0] == n && i < n; i++)
+        if (made_of(run, i) == row)
+            pair[1] = i;
+    if (pair[0] == n && pair[1] != row)
+        pair[0] = row;
+    return pair[0] < n;
+}
+
+int run_has_limits(const Run *run)
+{
+    return strcmp(run->settings->search.limits, "none") != 0 || run->settings->problem.constraints > 0;
+}
+
 Status run_why_empty(const Run *run, Err *err)
 {
-    char nearest[PATH_MAX + 16];
+    char nearest[PATH_MAX + 16], limits[160];
     const size_t n_ok = run->table.n - run->n_failed;
     const Settings *s = run->settings;
     snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
@@ -312,9 +338,12 @@ Status run_why_empty(const Run *run, Err *err)
     if (run->n_generations == 0)
         return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
                         run->folder, run->table.n);
-    if (strcmp(s->search.limits, "none") != 0)
-        return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
-                    s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
+    const int has_list = strcmp(s->search.limits, "none") != 0, has_g = s->problem.constraints > 0;
+    snprintf(limits, sizeof limits, "%.120s%s%s", has_list ? s->search.limits : "", has_list && has_g ? "," : "",
+             has_g ? "g<=0" : "");
+    if (run_has_limits(run))
+        return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %s%s%s", run->folder, n_ok, limits,
+                    access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
                     access(nearest, F_OK) == 0 ? nearest : "");
     return fail(err, STATUS_INTERNAL,
                 "%s: every design failed at least once; `imtet export %s --all --csv FILE` says why", run->folder,

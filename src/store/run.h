@@ -116,6 +116,11 @@ size_t run_evaluations(const Run *run, size_t first);
 
 size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */
 
+/* What the reason of a design begins with that `imtet simplify` made; the id of the one that it was made of follows. */
+static const char SIMPLIFIED_FROM[] = "simplified from ";
+/* Rows: a design as the search found it, and the last that was made of it, one of which is `row`; 0: there are none. */
+int run_simplified(const Run *run, size_t row, size_t pair[2]);
+
 /* As if nothing had been polished: the front is that of the search. */
 void run_drop_polished(Run *run);
 
@@ -146,6 +151,8 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err);
  * how many; 0: all of those failed. */
 enum { NEAREST_MAX = 10 };
 size_t run_nearest(const Run *run, size_t rows[NEAREST_MAX]);
+
+int run_has_limits(const Run *run); /* search.limits, or constraint values of external workers */
 
 /* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */
 Status run_why_empty(const Run *run, Err *err);

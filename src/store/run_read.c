@@ -19,16 +19,20 @@ typedef struct {
 
 /* -- settings and generations -------------------------------------------------------------------------------------- */
 
+/* A number 0..most of the inputs that the provenance names. */
+static long input_of(const Run *run, const char *key, long most)
+{
+    json_t *all = json_loads(run->provenance, 0, NULL);
+    const long n = json_integer_value(json_object_get(json_object_get(all, "inputs"), key));
+    json_decref(all);
+    return n > 0 && n <= most ? n : 0;
+}
+
 /* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
 static int floors_of(const Run *run, int n_var)
 {
-    int n = design_space_floors(&run->settings->design, core_section(&run->settings->core), n_var);
-    if (n > 0)
-        return n;
-    json_t *all = json_loads(run->provenance, 0, NULL);
-    n = (int)json_integer_value(json_object_get(json_object_get(all, "inputs"), "floors"));
-    json_decref(all);
-    return n > 0 && n <= FLOORS_MAX ? n : 0;
+    const int n = design_space_floors(&run->settings->design, core_section(&run->settings->core), n_var);
+    return n > 0 ? n : (int)input_of(run, "floors", FLOORS_MAX);
 }
 
 static Status take_head(sqlite3_stmt *row, void *user, Err *err)
@@ -48,6 +52,7 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     run->tried_to_polish = column_whole(row, 4, 0);
     run->polished_at = column_whole(row, 5, 0);
     const int is_tower = run->settings->problem.kind == PROBLEM_TOWER;
+    run->settings->problem.constraints = input_of(run, "constraints", CONSTRAINTS_MAX);
     TRY(schema_of(&run->schema, run->settings, is_tower ? floors_of(run, (int)n_var) : 0, err));
     return run->schema.n_var == (size_t)n_var ? STATUS_OK : database_damaged(l->d, err, "it has %ld variables", n_var);
 }

@@ -1,15 +1,21 @@
 /* study/initial_designs.h -- initial designs: known ones that a search begins with.
  *
- *   search.start = RUN    the front of another run, its polished designs too
+ *   search.start = RUN    the front of another run of the same variables, its polished designs too
  *                  FILE   a CSV with a column for every variable, in any order; further columns are not read
+ *                  A, B   several of them, one behind the other
  *
  * Ownership  initial_designs_read allocates X (n, n_var), the caller frees it; none: NULL and 0
  * Errors     a column that is missing, a file that is not there: named */
 #ifndef IMTET_STUDY_INITIAL_DESIGNS_H
 #define IMTET_STUDY_INITIAL_DESIGNS_H
 
-#include "evaluate/schema.h"
+#include "store/run.h"
 
-Status initial_designs_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err);
+/* where: the setting or option that names them, for messages. */
+Status initial_designs_read(const char *where, const char *start, const Schema *schema, double **X, size_t *n,
+                            Err *err);
+
+/* Whether designs of the run have the variables of this schema. */
+Status initial_designs_fit(const Run *run, const char *where, const Schema *schema, Err *err);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include "analysis/estimate.h"
 #include "base/stat.h"
-#include "evaluate/adapter.h"
+#include "study/run_simulator.h"
 
 /* Times that the steps are doubled; copies of a design, first and where those disagree; designs looked at together,
  * before the front is formed again; how often, so that names which move again and again come to an end. */
@@ -102,17 +102,11 @@ static int may_go_on(void *work)
 /* The first n designs in X. */
 static Status simulate(Work *w, size_t level, size_t n, Err *err)
 {
-    Settings s = *w->used;
-    Adapter *adapter;
-    Queue *q = NULL;
-    s.sim = w->sim[level];
-    TRY(adapter_open(&adapter, &s, err));
-    adapter_observe(adapter, &(Observer){.go_on = may_go_on, .user = w});
-    Status status = queue_open(&q, adapter_problem(adapter), QUEUE_AS_ASKED, 0, err);
+    RunSimulator r = {0};
+    Status status = run_simulator_open(&r, w->used, &w->sim[level], may_go_on, w, err);
     if (status == STATUS_OK)
-        status = ask_all(w, q, n, err);
-    queue_close(q);
-    adapter_close(adapter);
+        status = ask_all(w, r.queue, n, err);
+    run_simulator_close(&r);
     return status;
 }
 

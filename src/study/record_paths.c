@@ -4,13 +4,16 @@
 
 #include "motion/builtin.h"
 #include "motion/motion_scale.h"
+#include "motion/suite.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
 
 const char *const MOVED_KEY[N_MOVED] = {"motion.record", "motion.records", "motion.forces"};
 
-static Status check_is_there(const char *path, const char *what, const char *key, Err *err)
+static Status check_is_there(const char *source, const char *what, const char *key, Err *err)
 {
+    char path[OPTION_TEXT_MAX];
+    snprintf(path, sizeof path, "%.*s", (int)source_path_length(source), source);
     if (builtin_name(path) || strcmp(path, "none") == 0 || access(path, R_OK) == 0)
         return STATUS_OK;
     return fail(err, STATUS_MISSING, "%s: a %s of the run is not there; where it was moved, say so: --set %s=PATH%s",
@@ -18,30 +21,44 @@ static Status check_is_there(const char *path, const char *what, const char *key
                 strcmp(key, MOVED_KEY[MOVED_RECORDS]) == 0 ? ",... (all of them, in their order)" : "");
 }
 
+/* A record, of which `user` has seen so many. */
+static Status check_record(const char *source, void *user, Err *err)
+{
+    size_t *seen = user;
+    return check_is_there(source, "record", MOVED_KEY[(*seen)++ == 0 ? MOVED_RECORD : MOVED_RECORDS], err);
+}
+
 static Status check_all_there(const Settings *s, Err *err)
 {
-    char path[OPTION_TEXT_MAX];
-    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
-        TRY(motion_record(&s->motion, i, path, err));
-        TRY(check_is_there(path, "record", MOVED_KEY[i == 0 ? MOVED_RECORD : MOVED_RECORDS], err));
-    }
+    size_t seen = 0;
+    TRY(suite_of_study(&s->motion, check_record, &seen, err));
     return check_is_there(s->motion.forces, "file", MOVED_KEY[MOVED_FORCES], err);
+}
+
+typedef struct {
+    MotionOptions one;
+    uint64_t *now; /* (N_MOVED) */
+    size_t seen;
+} Hashed;
+
+static Status hash_record(const char *source, void *user, Err *err)
+{
+    Hashed *h = user;
+    Motion m = {0};
+    TRY(option_put_path(h->one.record, source, err));
+    TRY(motion_open(&m, &h->one, err));
+    if (h->seen++ == 0)
+        h->now[MOVED_RECORD] = m.file_hash;
+    h->now[MOVED_RECORDS] = provenance_add_hash(h->now[MOVED_RECORDS], m.file_hash);
+    h->now[MOVED_FORCES] = m.forces_hash;
+    motion_free(&m);
+    return STATUS_OK;
 }
 
 static Status hash_all(const Settings *s, uint64_t now[N_MOVED], Err *err)
 {
     memset(now, 0, N_MOVED * sizeof *now);
-    for (size_t i = 0; i < motion_n_records(&s->motion); i++) {
-        Motion m = {0};
-        MotionOptions one = s->motion;
-        TRY(motion_record(&s->motion, i, one.record, err));
-        TRY(motion_open(&m, &one, err));
-        now[MOVED_RECORD] = i == 0 ? m.file_hash : now[MOVED_RECORD];
-        now[MOVED_RECORDS] = provenance_add_hash(now[MOVED_RECORDS], m.file_hash);
-        now[MOVED_FORCES] = m.forces_hash;
-        motion_free(&m);
-    }
-    return STATUS_OK;
+    return suite_of_study(&s->motion, hash_record, &(Hashed){s->motion, now, 0}, err);
 }
 
 static Status compare(const Settings *s, const char *provenance, Err *err)

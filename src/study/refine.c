@@ -1,9 +1,9 @@
 #include "study/refine.h"
 
 #include "base/clock.h"
-#include "evaluate/adapter.h"
 #include "settings/options.h"
 #include "study/polish.h"
+#include "study/run_simulator.h"
 
 /* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
 static const double PREDICTABLE = 1e-3;
@@ -13,8 +13,7 @@ typedef struct {
     size_t row; /* of the run: the design itself */
     const RefineConfig *config;
     Refined *out;
-    Adapter *adapter;
-    Queue *queue;                                                                /* to its simulator */
+    RunSimulator simulator;
     double *x;                                                                   /* (n_var) of the best design so far */
     double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
     FrontBox box;
@@ -23,23 +22,11 @@ typedef struct {
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
-static void close_simulator(Refine *r)
-{
-    queue_close(r->queue);
-    adapter_close(r->adapter);
-    r->queue = NULL;
-    r->adapter = NULL;
-}
-
 static Status open_simulator(Refine *r, const SimOptions *sim, long replicates, Err *err)
 {
-    Settings s = *r->run->settings;
-    s.sim = *sim;
-    s.sim.replicates = replicates;
-    close_simulator(r);
-    TRY(adapter_open(&r->adapter, &s, err));
-    adapter_observe(r->adapter, &(Observer){.go_on = r->config->go_on, .user = r->config->user});
-    return queue_open(&r->queue, adapter_problem(r->adapter), QUEUE_AS_ASKED, 0, err);
+    SimOptions options = *sim;
+    options.replicates = replicates;
+    return run_simulator_open(&r->simulator, r->run->settings, &options, r->config->go_on, r->config->user, err);
 }
 
 static void count(Refine *r, size_t n_evaluated, size_t n_failed, long replicates)
@@ -53,8 +40,8 @@ static void count(Refine *r, size_t n_evaluated, size_t n_failed, long replicate
 static Status simulate(Refine *r, const double x[], size_t repeat, EvaluationTable *table, double f[], Err *err)
 {
     Finished done;
-    TRY(queue_ask(r->queue, &(Asked){.x = x, .repeat = repeat}, err));
-    TRY(queue_next(r->queue, &done, err));
+    TRY(queue_ask(r->simulator.queue, &(Asked){.x = x, .repeat = repeat}, err));
+    TRY(queue_next(r->simulator.queue, &done, err));
     memcpy(f, done.f, r->run->schema.n_obj * sizeof *f);
     count(r, 1, 0, r->config->replicates);
     return evaluation_table_append(table, done.evaluation, err);
@@ -121,8 +108,8 @@ static Status improve(Refine *r, double f[], Err *err)
     if (r->config->max_evals <= kept)
         return STATUS_OK;
     const size_t n = (r->config->max_evals - kept) / r->replicates;
-    const Status status =
-        polish_run(r->queue, &(PolishGoal){r->config->weight, r->box.span, r->bound, n, REFINE_GAIN_MIN}, &best, err);
+    const Status status = polish_run(
+        r->simulator.queue, &(PolishGoal){r->config->weight, r->box.span, r->bound, n, REFINE_GAIN_MIN}, &best, err);
     count(r, best.n_evaluated, best.n_failed, r->replicates);
     return status;
 }
@@ -164,7 +151,7 @@ static Status compare_finer(Refine *r, const double F[], Err *err)
     else
         estimate_options(&finer, &finer);
     TRY(open_simulator(r, &finer, r->replicates, err));
-    TRY(queue_evaluate(r->queue, 2, r->out->designs.x, (const size_t[]){1, 1}, G, unused, ok, err));
+    TRY(queue_evaluate(r->simulator.queue, 2, r->out->designs.x, (const size_t[]){1, 1}, G, unused, ok, err));
     count(r, 2, 0, r->replicates);
     const int is_known = ok[0] && ok[1];
     r->out->gain_finer = is_known ? gain_of(r, G) : -INFINITY;
@@ -223,7 +210,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
     out->seconds = clock_seconds() - start;
     if (status == STATUS_OK)
         out->designs.row[1].seconds = out->seconds;
-    close_simulator(&r);
+    run_simulator_close(&r.simulator);
     free(r.x);
     return status;
 }

@@ -2,8 +2,8 @@
 
 #include "analysis/estimate.h"
 #include "base/clock.h"
-#include "evaluate/adapter.h"
 #include "settings/options.h"
+#include "study/run_simulator.h"
 
 enum { ROUNDS = 50 };
 
@@ -11,30 +11,30 @@ typedef struct {
     const Run *run;
     const SimplifyConfig *config;
     Simplified *out;
-    Adapter *adapter;
-    Queue *queue;
+    RunSimulator simulator;
     const DesignSpace *space;
-    size_t n_var, n_obj, n_max;
+    size_t n_var, n_obj;
     double first[OBJECTIVES_MAX]; /* minimised objectives of the start */
     double violation;             /* ... of the limits */
     double *x;                    /* (n_var) so far */
-    double *X, *F, *G;            /* (n_max, n_var) (n_max, n_obj) (n_max, n_con) designs of a round */
-    unsigned char *ok;            /* (n_max) */
+    double *X, *F, *G;            /* (2 n_var, n_var) (2 n_var, n_obj) (2 n_var, n_con) designs of a round */
+    unsigned char *ok;            /* (2 n_var) */
     size_t n;                     /* of them */
 } Simplify;
 
 /* -- designs of a round -------------------------------------------------------------------------------------------- */
 
-static int is_open(const Simplify *s, size_t j, double gap)
+/* Variable j is a gap of the present design, and closing it may. */
+static int is_stop(const Simplify *s, size_t j)
 {
-    return (int)j < s->space->n_gaps && gap >= SIMPLIFY_OPEN_M;
+    return (int)j < s->space->n_gaps && s->x[j] < SIMPLIFY_OPEN_M;
 }
 
-size_t simplify_n_stops(const DesignSpace *space, const double x[])
+static size_t n_stops(const Simplify *s)
 {
     size_t n = 0;
-    for (int j = 0; j < space->n_gaps; j++)
-        n += x[j] < SIMPLIFY_OPEN_M;
+    for (size_t j = 0; j < s->n_var; j++)
+        n += is_stop(s, j);
     return n;
 }
 
@@ -49,7 +49,7 @@ static void add(Simplify *s, size_t j, double value)
 /* Above 1 where limits are violated by more than at the start. */
 static double loss_of(const Simplify *s, const double f[], const double g[])
 {
-    const double more = violation_of(adapter_problem(s->adapter)->n_con, g) - s->violation;
+    const double more = violation_of(adapter_problem(s->simulator.adapter)->n_con, g) - s->violation;
     double loss = more > 0.0 ? 1.0 + more : -INFINITY;
     for (size_t k = 0; k < s->n_obj; k++)
         if (isfinite(s->config->slack[k]))
@@ -57,24 +57,29 @@ static double loss_of(const Simplify *s, const double f[], const double g[])
     return loss;
 }
 
-/* Simulates the round; returns the design with the least loss, s->n: none succeeds and keeps the limits. */
-static Status find_least(Simplify *s, size_t *least, double *loss, Err *err)
+static Status simulate_round(Simplify *s, Err *err)
 {
-    const Problem *p = adapter_problem(s->adapter);
-    for (size_t i = 0; i < s->n; i++)
-        problem_repair(p, s->X + i * s->n_var);
-    TRY(queue_evaluate(s->queue, s->n, s->X, NULL, s->F, s->G, s->ok, err));
+    const Problem *p = adapter_problem(s->simulator.adapter);
+    for (size_t i = 0; i < s->n; i++) /* the steps of a search have no gap without a stop */
+        p->repair(s->X + i * s->n_var, p->self);
     s->out->n_evaluated += s->n;
-    *least = s->n;
+    return queue_evaluate(s->simulator.queue, s->n, s->X, NULL, s->F, s->G, s->ok, err);
+}
+
+/* The design of a simulated round with the least loss; s->n: none succeeds. */
+static size_t find_least(const Simplify *s, double *loss)
+{
+    const size_t n_con = adapter_problem(s->simulator.adapter)->n_con;
+    size_t least = s->n;
     *loss = INFINITY;
     for (size_t i = 0; i < s->n; i++) {
-        const double now = loss_of(s, s->F + i * s->n_obj, s->G + i * p->n_con);
+        const double now = loss_of(s, s->F + i * s->n_obj, s->G + i * n_con);
         if (s->ok[i] && now < *loss) {
-            *least = i;
+            least = i;
             *loss = now;
         }
     }
-    return STATUS_OK;
+    return least;
 }
 
 /* The present design with all its numbers, as the next one of the path. */
@@ -82,8 +87,8 @@ static Status note(Simplify *s, Simplification what, Err *err)
 {
     Finished done;
     Simplified *out = s->out;
-    TRY(queue_ask(s->queue, &(Asked){.x = s->x}, err));
-    TRY(queue_next(s->queue, &done, err));
+    TRY(queue_ask(s->simulator.queue, &(Asked){.x = s->x}, err));
+    TRY(queue_next(s->simulator.queue, &done, err));
     if (done.evaluation->outcome != OUTCOME_OK)
         return bad_data(err, "the design fails when it is simulated again (%s %s): choose another one",
                         outcome_word(done.evaluation->outcome), done.evaluation->reason);
@@ -92,7 +97,9 @@ static Status note(Simplify *s, Simplification what, Err *err)
         s->violation = done.evaluation->violation;
     }
     out->loss[what] = loss_of(s, done.f, done.g);
-    out->n_stops[what] = simplify_n_stops(s->space, s->x);
+    out->n_stops[what] = n_stops(s);
+    for (size_t k = 0; k < s->n_obj; k++)
+        out->error[what][k] = NAN;
     out->n_evaluated++;
     out->n = (size_t)what + 1;
     return evaluation_table_append(&out->designs, done.evaluation, err);
@@ -103,23 +110,21 @@ static Status note(Simplify *s, Simplification what, Err *err)
 static void add_removals(Simplify *s)
 {
     s->n = 0;
-    for (size_t j = 0; (int)j < s->space->n_gaps; j++)
-        if (!is_open(s, j, s->x[j]))
+    for (size_t j = 0; j < s->n_var; j++)
+        if (is_stop(s, j))
             add(s, j, SIMPLIFY_OPEN_M);
 }
 
 static Status drop_idle_stops(Simplify *s, Err *err)
 {
-    size_t least;
-    double loss;
     add_removals(s);
-    TRY(find_least(s, &least, &loss, err));
-    for (size_t i = 0, j = 0; i < s->n; i++, j++) {
-        while (is_open(s, j, s->x[j]))
-            j++;
-        const int is_idle = s->ok[i] && memcmp(s->F + i * s->n_obj, s->first, s->n_obj * sizeof *s->F) == 0;
-        s->x[j] = is_idle ? SIMPLIFY_OPEN_M : s->x[j];
-    }
+    TRY(simulate_round(s, err));
+    for (size_t j = 0, i = 0; j < s->n_var; j++)
+        if (is_stop(s, j)) { /* design i of the round has no stop there */
+            if (s->ok[i] && memcmp(s->F + i * s->n_obj, s->first, s->n_obj * sizeof *s->F) == 0)
+                s->x[j] = SIMPLIFY_OPEN_M;
+            i++;
+        }
     return note(s, SIMPLIFY_CLOSING, err);
 }
 
@@ -143,7 +148,7 @@ static Status put_on_steps(Simplify *s, Err *err)
     for (size_t j = 0; j < s->n_var; j++)
         if (is_wall(s, j) && c->n_plates > 0)
             s->x[j] = c->plate[nearest_plate(c, s->x[j])];
-        else if ((int)j < s->space->n_gaps && !is_open(s, j, s->x[j]) && c->gap_step > 0.0)
+        else if (is_stop(s, j) && c->gap_step > 0.0)
             s->x[j] = fmax(round(s->x[j] / c->gap_step), 1.0) * c->gap_step;
     return note(s, SIMPLIFY_STEPS, err);
 }
@@ -159,7 +164,7 @@ static void add_neighbours(Simplify *s)
                 add(s, j, c->plate[at - 1]);
             if (at + 1 < c->n_plates)
                 add(s, j, c->plate[at + 1]);
-        } else if ((int)j < s->space->n_gaps && !is_open(s, j, s->x[j]) && c->gap_step > 0.0) {
+        } else if (is_stop(s, j) && c->gap_step > 0.0) {
             const double steps = round(s->x[j] / c->gap_step);
             add(s, j, (steps + 1.0) * c->gap_step);
             if (steps > 1.0)
@@ -170,12 +175,11 @@ static void add_neighbours(Simplify *s)
 
 static Status descend_on_steps(Simplify *s, Err *err)
 {
-    double loss = s->out->loss[SIMPLIFY_STEPS];
+    double now, loss = s->out->loss[SIMPLIFY_STEPS];
     for (int round = 0; round < ROUNDS && loss > 1.0; round++) {
-        size_t least;
-        double now;
         add_neighbours(s);
-        TRY(find_least(s, &least, &now, err));
+        TRY(simulate_round(s, err));
+        const size_t least = find_least(s, &now);
         if (!(now < loss))
             break;
         memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
@@ -186,11 +190,10 @@ static Status descend_on_steps(Simplify *s, Err *err)
 
 static Status drop_what_earns_little(Simplify *s, Err *err)
 {
-    for (;;) {
-        size_t least;
-        double loss;
+    for (double loss;;) {
         add_removals(s);
-        TRY(find_least(s, &least, &loss, err));
+        TRY(simulate_round(s, err));
+        const size_t least = find_least(s, &loss);
         if (!(loss <= 1.0))
             return note(s, SIMPLIFY_FEWER, err);
         memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
@@ -199,33 +202,14 @@ static Status drop_what_earns_little(Simplify *s, Err *err)
 
 static Status reserve(Simplify *s, const double start[], Err *err)
 {
-    const size_t n_con = adapter_problem(s->adapter)->n_con;
-    s->n_max = 2 * s->n_var;
+    const size_t n_con = adapter_problem(s->simulator.adapter)->n_con, n = 2 * s->n_var; /* as add_neighbours may add */
     TRY_ROOM(s->x, s->n_var, "variables", err);
-    TRY_ROOM(s->X, s->n_max * s->n_var, "designs", err);
-    TRY_ROOM(s->F, s->n_max * s->n_obj, "designs", err);
-    TRY_ROOM(s->G, s->n_max * n_con + 1, "designs", err);
-    TRY_ROOM(s->ok, s->n_max, "designs", err);
+    TRY_ROOM(s->X, n * s->n_var, "designs", err);
+    TRY_ROOM(s->F, n * s->n_obj, "designs", err);
+    TRY_ROOM(s->G, n * n_con + 1, "designs", err);
+    TRY_ROOM(s->ok, n, "designs", err);
     memcpy(s->x, start, s->n_var * sizeof *s->x);
     return STATUS_OK;
-}
-
-static void close_simulator(Simplify *s)
-{
-    queue_close(s->queue);
-    adapter_close(s->adapter);
-    s->queue = NULL;
-    s->adapter = NULL;
-}
-
-static Status open_simulator(Simplify *s, const SimOptions *sim, Err *err)
-{
-    Settings settings = *s->run->settings;
-    settings.sim = *sim;
-    close_simulator(s);
-    TRY(adapter_open(&s->adapter, &settings, err));
-    adapter_observe(s->adapter, &(Observer){.go_on = s->config->go_on, .user = s->config->user});
-    return queue_open(&s->queue, adapter_problem(s->adapter), QUEUE_AS_ASKED, 0, err);
 }
 
 /* What twice the steps change in the designs of the path. */
@@ -235,17 +219,19 @@ static Status find_errors(Simplify *s, Err *err)
     const EvaluationTable *path = &s->out->designs;
     if (!estimate_options(&s->run->settings->sim, &finer))
         return STATUS_OK;
-    TRY(open_simulator(s, &finer, err));
-    TRY(queue_evaluate(s->queue, path->n, path->x, NULL, s->F, s->G, s->ok, err));
+    TRY(run_simulator_open(&s->simulator, s->run->settings, &finer, s->config->go_on, s->config->user, err));
+    TRY(queue_evaluate(s->simulator.queue, path->n, path->x, NULL, s->F, s->G, s->ok, err));
     for (size_t i = 0; i < path->n; i++)
         for (size_t k = 0; k < s->n_obj && s->ok[i]; k++)
-            s->out->error[i][k] = fabs(fabs(s->F[i * s->n_obj + k]) - fabs(path->row[i].f[k]));
+            s->out->error[i][k] =
+                fabs(s->F[i * s->n_obj + k] - schema_objective(&s->run->schema, k)->sense * path->row[i].f[k]);
     return STATUS_OK;
 }
 
 static Status walk(Simplify *s, const double start[], Err *err)
 {
-    TRY(open_simulator(s, &s->run->settings->sim, err));
+    const Settings *own = s->run->settings;
+    TRY(run_simulator_open(&s->simulator, own, &own->sim, s->config->go_on, s->config->user, err));
     TRY(reserve(s, start, err));
     TRY(note(s, SIMPLIFY_START, err));
     TRY(drop_idle_stops(s, err));
@@ -267,12 +253,10 @@ Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config,
                   .n_var = schema->n_var,
                   .n_obj = schema->n_obj};
     *out = (Simplified){.designs = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
-    for (size_t i = 0; i < SIMPLIFY_PATH * OBJECTIVES_MAX; i++)
-        out->error[i / OBJECTIVES_MAX][i % OBJECTIVES_MAX] = NAN;
     if (run->settings->problem.kind != PROBLEM_TOWER)
         return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", run->folder);
     const Status status = walk(&s, run_x(run, row), err);
-    close_simulator(&s);
+    run_simulator_close(&s.simulator);
     free(s.x);
     free(s.X);
     free(s.F);

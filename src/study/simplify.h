@@ -58,7 +58,4 @@ typedef struct {
 Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config, Simplified *out, Err *err);
 void simplified_free(Simplified *s);
 
-/* Stops of a design, all sides of all floors. */
-size_t simplify_n_stops(const DesignSpace *space, const double x[]);
-
 #endif

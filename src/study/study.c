@@ -23,6 +23,9 @@ typedef struct {
     const StudyOptions *options;
     Adapter *adapter;
     RunStore *store;
+    EvaluationTable first; /* of a new run: what was asked before it had columns */
+    double *given;         /* (n_given, n_var) of search.start; NULL: not read, or none */
+    size_t n_given;
     StudySummary *summary;
     FILE *differences;
     double start;              /* [s] of the clock */
@@ -180,13 +183,122 @@ static int observe(const SearchView *view, void *user)
 
 /* -- beginning ----------------------------------------------------------------------------------------------------- */
 
+SearchConfig study_search_config(const Settings *s)
+{
+    const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
+    return (SearchConfig){
+        .seed = (uint32_t)s->search.seed,
+        .population = s->search.population,
+        .initial = initial,
+        .generations = s->search.generations,
+        .max_evals = s->search.max_evals,
+        .surrogate_max = SEARCH_CENTRES,
+        .surrogate = s->search.surrogate,
+        .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
+        .asynchronous = s->search.asynchronous == SWITCH_ON,
+        .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
+        .stop_after = s->search.stop_after,
+        .nondominated_share = s->search.nondominated_share,
+        .replicate_share = s->search.replicate_share,
+        .replicates_max = s->search.replicates_max,
+    };
+}
+
+static Status search_config(Study *study, SearchConfig *config, Err *err)
+{
+    *config = study_search_config(&study->used);
+    config->max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
+    if (!study->given)
+        TRY(initial_designs_read("search.start", study->used.search.start, adapter_schema(study->adapter),
+                                 &study->given, &study->n_given, err));
+    config->given = study->given;
+    config->n_given = study->n_given;
+    return STATUS_OK;
+}
+
+static void tell_start(const Study *study)
+{
+    const StudySummary *sum = study->summary;
+    if (study->options->started)
+        study->options->started(sum->folder, sum->n_before, study->options->user);
+}
+
+static int has_first(const Study *study)
+{
+    const EvaluationTable *t = &study->first;
+    return t->n > 0 && (t->row[t->n - 1].outcome == OUTCOME_OK || (long)t->n == study->used.search.failures_max);
+}
+
+static int waits_for_first(void *user)
+{
+    return !has_first(user) && may_go_on(user);
+}
+
+static Status take_first(const Evaluation *e, void *user, Err *err)
+{
+    return evaluation_table_append(&((Study *)user)->first, e, err);
+}
+
+static int end_first(const SearchView *view, void *user)
+{
+    (void)view;
+    (void)user;
+    return 1;
+}
+
+/* The search's own first designs, one after another until one succeeds: the run keeps them, and has as many constraint
+ * values as that one; where the whole first sample fails, or search.failures_max in a row, none. */
+static Status ask_first(Study *study, Err *err)
+{
+    const EvaluationTable *t = &study->first;
+    Problem p = *adapter_problem(study->adapter);
+    SearchConfig config;
+    StopReason reason;
+    long n = 0;
+    if (study->used.problem.kind != PROBLEM_EXTERNAL)
+        return STATUS_OK;
+    study->first = evaluation_table(p.n_var, p.n_obj, p.n_extra);
+    p.executor = NULL;
+    p.n_workers = 1;
+    p.observer = (Observer){waits_for_first, take_first, study};
+    TRY(search_config(study, &config, err));
+    config.asynchronous = 0;
+    const Status status = search_run(&p, &config, end_first, NULL, &reason, err);
+    if (status == STATUS_STOPPED && !has_first(study))
+        return fail(err, status, "%s: stopped before its first design succeeded; nothing is stored",
+                    study->summary->folder);
+    if (status != STATUS_STOPPED)
+        TRY(status);
+    while (t->n > 0 && n < CONSTRAINTS_MAX && isfinite(t->row[t->n - 1].extra[n]))
+        n++;
+    study->used.problem.constraints = n;
+    return adapter_constrain(study->adapter, n, err);
+}
+
+static Status keep_first(Study *study, Err *err)
+{
+    const Problem *p = adapter_problem(study->adapter);
+    double f[OBJECTIVES_MAX], g[LIMITS_MAX + CONSTRAINTS_MAX];
+    for (size_t i = 0; i < study->first.n; i++) {
+        Evaluation *e = &study->first.row[i];
+        problem_judge(p, e, f, g);
+        e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, g) : INFINITY;
+        TRY(evaluation_done(e, study, err));
+    }
+    return STATUS_OK;
+}
+
 static Status begin(Study *study, Err *err)
 {
     char *provenance;
+    TRY(search_config(study, &(SearchConfig){0}, err)); /* a start that is refused leaves no run */
+    tell_start(study);
+    TRY(ask_first(study, err));
     TRY(provenance_text(&provenance, &study->used, study->adapter, err));
     const Status status = store_begin(study->store, adapter_schema(study->adapter), &study->used, provenance, err);
     free(provenance);
-    return status;
+    TRY(status);
+    return keep_first(study, err);
 }
 
 /* n_later: evaluations behind those of finished generations, n_failed of them failed. */
@@ -260,6 +372,8 @@ static Status resume(Study *study, Err *err)
                                         .lines = study->differences},
                           study->evaluations_before, &study->has_new_limits, err));
     TRY(check_state(study, run, err));
+    study->used.problem.constraints = run->settings->problem.constraints;
+    TRY(adapter_constrain(study->adapter, run->settings->problem.constraints, err));
     study->seconds_before = sum->seconds;
     study->generation = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
@@ -275,8 +389,10 @@ static Status set_time(Study *study, double hours, Err *err)
 
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
+    Settings open = *s;
+    open.problem.constraints = -1;
     TRY(set_time(study, s->search.max_hours, err));
-    TRY(adapter_open(&study->adapter, s, err));
+    TRY(adapter_open(&study->adapter, &open, err));
     if (!study->store)
         TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
     TRY(store_forget_empty(study->store, err));
@@ -286,27 +402,6 @@ static Status prepare(Study *study, const Settings *s, Err *err)
     return store_run(study->store) ? resume(study, err) : begin(study, err);
 }
 
-SearchConfig study_search_config(const Settings *s)
-{
-    const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
-    return (SearchConfig){
-        .seed = (uint32_t)s->search.seed,
-        .population = s->search.population,
-        .initial = initial,
-        .generations = s->search.generations,
-        .max_evals = s->search.max_evals,
-        .surrogate_max = SEARCH_CENTRES,
-        .surrogate = s->search.surrogate,
-        .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
-        .asynchronous = s->search.asynchronous == SWITCH_ON,
-        .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
-        .stop_after = s->search.stop_after,
-        .nondominated_share = s->search.nondominated_share,
-        .replicate_share = s->search.replicate_share,
-        .replicates_max = s->search.replicates_max,
-    };
-}
-
 /* -- the search, from where it stands ------------------------------------------------------------------------------ */
 
 /* What the run has of the search, as the search takes it up: the finished generations, then the evaluations of the one
@@ -314,6 +409,8 @@ SearchConfig study_search_config(const Settings *s)
 static SearchStart find_start(const Study *study)
 {
     const Run *run = store_run(study->store);
+    if (!run)
+        return (SearchStart){.n_later = study->first.n, .row = study->first.row};
     const EvaluationTable *later = store_unfinished(study->store);
     return (SearchStart){.n = run->n_finished,
                          .n_later = later->n,
@@ -346,25 +443,19 @@ static Status note_stop(Study *study, Status status, const Err *err)
 static Status run_search(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
-    SearchConfig config = study_search_config(&study->used);
-    SearchStart start = {0};
-    double *given = NULL;
-    config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
+    const SearchStart start = find_start(study);
+    SearchConfig config;
+    TRY(search_config(study, &config, err));
     if (run) {
         const long initial = study->used.search.initial;
         config.planned_evals = run->planned_evals;
         config.initial = (initial < run->planned_evals ? initial : run->planned_evals);
     }
     omp_set_num_threads(search_threads(study));
-    TRY(initial_designs_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
-    config.given = given;
-    if (run)
-        start = find_start(study);
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     const Status status =
         search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL, observe,
                       study, &study->summary->stopped, err);
-    free(given);
     return note_stop(study, status, err);
 }
 
@@ -483,8 +574,8 @@ static void tell_records(const Study *study)
 
 static Status work(Study *study, Err *err)
 {
-    if (study->options->started)
-        study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
+    if (store_run(study->store)) /* else it has been told before the first designs were asked */
+        tell_start(study);
     tell_records(study);
     TRY(study_log_start(study->store, adapter_threads(study->adapter), &study->used.search, study->summary->n_before,
                         err));
@@ -530,6 +621,8 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     }
     store_free(study.store);
     adapter_close(study.adapter);
+    evaluation_table_free(&study.first);
+    free(study.given);
     pthread_mutex_destroy(&study.lock);
     return status;
 }

@@ -140,7 +140,8 @@ static void demand_table(const Table *t)
 {
     demand((t->n_rows > 0 || t->names) && t->n_cols > 0, "a table has columns, and rows or names");
     for (size_t i = 0; i < t->n_rows * t->n_cols; i++)
-        demand(isfinite(t->values[i]), "its numbers are finite");
+        demand(isfinite(t->values[i]) || (t->names && isnan(t->values[i])),
+               "its numbers are finite, or cells are empty");
 }
 
 void fuzz_table(const uint8_t *data, size_t size)

@@ -297,8 +297,53 @@ const tried = {
     }
     await open();
   },
-  async "no letter of a chart is smaller than 12 px"() {
-    const small = await page.evaluate(`Array.from(document.querySelectorAll("svg text, svg tspan")).filter((e) => e.getClientRects().length && parseFloat(getComputedStyle(e).fontSize) < 12).map((e) => e.textContent).slice(0, 5)`);
+  async "a click opens the design beside the picture, which stays; Escape closes"() {
+    await page.evaluate("document.querySelector('#designs').scrollIntoView({ block: 'center' })");
+    await settle();
+    const top = "document.querySelectorAll('#designs td button')[2].getBoundingClientRect().top", before = await page.evaluate(top), id = +(await page.evaluate("document.querySelectorAll('#designs td button')[2].textContent"));
+    await page.evaluate("(() => { const b = document.querySelectorAll('#designs td button')[2]; b.focus({ preventScroll: true }); b.click(); })()");
+    await page.until(`document.getElementById("drawer").dataset.id === "${id}"`);
+    assert.ok(Math.abs((await page.evaluate(top)) - before) <= 60, `the row went from ${before} to ${await page.evaluate(top)} px`);
+    const r = rows.find((one) => one[0] === id), o = run.schema.objectives[0], said = await page.evaluate("document.querySelector('#numbers tbody td:nth-child(2)').textContent");
+    assert.ok(Math.abs(parseFloat(said) / (r[1 + run.schema.variables.length] * o.factor) - 1) < 6e-3 || /^about/.test(said), said);
+    await press("Escape");
+    assert.ok(await page.evaluate("document.getElementById('drawer').hidden && document.activeElement.textContent") === String(id), "the focus goes back");
+  },
+  async "designs are reached from a picture by keys"() {
+    await page.evaluate("document.querySelector('#front .layers').focus()");
+    await press("Home"); // the marked design may be the last one
+    const first = await page.evaluate("document.querySelector('#tip strong').textContent");
+    await press("ArrowRight");
+    assert.notEqual(await page.evaluate("document.querySelector('#tip strong').textContent"), first);
+    const lower = await page.evaluate("document.getElementById('tip').getBoundingClientRect().top - Math.min(innerHeight - document.getElementById('tip').offsetHeight - 8, document.querySelector('#front .layers').getBoundingClientRect().bottom)");
+    assert.ok(lower >= 0, "what is said of a design lies on no axis");
+    await press("Enter");
+    await page.until("document.getElementById('drawer').dataset.id && !document.getElementById('drawer').hidden");
+    await press("Escape");
+  },
+  async "undo goes back by one step, as the address tells"() {
+    const hash = () => page.evaluate("location.hash"), before = await hash(), axes = await shownAxes();
+    await click("input[name=axes][value=variables]");
+    assert.notDeepEqual(await shownAxes(), axes);
+    await click("#undo");
+    assert.deepEqual([await hash(), await shownAxes()], [before, axes]);
+  },
+  async "dark is dark, on canvases too, and paper stays white"() {
+    const paper = () => page.evaluate("getComputedStyle(document.querySelector('section')).backgroundColor"), light = await paper();
+    const mean = () => page.evaluate("document.querySelectorAll('#front canvas')[2].toDataURL()"), ink = await mean();
+    await click("#theme");
+    await settle();
+    assert.ok(light === "rgb(255, 255, 255)" && (await paper()) !== light && (await mean()) !== ink);
+    assert.match(await page.evaluate("location.hash"), /theme=dark/);
+    await page.evaluate("window.dispatchEvent(new Event('beforeprint'))");
+    assert.equal(await paper(), light);
+    await page.evaluate("window.dispatchEvent(new Event('afterprint'))");
+    assert.notEqual(await paper(), light);
+    await click("#theme");
+    assert.equal(await paper(), light);
+  },
+  async "no letter is smaller than 12 px"() {
+    const small = await page.evaluate(`Array.from(document.querySelectorAll("svg text, svg tspan, small, kbd, button, td, p, .card div, span")).filter((e) => e.getClientRects().length && e.textContent && parseFloat(getComputedStyle(e).fontSize) < 12).map((e) => e.textContent).slice(0, 5)`);
     assert.deepEqual(small, []);
   },
   async "everything can be reached by the Tab key"() {

@@ -66,7 +66,7 @@ variables.forEach((c, j) => {
   c.bounds = b ? [b.lower[j] * c.factor, b.upper[j] * c.factor] : [NaN, NaN];
 });
 function atBound(c, v) {
-  const [low, high] = c.bounds, near = 1e-3 * (high - low);
+  const [low, high] = c.bounds ?? [NaN, NaN], near = 1e-3 * (high - low);
   return v <= low + near ? -1 : v >= high - near ? 1 : 0;
 }
 
@@ -111,9 +111,19 @@ const heading = (c) => [c.title, ...(c.unit ? [element("small", {}, c.unit)] : [
 // ---- colours: Okabe and Ito's, and viridis without its palest end
 
 const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e69f00", SKY = "#56b4e9", GREEN = "#009e73",
-  PURPLE = "#cc79a7", GREY = "#9aa4af", INK = "#1b2430";
-const RAMP = Array.from({ length: 32 }, (_, i) => charts.interpolateViridis((0.92 * i) / 31));
-const SHADES = RAMP.length;
+  PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32;
+
+// Light or dark, as the system has it or the address says; of the style sheet what canvases draw with.
+const root = document.documentElement, ownTheme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+let INK, PAPER, PALE, AXIS, RAMP;
+const ramp = (t) => charts.interpolateViridis(root.dataset.theme === "dark" ? 0.15 + 0.85 * t : 0.92 * t);
+function takeTheme(name) {
+  root.dataset.theme = name;
+  const style = getComputedStyle(root);
+  [INK, PAPER, PALE, AXIS] = ["ink", "paper", "pale", "axis"].map((word) => style.getPropertyValue(`--${word}`).trim());
+  RAMP = Array.from({ length: SHADES }, (_, i) => ramp(i / (SHADES - 1)));
+}
+takeTheme(ownTheme);
 
 // ---- the chosen design and what it is compared with
 

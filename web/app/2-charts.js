@@ -21,6 +21,14 @@ function drawEach(list) {
 }
 const drawAll = () => drawEach(drawings.filter(({ place, width }) => widthOf(place) !== width));
 
+// Drawings of before are dropped.
+function refill(part, fill) {
+  part.replaceChildren();
+  drawings = drawings.filter(({ place }) => place.isConnected);
+  fill(part);
+  drawAll();
+}
+
 function drawn(host, plot) {
   const place = host.appendChild(element("div", { class: "chart" }));
   return addDrawing(place, (width) => place.replaceChildren(plot(Math.max(240, width))));
@@ -62,14 +70,24 @@ function folded(host, title, isOpen = false) {
   part.addEventListener("toggle", () => part.open && document.documentElement.dataset.ready && drawAll());
   return part;
 }
+// Everything is drawn again in its colours.
+function showTheme(name) {
+  const isOther = name !== root.dataset.theme;
+  takeTheme(name);
+  if (isOther) layoutChanged();
+  if (isOther) drawEach(drawings);
+  else drawAll();
+}
+
 const openedForPaper = [];
 window.addEventListener("beforeprint", () => {
   for (const part of document.querySelectorAll("details.part:not([open])")) openedForPaper.push(part);
   for (const part of openedForPaper) part.open = true;
-  drawAll();
+  showTheme("light");
 });
 window.addEventListener("afterprint", () => {
   for (const part of openedForPaper.splice(0)) part.open = false;
+  showTheme(state.theme);
 });
 
 // Lines over the height: { name, values from the first floor up, colour, symbol: of a dot on every floor, dash, thick }.

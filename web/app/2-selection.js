@@ -14,6 +14,10 @@ const state = {
   selected: new Uint8Array(n).fill(1),
   nSelected: n,
   marked: rowOf.get(run.chosen),
+  theme: ownTheme,
+  trials: "", // kept of the what-if, as the address has them
+  weights: new Map(), // column -> weight of the choice
+  wishes: new Map(), // column -> value wished for, in the units of the eye
   hovered: undefined, // row under the pointer
 };
 
@@ -154,15 +158,32 @@ function dropSteps() {
 
 function mark(row) {
   state.marked = row;
+  openDrawer(row);
   redrawAll();
 }
 
-function hover(row, event) {
+// at: where the picture is, so that what is said of a design lies below it and not over an axis.
+function hover(row, event, at) {
   if (row !== state.hovered) {
     state.hovered = row;
     for (const draw of views.hover) draw();
   }
-  showTip(row, event);
+  showTip(row, event, at);
+}
+
+// The designs of a picture by keys, in the order of the colour's column.
+function byKeys(layers, label) {
+  for (const [key, value] of Object.entries({ tabindex: 0, role: "application", "aria-label": `${label}: arrow keys go from design to design, Enter opens one` })) layers.setAttribute(key, value);
+  layers.addEventListener("keydown", (event) => {
+    if (event.target !== layers) return;
+    const rows = byShade.filter((i) => state.selected[i]), at = rows.indexOf(state.hovered ?? state.marked), box = layers.getBoundingClientRect();
+    const to = { ArrowRight: at + 1, ArrowUp: at + 1, ArrowLeft: at - 1, ArrowDown: at - 1, PageUp: at + 10, PageDown: at - 10, Home: 0, End: n }[event.key];
+    if (event.key === "Enter" && state.hovered !== undefined) mark(state.hovered);
+    else if (to === undefined || !rows.length) return;
+    else hover(rows[clamp(to, [0, rows.length - 1])], { clientX: box.left, clientY: box.bottom }, box);
+    event.preventDefault();
+  });
+  layers.addEventListener("blur", () => hover(undefined));
 }
 
 // ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
@@ -175,12 +196,15 @@ function rangesFrom(text) {
   return new Map(parts.map(([name, a, b]) => [byName(name), [end(a, -Infinity), end(b, Infinity)]]));
 }
 
+const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
+const pairsFrom = (text = "") => new Map(text.split(",").map((part) => part.split(":")).map(([name, v]) => [objectives.find((c) => c.name === decodeURIComponent(name)), +v]).filter(([c, v]) => c && Number.isFinite(v)));
+
 function addressOf() {
   const names = (list) => list.map((c) => c.name).join(",");
   const all = {
     axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), in: rangesText(state.ranges),
     steps: state.steps.map(({ keep, ranges }) => (keep ? "+" : "-") + rangesText(ranges)).join(";"), x: state.x.name, y: state.y.name,
-    colour: state.colour.name, mark: state.marked === undefined ? "" : ids[state.marked],
+    colour: state.colour.name, theme: state.theme, kept: state.trials, weights: pairsText(state.weights), wish: pairsText(state.wishes), mark: state.marked === undefined ? "" : String(ids[state.marked]),
   };
   return new URLSearchParams(Object.entries(all).filter(([key, v]) => v !== "" && v !== standard?.[key])).toString();
 }
@@ -190,9 +214,33 @@ let standard, lastAddress;
 function saveAddress() {
   const now = addressOf();
   if (now === (lastAddress ?? "")) return;
+  past.push(lastAddress ?? "");
+  putAddress(now);
+}
+
+function putAddress(now) {
   lastAddress = now;
   history.replaceState(null, "", now ? `#${now}` : location.pathname + location.search);
 }
+
+// Every address was a state of the page.
+const past = [];
+function undo() {
+  if (!past.length) return;
+  const before = state.marked;
+  putAddress(past.pop());
+  takeAddress();
+  if (state.marked !== before && !drawer.hidden) openDrawer(state.marked);
+}
+
+function takeAddress() {
+  readAddress();
+  showTheme(state.theme);
+  layoutChanged();
+}
+document.addEventListener("keydown", (event) => {
+  if ((event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input[type=text], input[type=number], textarea")) undo();
+});
 
 function readAddress() {
   const given = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
@@ -205,6 +253,10 @@ function readAddress() {
   state.steps = (all.steps ?? "").split(";").filter(Boolean).map((text) => ({ keep: text[0] === "+", ranges: rangesFrom(text.slice(1)) }));
   for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];
   state.marked = rowOf.get(+all.mark) ?? state.marked;
+  state.trials = all.kept ?? "";
+  [state.weights, state.wishes] = [all.weights, all.wish].map(pairsFrom);
+  findScores();
+  state.theme = all.theme === "dark" ? "dark" : "light";
   findKept();
   findShades();
 }
@@ -241,8 +293,8 @@ const clamp = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v
 const opacity = (many) => Math.max(0.12, Math.min(0.85, 90 / Math.sqrt(many + 1) / 10));
 
 // The design under the pointer, in words, beside it.
-const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, "aria-hidden": "true" }));
-function showTip(row, event) {
+const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, role: "status" }));
+function showTip(row, event, at) {
   tip.hidden = row === undefined || !event;
   if (tip.hidden) return;
   if (+tip.dataset.row !== row) {
@@ -250,7 +302,7 @@ function showTip(row, event) {
     tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
   }
   tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
-  tip.style.top = `${Math.max(4, Math.min(event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;
+  tip.style.top = `${Math.max(4, Math.min(at ? at.bottom + 4 : event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;
 }
 
 const designName = (row) => `Design ${ids[row]}${ids[row] === run.knee ? ", the knee" : ""}${beyondLaw.has(ids[row]) ? ", beyond the contact law" : ""}`;

@@ -53,7 +53,7 @@ window.addEventListener("scroll", () => (axisMenu.hidden = true), { passive: tru
 
 function parallelCoordinates(host) {
   const layers = host.appendChild(element("div", { class: "layers" }));
-  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", k === 1 ? { role: "img", "aria-label": "Parallel coordinates of the front" } : { "aria-hidden": "true" })));
+  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", { "aria-hidden": "true" })));
   const svg = charts.select(layers).append("svg");
   const margin = { top: 58, right: 56, bottom: 14, left: 56 }, height = 400;
   let width = 0, axes = [], places, pens, isBackDrawn;
@@ -96,7 +96,7 @@ function parallelCoordinates(host) {
     const pen = pens.back;
     isBackDrawn = true;
     pen.clearRect(0, 0, width, height);
-    pen.strokeStyle = "#c3cad2";
+    pen.strokeStyle = PALE;
     pen.lineWidth = 0.6;
     pen.globalAlpha = opacity(n);
     inPasses("back", byShade, (i) => stroke(pen, i), () => {});
@@ -105,7 +105,7 @@ function parallelCoordinates(host) {
   // In white beneath, so that it stands out of the others.
   function bold(pen, colour, thick, draw) {
     pen.globalAlpha = 1;
-    for (const [ink, w] of [["#ffffff", thick + 2.6], [colour, thick]]) {
+    for (const [ink, w] of [[PAPER, thick + 2.6], [colour, thick]]) {
       pen.strokeStyle = ink;
       pen.lineWidth = w;
       draw(pen);
@@ -170,12 +170,14 @@ function parallelCoordinates(host) {
   layers.addEventListener("pointermove", (event) => {
     if (event.buttons || event.target.closest(".heading")) return;
     const box = layers.getBoundingClientRect();
-    hover(rowAt(event.clientX - box.left, event.clientY - box.top), event);
+    hover(event.target.closest(".brush") ? undefined : rowAt(event.clientX - box.left, event.clientY - box.top), event, box);
   });
   layers.addEventListener("pointerleave", () => hover(undefined));
   layers.addEventListener("click", (event) => {
     if (state.hovered !== undefined && !event.target.closest(".heading, .brush")) mark(state.hovered);
   });
+
+  byKeys(layers, "Parallel coordinates of the front");
 
   // ---- axes
 
@@ -300,7 +302,7 @@ const drawSymbol = (pen, o, x, y, size) => {
   pen.beginPath();
   charts.symbol(o.path, size).context(pen)();
   pen.lineWidth = 1.4;
-  pen.strokeStyle = "#fff";
+  pen.strokeStyle = PAPER;
   pen.stroke();
   pen.fillStyle = o.colour;
   pen.fill();

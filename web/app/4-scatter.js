@@ -5,7 +5,7 @@
 // (svg, width, panels) what else is on it, `follows` what of that follows the selection. Dots are put into the pixels.
 function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   const layers = host.appendChild(element("div", { class: "layers" }));
-  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", k === 1 ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
+  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", { "aria-hidden": "true" })));
   const svg = charts.select(layers).append("svg");
   let panels = [], width = 0, height = 0, pens, image;
 
@@ -46,7 +46,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
       pen.fillStyle = colour;
       pen.fill();
       pen.lineWidth = 2;
-      pen.strokeStyle = "#fff";
+      pen.strokeStyle = PAPER;
       pen.stroke();
     }
   }
@@ -103,6 +103,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   });
   layers.addEventListener("pointerleave", () => hover(undefined));
   layers.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
+  byKeys(layers, label);
 
   // ---- axes
 
@@ -135,7 +136,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
       p.brush = charts.brush().extent([[p.left, p.top], [p.left + p.w, p.top + p.h]]).on("brush end", (event) => brushed(event, p));
       group.append("g").attr("class", "brush").call(p.brush);
     });
-    putDots(pens.back, n, byShade, () => pixel("#d3d9df"));
+    putDots(pens.back, n, byShade, () => pixel(PALE));
   }
 
   function draw() {

@@ -9,9 +9,9 @@ function cell(text) {
 }
 
 // The very rows of front.csv, in its order and units.
-function selectedCsv() {
+function csvOf(isWanted) {
   const head = ["id", ...run.schema.variables, ...results.map((c) => c.name), ...(hasErrors ? objectives.map((c) => `err_${c.name}`) : [])].map(cell).join(",");
-  return [head, ...lines.filter((_, i) => state.selected[i])].join("\n") + "\n";
+  return [head, ...lines.filter((_, i) => isWanted(i))].join("\n") + "\n";
 }
 
 function saveFile(name, text) {
@@ -20,7 +20,7 @@ function saveFile(name, text) {
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 }
 
-const download = () => saveFile(`${run.name}-selection.csv`, selectedCsv());
+const download = () => saveFile(`${run.name}-selection.csv`, csvOf((i) => state.selected[i]));
 
 function designTable(host) {
   const shown = [...results, ...variables];

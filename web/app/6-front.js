@@ -19,7 +19,7 @@ function colourBar() {
   views.layout.push(() => {
     const c = state.colour, [low, high] = extent(c, []);
     host.replaceChildren(c.palette ? legend(types.map((t, k) => [`${k + 1} ${t.name}`, c.palette[k]]))
-      : charts.legend({ color: { type: "linear", domain: [low, high > low ? high : low + 1], interpolate: (t) => charts.interpolateViridis(0.92 * t) }, label: titleUnit(c), ticks: 4, tickFormat: show, width: 230, style: { fontSize: "12px" } }));
+      : charts.legend({ color: { type: "linear", domain: [low, high > low ? high : low + 1], interpolate: ramp }, label: titleUnit(c), ticks: 4, tickFormat: show, width: 230, style: { fontSize: "12px" } }));
   });
   return host;
 }
@@ -27,7 +27,7 @@ function colourBar() {
 // One legend for all pictures of the front: what is compared with, each of them to be turned off; the marked design.
 function overlayLegend() {
   const marked = element("span", { "data-mark": "\u25cf" });
-  marked.style.setProperty("--key", INK);
+  marked.style.setProperty("--key", "var(--ink)");
   follow(null, () => (marked.textContent = state.marked === undefined ? "no design marked" : designName(state.marked)));
   return element("div", { class: "legend", id: "overlays" }, marked, ...overlays.map((o) => {
     const item = element("span", { "data-mark": o.mark, title: o.device }, o.words);
@@ -87,7 +87,7 @@ function selectionBar() {
   const button = (id, text, act, kind = "plain") => element("button", { class: kind, id, type: "button", onclick: act }, text);
   const number = element("span", { class: "count", id: "count", role: "status" });
   const keep = button("keep", "Keep", () => takeStep(true)), exclude = button("exclude", "Exclude", () => takeStep(false));
-  const clear = button("clear", "Clear ranges", () => (state.ranges.clear(), selectionChanged())), all = button("restore", "All designs again", dropSteps);
+  const clear = button("clear", "Clear ranges", () => (state.ranges.clear(), selectionChanged())), all = button("restore", "All designs again", dropSteps), back = button("undo", "Undo", undo);
   keep.title = "look at the selected designs alone";
   exclude.title = "look at all but the selected designs";
   follow(null, () => {
@@ -96,8 +96,9 @@ function selectionBar() {
     keep.disabled = !state.ranges.size || state.nSelected === 0;
     exclude.disabled = !state.ranges.size || state.nSelected === state.nKept;
     all.disabled = !state.steps.length;
+    back.disabled = !past.length && addressOf() === (lastAddress ?? "");
   });
-  return element("div", { class: "bar" }, number, keep, exclude, clear, all, button("download", "Download selection as CSV", download, "plain main"));
+  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, button("download", "Download selection as CSV", download, "plain main"));
 }
 
 function frontPart() {
@@ -118,6 +119,7 @@ function frontPart() {
   }
   const maps = grid.appendChild(element("div"));
   for (const family of families.values()) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
+  if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or wishes"));
   if (objectives.length > 1) {
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
     matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; vermillion, one is paid for with the other. Signs are those of the numbers, not of better and worse."));

@@ -63,7 +63,7 @@ function cards(raw, error) {
   return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
     element("div", { class: "value" }, ...shownValue(c, raw[k], error?.[k])),
-    ...overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o)))));
+    ...(run.tower && !run.detail ? [skeleton(36)] : overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o))))));
 }
 
 // ---- warnings
@@ -132,26 +132,34 @@ function standoutTable() {
     ...overlays.map((o) => line([o.device ? `${o.words} (${o.device})` : o.words, "", ...objectives.map((c) => digits(o.value.get(c)))]))]);
 }
 
+// Where the knee in detail is still to come, its place is kept: nothing moves when it does.
+const skeleton = (height) => {
+  const box = element("div", { class: "skeleton", "aria-hidden": "true" });
+  box.style.height = `${height}px`;
+  return box;
+};
+
 function summaryPart() {
-  const d = run.detail, host = document.getElementById("summary");
+  const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
+  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(134) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 290);
+  if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(305));
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
   if (run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
     `${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`));
 }
 
+let drawGrowth = () => {}; // anew, while a run goes on
 function growthPart() {
   const host = document.getElementById("growth"), c = run.convergence;
   if (c.simulated.length < 2) return host.remove();
-  const rows = c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * c.error[i], colour: BLUE }));
+  const rows = () => c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * (c.error[i] ?? 0), colour: BLUE })), last = rows().at(-1);
   const figure = host.appendChild(element("figure"));
-  drawn(figure, (width) => growthChart(width, 200, rows));
-  const last = rows[rows.length - 1];
+  drawGrowth = drawn(figure, (width) => growthChart(width, 200, rows()));
   figure.append(element("figcaption", {}, "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
     `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that). ` +
     "A curve that still climbs asks for a longer run."));
@@ -173,7 +181,13 @@ function provenancePart() {
 // Links to the parts that this run has; the address keeps the state of the pictures.
 function contents() {
   const names = [["summary", `Study ${run.name}`], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)));
+  const skip = linkTo(document.getElementById("front"), "Skip to the front"), theme = plainButton("", () => {
+    state.theme = state.theme === "dark" ? "light" : "dark";
+    showTheme(state.theme);
+  }, { id: "theme" });
+  skip.className = "skip";
+  views.layout.push(() => (theme.textContent = state.theme === "dark" ? "Light" : "Dark"));
+  document.getElementById("parts").append(skip, theme, ...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)));
 }
 
 // The focus goes along.

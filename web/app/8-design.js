@@ -26,7 +26,7 @@ function gapFigure(host, d) {
     marks: [
       charts.rectX(rows, { x1: 0, x2: "gap", y1: (r) => r.floor - 0.38, y2: (r) => r.floor + 0.38, fill: (r) => (r.closes ? BLUE : "#c5d6e2"), title: words }),
       charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
-      charts.dot(rows.filter((r) => r.bound), { x: "gap", y: "floor", symbol: "diamond2", fill: VERMILLION, stroke: "#fff", r: 5, title: words }),
+      charts.dot(rows.filter((r) => r.bound), { x: "gap", y: "floor", symbol: "diamond2", fill: VERMILLION, stroke: PAPER, r: 5, title: words }),
       charts.ruleX([0]),
     ],
   }), legend([["closes", BLUE], ["never closes", "#c5d6e2"], ["at a bound of the search", VERMILLION, "\u25c6"]]));
@@ -52,6 +52,8 @@ function forceFigures(host, d) {
   figure(host, "Core stress", "Largest bending stress of every storey.", (width) => heightChart(width, 340, "stress [MPa]", lines, "storey"), legend(lines.map(({ name, colour }) => [name, colour])));
 }
 
+const PEAKS = [["displacement_m", "Displacement", "peak displacement [m]"], ["drift_m", "Interstorey drift", "peak interstorey drift [m]"], ["acceleration_g", "Acceleration", "peak absolute acceleration [g]"]];
+
 // scenes: [[key, result]]
 function peakFigure(host, scenes, key, title, label, height, band) {
   const lines = scenes.map(([scene, r]) => ({ name: SCENES[scene].words, colour: SCENES[scene].colour, symbol: SCENES[scene].symbol, values: r[key] }));
@@ -65,9 +67,7 @@ function peakPart(host, d, height) {
   if (!scenes.length) return;
   host.append(sceneLegend(scenes.map(([key]) => key)));
   const grid = host.appendChild(element("div", { class: "grid3" }));
-  peakFigure(grid, scenes, "displacement_m", "Displacement", "peak displacement [m]", height, d.band);
-  peakFigure(grid, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]", height, d.band);
-  peakFigure(grid, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]", height, d.band);
+  for (const [key, title, label] of PEAKS) peakFigure(grid, scenes, key, title, label, height, d.band);
 }
 
 // ---- where the energy goes
@@ -235,14 +235,14 @@ function ladderPart(host, d) {
 
 // ---- all of it
 
-// Of any design: `d` as report_json.h describes it, into `host`.
-function detailParts(host, d) {
+// Of any design: `d` as report_json.h describes it, into `host`; isBeside: its gaps are shown already.
+function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
   const notes = d.baselines.filter((b) => BASELINE_NOTE[b.key]).map((b) => BASELINE_NOTE[b.key](b.device)).join(" ");
   if (r.objectives) host.append(element("p", {}, `${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
   host.append(loadTable(d.loads), element("p", { class: "note" }, notes));
   const shape = host.appendChild(element("div", { class: "grid21" }));
-  gapFigure(shape, d);
+  if (!isBeside) gapFigure(shape, d);
   thicknessFigure(shape, d);
   if (d.forces) forceFigures(host.appendChild(element("div", { class: "grid2" })), d);
   if (scenes.length) {
@@ -266,10 +266,18 @@ function detailParts(host, d) {
   if (d.elsewhere.length) otherPart(folded(host, "Other earthquakes"), d);
 }
 
+// As found, and as `imtet simplify` made it for the site: what is 10 m wide is no stop.
+function pairTable(pair) {
+  const row = (c, values) => line([titleUnit(c), ...values.map((v) => (c.name.startsWith("gap") && v >= 10 ? "no stop" : digits(v * c.factor)))]);
+  return table("pair", ["", `as found, design ${pair[0].id}`, `to be built, design ${pair[1].id}`],
+    [...objectives.map((c, k) => row(c, pair.map((d) => d.f[k]))), ...variables.map((c, j) => row(c, pair.map((d) => d.x[j])))]);
+}
+
 function designPart() {
   const host = document.getElementById("design"), d = run.detail;
   if (!d) return host.remove();
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ${run.folder} --design ID`));
+  if (run.pair) folded(host, "As found and to be built", true).append(pairTable(run.pair));
   detailParts(host, d);
 }

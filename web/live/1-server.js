@@ -1,7 +1,9 @@
 // ---- live: what only a page with the program behind it has. Addresses are relative to /TOKEN/RUN/.
 
 async function ask(where, body) {
-  const answer = await fetch(where, body ? { method: "POST", body: JSON.stringify(body) } : {});
+  const answer = await fetch(where, body ? { method: "POST", body: JSON.stringify(body) } : {}).catch(() => {
+    throw new Error("the server does not answer (imtet serve has ended?)");
+  });
   const said = await answer.json();
   if (!answer.ok) throw Object.assign(new Error(said.error), { code: answer.status });
   return said;
@@ -15,22 +17,16 @@ function livePart(id, title, before) {
   return part;
 }
 
-const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
-
-function difference(value, before) {
-  const pct = (100 * (value - before)) / Math.abs(before);
-  return element("small", { class: "difference" }, Number.isFinite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
-}
-
 // ---- fronts as parallel coordinates, small and quick enough to follow a slider
 
 // draw([{ rows: [[natural objective, ...]], colour, thick, alpha }]), the last on top; better is down. The first is drawn anew
 // only where it, a range or the width has changed.
 function frontStrip(host, label, height = 208) {
-  const layers = host.appendChild(element("div", { class: "layers strip" }));
+  const layers = host.appendChild(element("div", { class: "scroll" })).appendChild(element("div", { class: "layers strip" }));
+  layers.style.minWidth = `${92 * objectives.length}px`; // no word lies on another
   const [back, over] = [0, 1].map((k) => layers.appendChild(element("canvas", k ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
   const words = layers.appendChild(element("div", { class: "words", "aria-hidden": "true" }));
-  const top = 22, bottom = 58, side = 40, down = height - bottom, span = down - top;
+  const top = 22, bottom = 58, side = 54, down = height - bottom, span = down - top;
   let last = [], width = 0, ranges, drawnBack;
   layers.style.height = `${height}px`;
 
@@ -63,7 +59,7 @@ function frontStrip(host, label, height = 208) {
 
   function drawBack(first) {
     const pen = prepare(back, width, height);
-    pen.strokeStyle = "#7a8694";
+    pen.strokeStyle = AXIS;
     objectives.forEach((_, k) => pen.strokeRect(at(k), top, 0, span));
     drawLines(pen, first);
     prepare(over, width, height);
@@ -101,9 +97,5 @@ function frontStrip(host, label, height = 208) {
   return draw;
 }
 
-const frontRows = (() => {
-  let rows;
-  return () => (rows ??= Array.from({ length: n }, (_, i) => objectives.map((c) => c.raw[i])));
-})();
-const PALE = "#c3cad2";
-const paleFront = (rows = frontRows()) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });
+const frontRows = Array.from({ length: n }, (_, i) => objectives.map((c) => c.raw[i]));
+const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });

@@ -1,22 +1,18 @@
-// A run under way: how far it is, hypervolume, failures and the front as it grows.
+// A run under way: how far it is, failures and the front as it grows.
 
 function progressPart() {
   const part = livePart("live", "Progress", "front");
   const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });
   const again = plainButton("", () => location.reload(), { hidden: true, id: "new-front" });
   part.append(said, bar, again);
-  const grid = part.appendChild(element("div", { class: "grid2" }));
-  const growth = grid.appendChild(element("figure", {}, element("h3", {}, "Hypervolume")));
-  const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The front as it grows"),
-    legend([["the front", PALE], ["new since this page was loaded", BLUE]])));
+  const strip = part.appendChild(element("figure", {}, element("h3", {}, "The front as it grows"),
+    legend([["the front", "var(--pale)"], ["new since this page was loaded", BLUE]])));
   const draw = frontStrip(strip, "The front as it grows");
-  let now = { simulated: run.convergence.simulated, volume: run.convergence.volume, f: [], ids: [] }, generation = -1;
-
-  const drawGrowth = drawn(growth, (width) => growthChart(width, 200, now.simulated.map((x, i) => ({ x, y: 100 * now.volume[i], colour: BLUE }))));
+  let generation = -1;
 
   async function takeFront() {
-    now = await ask("front");
-    drawGrowth();
+    const now = await ask("front");
+    drawGrowth(Object.assign(run.convergence, now));
     const isNew = now.ids.map((id) => !rowOf.has(id)), fresh = isNew.filter(Boolean).length;
     draw([paleFront(now.f), { rows: now.f.filter((_, i) => isNew[i]), colour: BLUE, alpha: 0.8 }]);
     again.hidden = !fresh;

@@ -1,4 +1,4 @@
-// Any design at a click on its line, dot or row: simulated by the server, once.
+// Any design at a click on its line, dot or row: simulated by the server, once, for the drawer.
 
 const details = new Map(); // id -> promise
 function detailOf(id) {
@@ -13,49 +13,11 @@ function detailOf(id) {
   return details.get(id);
 }
 
-// Drawings of before are dropped.
-function refill(part, fill) {
-  part.replaceChildren();
-  drawings = drawings.filter(({ place }) => place.isConnected);
-  fill(part);
-  drawAll();
-}
-
-function designOnDemand() {
-  const part = livePart("any-design", "Design", "provenance"), heading_ = part.firstChild, body = part.appendChild(element("div"));
-  const link = document.querySelector("#parts a[href='#any-design']");
-  let wanted;
-
-  async function open(id, go) {
-    wanted = id;
-    part.dataset.id = "";
-    heading_.textContent = link.textContent = designName(rowOf.get(id));
-    body.classList.add("stale");
-    if (go) goTo(part);
-    try {
-      const { detail, objectives: raw } = await detailOf(id);
-      if (id !== wanted) return;
-      refill(body, (host) => {
-        host.append(element("div", { class: "bar" }, plainButton("What if\u2026", () => startWhatIf(rowOf.get(id))),
-          plainButton("Compare", () => compare({ name: `design ${id}`, raw, gap_m: detail.gap_m, peaks: detail.with_core }))));
-        peakPart(host, detail, 290);
-        detailParts(host, detail);
-      });
-      part.dataset.id = id;
-    } catch (error) {
-      refill(body, (host) => host.append(element("p", { class: "warn" }, `Not simulated: ${error.message}`)));
-    }
-    body.classList.remove("stale");
-  }
-
-  let shown = state.marked;
-  follow(null, () => {
-    if (state.marked === shown || state.marked === undefined) return;
-    shown = state.marked;
-    open(ids[shown], true);
-  });
-  if (shown !== undefined) open(ids[shown], false);
-}
+drawerMore.detail = (row) => detailOf(ids[row]).then(({ detail, objectives: raw }) => ({ ...detail, raw }));
+drawerMore.buttons = (row, d) => [
+  plainButton("What if\u2026", () => startWhatIf(row)),
+  plainButton("Compare", () => compare({ name: `design ${ids[row]}`, raw: d.raw, gap_m: d.gap_m, peaks: d.with_core }), { disabled: !d?.raw })];
+drawerMore.rest = (host, d) => detailParts(folded(host, "Forces, energies and more"), d, true);
 
 // The first screen compares the knee with what it stands beside: both come with the knee in detail.
 async function completeSummary() {
@@ -82,7 +44,7 @@ function compare(one) {
   else if (compared.length < 4) compared.push(one);
   else compared[3] = one;
   showCompared();
-  goTo(comparePart);
+  if (compared.length > 1) goTo(comparePart);
 }
 
 function compareTable() {
@@ -106,8 +68,6 @@ function showCompared() {
     host.append(element("h2", {}, "Side by side"), compareTable());
     const grid = host.appendChild(element("div", { class: "grid4" }));
     sideFigure(grid, "Gaps", "gap [mm]", (one) => one.gap_m.map((g) => 1e3 * g));
-    sideFigure(grid, "Displacement", "peak displacement [m]", (one) => one.peaks.displacement_m);
-    sideFigure(grid, "Interstorey drift", "peak interstorey drift [m]", (one) => one.peaks.drift_m);
-    sideFigure(grid, "Acceleration", "peak absolute acceleration [g]", (one) => one.peaks.acceleration_g);
+    for (const [key, title, label] of PEAKS) sideFigure(grid, title, label, (one) => one.peaks[key]);
   });
 }

@@ -2,6 +2,7 @@
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
 
 const GROUND = [["pga_g", "peak", "g"], ["stretch", "time \u00d7", ""], ["restitution", "restitution", ""]];
+const TRIAL = "#c2185b";
 let startWhatIf = () => {};
 
 function whatIfPart() {
@@ -9,31 +10,57 @@ function whatIfPart() {
   const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
   part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once, under the first motion of the run."), element("div", { class: "what-if" }, sliders, pictures));
-  const trial = { key: "trial", words: "what if", colour: ORANGE, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
+  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
   // ---- sliders
 
-  function slider(key, title, unit, factor, [low, high], value, take) {
-    const number = element("output", {}), input = element("input", { type: "range", min: low, max: high, step: "any", name: key, "aria-label": title + (unit ? ` [${unit}]` : "") });
-    const set = (v) => {
-      input.value = v;
-      number.textContent = `${digits(v * factor)}${unit ? ` ${unit}` : ""}`;
-      input.setAttribute("aria-valuetext", number.textContent);
-    };
-    input.addEventListener("input", (event) => {
-      take(+input.value);
-      set(+input.value);
+  function choice(key, title, words, value, take) {
+    const buttons = words.map((word, i) => plainButton(word, (event) => {
+      take(i);
+      set(i);
       moved(event.timeStamp);
-    });
+    }));
+    const set = (v) => buttons.forEach((b, i) => b.setAttribute("aria-pressed", i === Math.round(v)));
     set(value);
-    return { key, set, row: element("label", { class: "slider" }, element("span", {}, title), input, number) };
+    return { key, set, row: element("div", { class: "bar", role: "group", "aria-label": title }, element("span", {}, title), ...buttons) };
+  }
+
+  // Of values that are sold the slider has their numbers.
+  function slider(key, title, unit, factor, [low, high], value, take, values) {
+    if (typeof values?.[0] === "string") return choice(key, title, values, value, take);
+    const near = (v) => values?.reduce((a, b) => (Math.abs(b - v) < Math.abs(a - v) ? b : a)) ?? v, shown = () => (values ? values[+input.value] : +input.value);
+    const label = title + (unit ? ` [${unit}]` : ""), input = element("input", { type: "range", min: values ? 0 : low, max: values ? values.length - 1 : high, step: values ? 1 : "any", name: key, "aria-label": label });
+    const number = element("input", { type: "number", min: low * factor, max: high * factor, step: "any", name: `${key} number`, "aria-label": `${label} as a number` });
+    const set = (v) => {
+      input.value = values ? values.indexOf(near(v)) : v;
+      if (document.activeElement !== number) number.value = digits(v * factor);
+      number.classList.remove("bad");
+      input.setAttribute("aria-valuetext", `${digits(v * factor)} ${unit}`.trim());
+    };
+    // Five digits, so that the address holds what was simulated.
+    const change = (v, event) => {
+      const rounded = near(clamp(+v.toPrecision(5), [low, high]));
+      take(rounded);
+      set(rounded);
+      moved(event.timeStamp);
+    };
+    input.addEventListener("input", (event) => change(shown(), event));
+    number.addEventListener("change", (event) => {
+      const v = number.value === "" ? NaN : +number.value / factor, isGood = v >= low - 1e-9 * high && v <= high + 1e-9 * high;
+      number.classList.toggle("bad", !isGood);
+      number.title = isGood ? "" : `from ${show(low * factor)} to ${show(high * factor)}`;
+      if (isGood) change(v, event);
+    });
+    number.addEventListener("blur", () => number.classList.contains("bad") || (number.value = digits(shown() * factor)));
+    set(value);
+    return { key, set, row: element("div", { class: "slider" }, element("span", {}, title), input, number, element("small", {}, unit)) };
   }
 
   const moving = { variables: [], ground: [] };
   function makeSliders() {
-    moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v)));
+    moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v), bounds.values[j]));
     moving.ground = GROUND.map(([key, title, unit]) => slider(key, title, unit, 1, [bounds[key][0], bounds[key][2]], bounds[key][1], (v) => (ground[key] = v)));
     const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", {}, element("legend", {}, title), ...list.map(({ row }) => row)) : "");
     sliders.replaceChildren(
@@ -56,7 +83,8 @@ function whatIfPart() {
     isAsking = false;
     if (since !== undefined) next();
     if (said_ instanceof Error) {
-      said.textContent = `Not simulated: ${said_.message}`;
+      said.textContent = `Not simulated: ${said_.message}. Without numbers until it is.`;
+      showNothing();
     } else {
       answer = { ...said_, x: design, ground: asked };
       showAnswer();
@@ -77,20 +105,23 @@ function whatIfPart() {
 
   const draw = frontStrip(pictures, "The design in the front");
   pictures.prepend(said);
-  pictures.append(legend([["what if", ORANGE], ["where it began", INK], ["front", PALE], ["without core", VERMILLION]]), board);
+  pictures.append(legend([["what if", TRIAL], ["where it began", "var(--ink)"], ["front", "var(--pale)"], ...Object.values(SCENES).slice(1).map(({ words, colour }) => [words, colour])]), board);
   const peaks = pictures.appendChild(element("div", { class: "grid3" }));
-  const places = [["displacement_m", "displacement [m]"], ["drift_m", "drift [m]"], ["acceleration_g", "acceleration [g]"]].map(([key, title]) => [key, title, peaks.appendChild(element("div", { class: "chart" }))]);
+  const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
+
+  // Baselines of the run itself: under another motion only the building without core is simulated anew.
+  const beside = () => overlays.filter((o) => run.detail?.[o.key] && o.key !== "no_core" && !Object.keys(answer.ground).length);
 
   // Within a picture its lines move, as long as they fit its axis: a picture takes ten times as long to make.
   function drawPeaks(isNew) {
-    for (const [key, title, host] of places) {
-      const lines = [["without core", VERMILLION, answer.no_core], ["where it began", INK, start.peaks], ["what if", ORANGE, answer.peaks]].filter(([, , peaks]) => peaks)
-        .map(([name, colour, peaks]) => ({ name, colour, values: peaks[key], thick: colour === ORANGE ? 2.6 : 1.4 }));
+    for (const [key, label, host] of places) {
+      const lines = [["without core", VERMILLION, answer.no_core], ...beside().map((o) => [o.words, o.colour, run.detail[o.key]]), ["where it began", INK, start.peaks], ["what if", TRIAL, answer.peaks]].filter(([, , peaks]) => peaks)
+        .map(([name, colour, peaks]) => ({ name, colour, values: peaks[key], thick: colour === TRIAL ? 2.6 : 1.4 }));
       const svg = host.firstChild, paths = host.querySelectorAll("[aria-label=line] path"), most = Math.max(...lines.flatMap(({ values }) => values));
       if (!isNew && lines.length && paths.length === lines.length && most <= svg.scale("x").domain[1] && most > 0.5 * svg.scale("x").domain[1]) {
         const [toX, toY] = ["x", "y"].map((axis) => svg.scale(axis).apply);
         lines.forEach(({ values }, k) => paths[k].setAttribute("d", `M${values.map((v, j) => [toX(v), toY(j + 1)]).join("L")}`));
-      } else if (lines.length && host.clientWidth) host.replaceChildren(heightChart(host.clientWidth, 260, `peak ${title}`, lines));
+      } else if (lines.length && host.clientWidth) host.replaceChildren(heightChart(host.clientWidth, 260, label, lines));
     }
   }
 
@@ -99,12 +130,24 @@ function whatIfPart() {
     board.replaceChildren(table("trial", ["", ...objectives], [row(start.name, start.raw), row("what if", answer.objectives, start.raw)]));
   }
 
+  // No old number stands beside a slider that has moved.
+  function showNothing() {
+    answer = undefined;
+    draw([paleFront(), { rows: [start.raw], colour: INK, thick: 2 }]);
+    board.replaceChildren();
+    for (const [, , host] of places) host.replaceChildren();
+    const at = overlays.indexOf(trial);
+    if (at >= 0) overlays.splice(at, 1);
+    document.getElementById("overlays").replaceWith(overlayLegend());
+    layoutChanged();
+  }
+
   // The pictures of the whole front follow when the sliders rest.
   function showAnswer() {
     start.peaks ??= answer.peaks;
     said.textContent = place();
     part.dataset.turn = answer.turn;
-    draw([paleFront(), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: ORANGE, thick: 3 }] : [])]);
+    draw([paleFront(), ...beside().map((o) => ({ rows: [o.raw], colour: o.colour, thick: 1.2 })), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: TRIAL, thick: 3 }] : [])]);
     drawTable();
     drawPeaks();
     trial.raw = answer.objectives ?? [];
@@ -119,12 +162,15 @@ function whatIfPart() {
 
   // ---- designs that are kept
 
+  let shownKept = "";
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
   const options = { pga_g: "--pga ", stretch: "--set motion.stretch=", restitution: "--set contact.restitution=" };
   const groundOptions = (g) => bounds.options + (g.pga_g === undefined ? "" : bounds.pga_options) + Object.entries(g).map(([key, v]) => ` ${options[key]}${v}`).join("");
 
   function showKept() {
+    state.trials = shownKept = keptText();
+    saveAddress();
     list.replaceChildren(...kept.map((one, i) => element("li", {}, `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
       plainButton("Compare", () => compare(one)), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", plainButton("Drop", () => {
         kept.splice(i, 1);
@@ -138,9 +184,27 @@ function whatIfPart() {
 
   function keep() {
     if (!answer?.objectives || part.dataset.busy) return;
-    kept.push({ name: `kept ${kept.length + 1}`, x: answer.x, ground: answer.ground, raw: answer.objectives, gap_m: answer.gap_m, peaks: answer.peaks });
+    kept.push(asKept(answer, start.id));
     showKept();
   }
+  const asKept = (a, from) => ({ name: `kept ${kept.length + 1}`, from, x: a.x, ground: a.ground, raw: a.objectives, gap_m: a.gap_m, peaks: a.peaks });
+
+  // In the address: what each changed of which design, 549:gap_03_m=0.02,pga_g=0.4;...
+  const keptText = () => kept.map((one) => `${one.from}:${[...variables.flatMap((c, j) => (one.x[j] === c.raw[rowOf.get(one.from)] ? [] : [`${c.name}=${one.x[j]}`])), ...Object.entries(one.ground).map(([key, v]) => `${key}=${v}`)].join(",")}`).join(";");
+
+  async function restoreKept(text) {
+    const wanted = text.split(";").map((one) => one.split(":")).filter(([id]) => rowOf.has(+id));
+    kept.splice(0);
+    for (const [id, changes] of wanted) {
+      const given = Object.fromEntries((changes ?? "").split(",").filter(Boolean).map((one) => one.split("=")).map(([key, v]) => [key, +v]));
+      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries(GROUND.filter(([key]) => key in given).map(([key]) => [key, given[key]]));
+      const a = await ask("what-if", { turn: ++turn, x: design, ...on });
+      if (state.trials !== text) return;
+      if (a.objectives) kept.push(asKept({ ...a, x: design, ground: on }, +id));
+    }
+    showKept();
+  }
+  views.layout.push(() => bounds && state.trials !== shownKept && restoreKept((shownKept = state.trials)).catch((error) => (said.textContent = error.message)));
 
   const csv = () => [run.schema.variables.map(cell).join(","), ...kept.map((one) => one.x.join(","))].join("\n") + "\n";
   const save = plainButton("Download as a design file", () => saveFile(`${run.name}-kept.csv`, csv()), { id: "save-kept", disabled: true });
@@ -160,10 +224,12 @@ function whatIfPart() {
 
   startWhatIf = async (row, go = true) => {
     bounds ??= await ask("what-if");
-    start = { name: `design ${ids[row]}`, x: variables.map((c) => c.raw[row]), raw: objectives.map((c) => c.raw[row]) };
+    const isFirst = !moving.variables.length;
+    start = { name: `design ${ids[row]}`, id: ids[row], x: variables.map((c) => c.raw[row]), raw: objectives.map((c) => c.raw[row]) };
     x.set(start.x);
-    if (!moving.variables.length) makeSliders();
+    if (isFirst) makeSliders();
     set(start.x, {});
+    if (isFirst) layoutChanged(); // designs that the address keeps
     if (go) goTo(part);
   };
   addDrawing(peaks, () => answer && drawPeaks(true));

@@ -2,7 +2,6 @@ const later_ = (promise) => promise.catch((error) => document.getElementById("li
 
 if (run.tower) {
   whatIfPart();
-  designOnDemand();
 }
 progressPart();
 later_(runsPart());

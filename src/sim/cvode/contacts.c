@@ -25,6 +25,40 @@ CLONED static void push_modes(int m, const double row[], double f, double g[])
         g[i] += f * row[i];
 }
 
+static double apart(const SimModel *model, int e, const double x[])
+{
+    return dot_product(model->m, model->B + (size_t)e * (size_t)model->m_pad, x);
+}
+
+/* [N] By which device e pulls its floor back; *power: what it dissipates [W]. */
+static double device_pull(const SimModel *model, int e, const double q[], const double v[], double *power)
+{
+    double slope;
+    const double rate = apart(model, e, v), viscous = device_viscous(&model->device[e], rate, &slope);
+    *power += rate * viscous;
+    return viscous + model->device[e].stiffness * apart(model, e, q);
+}
+
+static double add_devices(const SimModel *model, const double q[], const double v[], double g[])
+{
+    double power = 0;
+    for (int e = 0; e < model->n_devices; e++)
+        push_modes(model->m, model->B + (size_t)e * (size_t)model->m_pad, -device_pull(model, e, q, v, &power), g);
+    return power;
+}
+
+double devices_look(const SimModel *model, const double q[], const double v[], double *stroke, double *force)
+{
+    double held = 0, power = 0;
+    for (int e = 0; e < model->n_devices; e++) {
+        const double d = apart(model, e, q);
+        *stroke = fmax(*stroke, fabs(d));
+        *force = fmax(*force, fabs(device_pull(model, e, q, v, &power)));
+        held += 0.5 * model->device[e].stiffness * d * d;
+    }
+    return held;
+}
+
 /* Of floor j towards side s when it gets there, by constant acceleration from the start of the step; *wait [s] until.
  */
 static double approach(const Contacts *c, int j, int s, double *wait)
@@ -57,7 +91,7 @@ static void add_contact(const Contacts *c, int j, int s, double p, const double 
 ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[])
 {
     const SimModel *model = c->model;
-    ContactPower power = {0};
+    ContactPower power = {.devices = add_devices(model, q, v, g)};
     if (model->nc == 0)
         return power;
     double w[FLOORS_MAX];
@@ -162,6 +196,10 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
         const double p_dot = s * relative_displacement(model, j, v);
         const int touches = s && p > 0;
         force[j] = touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
+    }
+    for (int e = 0; e < model->n_devices; e++) {
+        double power = 0;
+        force[model->device[e].floor] -= device_pull(model, e, q, v, &power);
     }
 }
 

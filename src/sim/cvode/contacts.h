@@ -35,7 +35,8 @@ typedef struct {
  *                                           + (F - F_raw) p' (clamp, never positive) */
 typedef struct {
     double lost, clamp;
-    double pushed; /* [W] of the forces on the floors (ode.c), which is no part of that */
+    double devices; /* [W] that devices take, but what their springs hold */
+    double pushed;  /* [W] of the forces on the floors (ode.c), which is no part of that */
 } ContactPower;
 
 /* Eight partial sums, then their sum: vectorized, and in the same order on every processor. */
@@ -43,8 +44,11 @@ double dot_product(int n, const double a[], const double b[]);
 
 double relative_displacement(const SimModel *model, int j, const double q[]);
 
-/* Adds the modal forces R_ij f_j at the state q, q' to g. */
+/* Adds the modal forces R_ij f_j at the state q, q' to g, and those of the devices. */
 ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[]);
+
+/* [J] In the springs of the devices. *stroke, *force are raised to the largest distance [m] and force [N] of any. */
+double devices_look(const SimModel *model, const double q[], const double v[], double *stroke, double *force);
 
 /* By overlap: the approach speed that a force on floor j, touching on side s, is to be computed with. */
 double contacts_speed(const Contacts *c, int j, int s);
@@ -61,7 +65,7 @@ void contacts_settle(Contacts *c, const double w[]);
  * Returns the floors that are in contact. By event only. */
 FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
 
-/* By event: the forces f_j (n) at the state q, q'. */
+/* By event: the forces f_j (n) at the state q, q', with those of the devices. */
 void contacts_forces(const Contacts *c, const double q[], const double v[], double force[]);
 
 int contacts_any(const Contacts *c);

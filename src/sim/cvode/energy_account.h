@@ -12,7 +12,8 @@
 typedef struct {
     const SimModel *model;
     PeakMonitor peaks;
-    double damped[MODES_MAX], input, lost, clamp; /* [J] */
+    double damped[MODES_MAX], input, lost, clamp, devices; /* [J] */
+    double stroke, device_force;                           /* [m], [N] largest */
     long steps, evaluations;
 } EnergyAccount;
 

@@ -16,7 +16,7 @@ double *ode_values(N_Vector v)
 /* Where the storeys' plastic drifts stand in y, and after them their works. */
 static int storeys_at(const Ode *o)
 {
-    return o->with_energies ? 3 * o->model->m + 3 : 2 * o->model->m;
+    return o->with_energies ? 3 * o->model->m + 3 + (o->model->n_devices > 0) : 2 * o->model->m;
 }
 
 int ode_size(const Ode *o)
@@ -109,6 +109,8 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
         rest[0] = -a * energy_rates(model, v, dv + m) + power.pushed;
         rest[1] = power.lost;
         rest[2] = power.clamp;
+        if (model->n_devices > 0)
+            rest[3] = power.devices;
     }
     if (model->yields) {
         const double *p = y + storeys_at(o);
@@ -218,7 +220,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     o->storeys.model = model;
     o->contacts = (Contacts){.model = model, .log = o->options->onsets, .forces = o->options->forces};
     if (o->contacts.forces)
-        force_monitor_start(o->contacts.forces, model->nc);
+        force_monitor_start(o->contacts.forces, model->nc - model->has_mass);
     energy_account_start(&o->account, model);
     if (SUNContext_Create(NULL, &o->context))
         return -1;
@@ -295,6 +297,8 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
         s.damped_j = y + 2 * m;
         s.input_j = y[3 * m];
         s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken_by_storeys(o, y);
+        if (model->n_devices > 0)
+            s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, &o->account.stroke, &o->account.device_force);
     }
     o->options->sample(&s, o->options->sample_user);
 }
@@ -564,6 +568,7 @@ Status ode_run(Ode *o, SimResult *result)
         o->account.input = y[3 * m];
         o->account.lost = y[3 * m + 1];
         o->account.clamp = y[3 * m + 2];
+        o->account.devices = o->model->n_devices > 0 ? y[3 * m + 3] : 0;
     }
     const double *p = y + storeys_at(o);
     double d[FLOORS_MAX];

@@ -37,6 +37,12 @@ static void layout_contact(ContactScratch *s, Carve *c, size_t modes, size_t flo
         CARVE_EACH(c, floors, &s->sample[i / 3][i % 3]);
 }
 
+static void layout_storeys(StoreyScratch *s, Carve *c, size_t modes, size_t floors)
+{
+    CARVE_EACH(c, floors, &s->per_yield, &s->stiff, &s->slope, &s->bend, &s->work, &s->work_next, &s->beside);
+    CARVE_EACH(c, modes, &s->load, &s->bubble);
+}
+
 static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)
 {
     CARVE_EACH(c, modes, &r->bound_q, &r->bound_a);
@@ -49,12 +55,19 @@ static void layout_level(Level *l, Carve *c, size_t rows, size_t modes, size_t c
     CARVE_EACH(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
     l->compliance = carve(c, COMPLIANCES * rows * channels, sizeof(double));
     l->compliance_pair = carve(c, rows * rows, sizeof(v4));
+    CARVE_EACH(c, channels, &l->own);
+}
+
+static int padded(int n)
+{
+    return (n + PAD - 1) / PAD * PAD;
 }
 
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
-    const size_t channels = k->may_yield ? 2 * floors : floors, rows = k->may_yield ? channels : n;
+    const size_t channels = (k->may_yield ? 2 * floors : floors) + (size_t)padded(k->devices_max);
+    const size_t rows = n + (size_t)k->devices_max;
     CARVE_EACH(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
                &k->max_shape_drift);
     CARVE_EACH(c, modes, &k->held, &k->push[0], &k->push[1], &k->push_rise, &k->swing[0], &k->swing[1]);
@@ -64,6 +77,7 @@ static void layout(FastWork *k, Carve *c)
     layout_state(&k->next, c, modes, channels);
     layout_flight(&k->flight, c, modes, floors);
     layout_contact(&k->contact, c, modes, floors);
+    layout_storeys(&k->storeys, c, modes, floors);
     layout_reach(&k->reach, c, modes, floors);
     CARVE_EACH(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
                &k->record.most, &k->record.per_most);
@@ -79,19 +93,14 @@ static void layout(FastWork *k, Carve *c)
     k->R_abs = carve(c, modes * floors, sizeof(double));
     k->D_abs = carve(c, modes * floors, sizeof(double));
     k->RT = carve(c, modes * channels, sizeof(double));
-    k->E = k->may_yield ? carve(c, modes * channels, sizeof(double)) : k->R;
+    k->E_room = channels > floors ? carve(c, modes * channels, sizeof(double)) : k->R;
     k->newton_g = carve(c, rows * rows, sizeof(m22));
     k->newton_LU = carve(c, rows * rows, sizeof(m22));
     for (int i = 0; i <= LEVEL_MAX; i++)
         layout_level(&k->level[i], c, rows, modes, channels);
 }
 
-static int padded(int n)
-{
-    return (n + PAD - 1) / PAD * PAD;
-}
-
-Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
+Status fast_create(FastWork **out, int n_floors, int nb, int yields, int devices, Err *err)
 {
     *out = NULL;
     FastWork *k = calloc(1, sizeof *k);
@@ -99,8 +108,9 @@ Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err)
         return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
     k->n = n_floors;
     k->n_pad = padded(n_floors);
-    k->m_max = padded(nb) + k->n_pad;
+    k->m_max = padded(nb) + padded(n_floors + (devices > 0));
     k->may_yield = yields;
+    k->devices_max = devices;
     Carve count = {0};
     layout(k, &count);
     k->store = carve_store(&count);
@@ -148,16 +158,18 @@ FastTolerances fast_tolerances(Accuracy accuracy)
         [ACCURACY_COARSE] = {.steps_per_contact = 0.5,
                              .solver_tolerance = 1e-2,
                              .energy_tolerance = 3e-5,
+                             .device_error = 1e-4,
                              .steps_max = 2e7,
                              .peak_tolerance = 3e-3,
                              .flexibility_left_out = 0.1,
                              .tail_tolerance = 2e-3},
         [ACCURACY_STANDARD] = {.steps_per_contact = 2,
                                .solver_tolerance = 3e-5,
-                               .energy_tolerance = 1.2e-7,
+                               .energy_tolerance = 2.4e-7,
+                               .device_error = 1e-6,
                                .steps_max = 2e7,
                                .peak_tolerance = 6e-4,
-                               .flexibility_left_out = 0.02,
+                               .flexibility_left_out = 0.01,
                                .tail_tolerance = 0.02,
                                .tail_share = 0.04,
                                .crowd = 2,
@@ -165,6 +177,7 @@ FastTolerances fast_tolerances(Accuracy accuracy)
         [ACCURACY_FINE] = {.steps_per_contact = 80,
                            .solver_tolerance = 1e-12,
                            .energy_tolerance = 0,
+                           .device_error = 1e-10,
                            .steps_max = 2e8,
                            .peak_tolerance = 1e-6,
                            .flexibility_left_out = 0},
@@ -179,6 +192,7 @@ static FastTolerances refined(Accuracy accuracy, double times)
     tolerances.steps_per_contact *= times;
     tolerances.solver_tolerance /= times * times;
     tolerances.energy_tolerance /= times * times * times;
+    tolerances.device_error /= times * times * times * times;
     tolerances.peak_tolerance /= times;
     tolerances.flexibility_left_out /= times * times;
     tolerances.tail_tolerance /= times * times;
@@ -226,7 +240,7 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
 {
     FastWork *own = NULL, *work = options->work;
     if (!work)
-        TRY(fast_create(&own, model->n, model->nb, model->yields, err));
+        TRY(fast_create(&own, model->n, model->nb, model->yields, model->n_devices, err));
     if (!work)
         work = own;
     const FastTolerances tolerances = tolerances_of(options);
@@ -237,10 +251,10 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
     return STATUS_OK;
 }
 
-Status engine_fast_create(void **work, int n_floors, int nb, int yields, Err *err)
+Status engine_fast_create(void **work, int n_floors, int nb, int yields, int devices, Err *err)
 {
     FastWork *fast;
-    TRY(fast_create(&fast, n_floors, nb, yields, err));
+    TRY(fast_create(&fast, n_floors, nb, yields, devices, err));
     *work = fast;
     return STATUS_OK;
 }

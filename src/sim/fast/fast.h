@@ -24,7 +24,7 @@
  *           S_ij = sum R_i R_j / w^2, w' += S f'; they damp nothing and do not follow the ground.
  *
  * Files     kernel.c: step control, results, and the *.inc files in order: design, step_tables, contact_quadrature,
- *           peaks, free_flight, free_interval, contact_forces, contact_step.
+ *           peaks, free_flight, free_interval, contact_forces (with storey_step, device_step), contact_step.
  * Life      fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
 #ifndef IMTET_SIM_FAST_FAST_H
 #define IMTET_SIM_FAST_FAST_H
@@ -34,8 +34,8 @@
 
 typedef struct FastWork FastWork;
 
-/* For up to n_floors and nb building modes; yields: storeys of a model may. */
-Status fast_create(FastWork **out, int n_floors, int nb, int yields, Err *err);
+/* For up to n_floors, nb building modes and so many devices; yields: storeys of a model may. */
+Status fast_create(FastWork **out, int n_floors, int nb, int yields, int devices, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
 /* "avx512", "avx2" or "base": the kernel that this processor gets. */

@@ -111,7 +111,8 @@ static int fly_on(FastWork *k, Interval *in, int resolving)
 /* Where the next contact step is tried: as long as the last one, where no gap is about to close in it. */
 static void set_contact_level(FastWork *k, int resolving)
 {
-    if (k->contact_level > resolving || k->tolerances->energy_tolerance == 0)
+    const int is_fixed = k->tolerances->energy_tolerance == 0 && (k->n_devices == 0 || k->in_contact);
+    if (k->contact_level > resolving || is_fixed)
         k->contact_level = resolving;
     while (k->contact_level < resolving && k->state_valid && onset_ahead(k, ldexp(k->base, -k->contact_level)))
         k->contact_level++;
@@ -120,8 +121,9 @@ static void set_contact_level(FastWork *k, int resolving)
 /* Where several floors meet the core at once the error of one contact is passed on to the others, and grows from impact
  * to impact. A floor counts if it touches the core or may within so long at its present speed [s]. Steps are halved
  * where FastTolerances.crowd floors count, again at twice and at four times as many, and what a step may miss of the
- * energy is quartered each time; not where it is calm. docs/measured/promise-rule.csv has what each number earns. */
-static const double CROWD_S = 0.05, CROWD_ENERGY = 4;
+ * energy is divided by CROWD_ENERGY each time; not where it is calm. docs/measured/promise-rule.csv has what each
+ * number earns. */
+static const double CROWD_S = 0.05, CROWD_ENERGY = 8;
 enum { CROWD_HALVINGS = 3 };
 
 static int halvings_in_crowd(FastWork *k)
@@ -176,11 +178,12 @@ static int interval(FastWork *k, double start, double a0, double a1)
     while (in.at < TICKS) {
         if ((double)(k->steps + k->flights) > k->tolerances->steps_max)
             return 0;
-        const int resolving = later(has_core    ? resolving_level(k, in.speed_gain)
-                                    : k->yields ? 0
-                                                : LEVEL_MAX,
+        const int resolving = later(has_core                        ? resolving_level(k, in.speed_gain)
+                                    : k->yields || k->n_devices > 0 ? 0
+                                                                    : LEVEL_MAX,
                                     k->yielding_level);
-        if (!(!k->in_contact && !k->yielding && fly_on(k, &in, resolving)) && !step_on(k, &in, resolving))
+        if (!(!k->in_contact && !k->yielding && k->n_devices == 0 && fly_on(k, &in, resolving)) &&
+            !step_on(k, &in, resolving))
             return 0;
         if (k->options->sample && in.at < TICKS && in.at % (TICKS >> k->sample_level) == 0)
             send_now(k, in.start + k->base * in.at / TICKS, ground_at(&in, in.at));
@@ -257,7 +260,8 @@ static void enter_forces(FastWork *k, const Motion *motion, long i, double share
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->oscillatory || k->in_contact || k->yielding || first < k->free_from || end - first < FREE_INTERVALS_MIN)
+    if (!k->oscillatory || k->in_contact || k->yielding || k->n_devices > 0 || first < k->free_from ||
+        end - first < FREE_INTERVALS_MIN)
         return 0;
     const long n = k->free_count < end - first ? k->free_count : end - first;
     if (is_forced(motion, first, first + n < (long)motion->n ? first + n : (long)motion->n - 1))
@@ -344,11 +348,13 @@ static double twice_energy_about_rest(const FastWork *k)
 static const double SETTLED_FLOW = 1e-3;
 
 /* Can a storey yield once more with so much energy [J] about rest? |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
-static int storeys_may_yield(const FastWork *k, double energy)
+static int storeys_may_yield(FastWork *k, double energy)
 {
     const StoreyLaw *law = &k->model->storey_law;
     const double *D = k->E + k->n_pad;
     const double share = law->kind == HYSTERESIS_BILINEAR ? 1 : pow(SETTLED_FLOW, 1 / law->exponent);
+    if (k->yields)
+        set_rest(k);
     for (int j = 0; k->yields && j < k->n; j++) {
         double soft = 0;
         for (int i = 0; i < k->model->nb; i++)
@@ -370,8 +376,8 @@ static int is_settled(FastWork *k, const Motion *motion, long i)
     k->most_energy = larger(energy, k->most_energy);
     const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
     k->calm = calm_of(k, left);
-    return !k->in_contact && !storeys_may_yield(k, left) && left <= k->tolerances->tail_tolerance * energy_scale(k) &&
-           left <= PEAK_ENERGY * k->most_energy &&
+    return !k->in_contact && k->n_devices == 0 && !storeys_may_yield(k, left) &&
+           left <= k->tolerances->tail_tolerance * energy_scale(k) && left <= PEAK_ENERGY * k->most_energy &&
            (k->tolerances->tail_share == 0 || left <= k->tolerances->tail_share * smallest_share(k));
 }
 
@@ -495,8 +501,13 @@ static void report_energies(FastWork *k, SimResult *r)
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
+    const double held = held_by_devices(k);
+    r->device_loss_j = k->device_taken - held;
+    r->kinetic_strain_j += held;
+    r->stroke_m = k->stroke;
+    r->dashpot_n = k->device_force;
     const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
-                                (k->yields ? report_storeys(k, r) : 0);
+                                k->device_taken - (k->yields ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
@@ -505,6 +516,7 @@ static void report_energies(FastWork *k, SimResult *r)
     energy_balance_sum_shares(r);
     r->edcs_pct = energy_share(r->damped_core_j, r->input_energy_j);
     r->ed_hysteresis_pct = energy_share(r->hysteresis_j, r->input_energy_j);
+    r->ed_devices_pct = energy_share(r->device_loss_j, r->input_energy_j);
 }
 
 static void report_peaks(const FastWork *k, SimResult *r)

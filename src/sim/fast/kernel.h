@@ -1,7 +1,8 @@
 /* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set.
  *
  * Shapes   (m_pad) modes: building from 0, the kept ones of the core from nb_pad; (n_pad) floors; (c_pad)
- *          channels: the gaps of the floors, and from n_pad on the storeys where some may yield; else n_pad
+ *          channels: the gaps of the floors, from n_pad on the storeys where some may yield, from at_device on the
+ *          devices
  * Storeys  w is z, the elastic drift, while p, the plastic one, is as at the start of the step: drift from `middle`;
  *          its bound `gap` is the yield drift; its force the change of c k p within the step. `held` is the rest.
  * Padding  a padded mode has omega = 1 and no coupling; a padded floor has an unreachable gap and unreachable peaks
@@ -20,7 +21,8 @@ enum {
     PAD = 8,
     LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
     FLOORS_PAD_MAX = FLOORS_MAX,
-    CHANNELS_MAX = 2 * FLOORS_PAD_MAX,
+    ACTIVE_MAX = 2 * FLOORS_PAD_MAX + PAD,   /* floors and devices */
+    CHANNELS_MAX = 3 * FLOORS_PAD_MAX + PAD, /* and storeys */
     HELD_MAX = 128
 };
 
@@ -38,9 +40,10 @@ typedef struct {
     vec *kappa_accel; /* (m_pad) the same for -2 zeta w q' - w^2 q */
     vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
     vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
-    double *compliance;             /* (COMPLIANCES, rows, c_pad) of all channels, a row per loaded one */
-    v4 *compliance_pair; /* (rows, rows) of channel i to channel j: d (w1_i, w1_i') / d (F, M) of j, its force at the
-                            end of the step and its mean force */
+    double *compliance;  /* (COMPLIANCES, rows, c_pad) of all channels, a row per floor or device with a force */
+    v4 *compliance_pair; /* (rows, rows) of i to j: d (w1_i, w1_i') / d (F, M) of j, its force at the end of the
+                            step and its mean force */
+    vec *own;            /* (n_pad / LANES, 2) d w1 / d (F, M) of a storey by itself */
 } Level;
 
 /* The state at one end of a step. */
@@ -82,6 +85,15 @@ typedef struct {
     double bend[3];                   /* of any floor: that of all modes together */
     int may_rise[3];                  /* [u, drift, acceleration] may this step raise a peak? */
 } ContactScratch;
+
+/* Storeys that yield (n_pad), in a step where some may. */
+typedef struct {
+    vec *per_yield, *stiff; /* [1/m]; [N/m] of what is not linear, 0: the storey stays elastic */
+    vec *slope, *bend;      /* [N/s], [N/s2] f' and f''/2 of c k p at the end of the last step */
+    vec *work, *work_next;  /* [m2] int z d' dt of a storey, at both ends of the step */
+    vec *beside;            /* [J] int c k p dd, less the same of the parabola of its end and mean */
+    vec *load, *bubble;     /* (m_pad) modal load of their forces */
+} StoreyScratch;
 
 /* Certified free intervals: the largest that modes (m_pad) and floors (n_pad) can reach. */
 typedef struct {
@@ -128,36 +140,38 @@ typedef struct FastWork {
     double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                            /* (c_pad, m_pad) of the channels */
     vec *gap, *middle;                     /* (c_pad) as in SimModel */
-    int may_yield, yields, rows; /* room for storeys that yield; some do; channels with their padding between */
-    int c_pad, cf;               /* c_pad in vectors of LANES */
-    double *E;                   /* (m_pad, c_pad) of the channels: R where none yields */
-    int has_middle;              /* some are not 0 */
-    double *flex;                /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
-    int has_flex;                /* some are left out */
-    FloorSet floors;             /* all of them */
-    double shortest_at_1;        /* [s] shortest Hertz contact of any floor at 1 m/s */
-    double shortest_bumper;      /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
-    int oscillatory;             /* every mode is below critical damping and has a frequency */
-    double base;                 /* [s] the interval that the levels divide */
-    int sample_level;            /* samples are as far apart as a step of this level */
+    int may_yield, devices_max;            /* room for storeys that yield, for so many devices */
+    int yields, rows;                      /* some do; floors and devices */
+    int n_devices, at_device;              /* the first of their channels */
+    int c_pad, cf;                         /* c_pad in vectors of LANES */
+    double *E, *E_room;                    /* (m_pad, c_pad) of the channels: R where they are the gaps alone */
+    int has_middle;                        /* some are not 0 */
+    double *flex;                          /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
+    int has_flex;                          /* some are left out */
+    FloorSet floors;                       /* all of them */
+    double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
+    double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
+    int oscillatory;                       /* every mode is below critical damping and has a frequency */
+    double base;                           /* [s] the interval that the levels divide */
+    int sample_level;                      /* samples are as far apart as a step of this level */
     Level level[LEVEL_MAX + 1];
 
     /* the motion so far */
     State now, next;
-    vec *held;          /* (m_pad) modal load of the plastic drifts at the start of the step */
-    vec *rest;          /* (n_pad) [m] |z| of the storeys at rest under it */
-    int yielding_level; /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
-    double storey_rate; /* [1/s2] times the square of a step: what the other storeys change of one, at most */
-    FloorSet yielding;  /* storeys at the end of the last step */
-    double work_of[FLOORS_PAD_MAX]; /* [J] int k z d' dt of a storey */
-    double hysteresis;              /* [J] */
-    m22 *newton_g, *newton_LU;      /* (channels, channels) of Active */
-    vec *bubble;                    /* (c_pad) [N] of the contact forces over the step under way */
-    vec *peak_u, *peak_d, *peak_a;  /* (n_pad) */
-    double v0[FLOORS_PAD_MAX];      /* [m/s] of the open contact */
-    int side[FLOORS_PAD_MAX];       /* 0 no contact, +1 or -1 */
-    double force_slope[2 * FLOORS_PAD_MAX],
-        force_bend[2 * FLOORS_PAD_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
+    vec *held;                 /* (m_pad) modal load of the plastic drifts at the start of the step */
+    vec *rest;                 /* (n_pad) [m] |z| of the storeys at rest under it */
+    int yielding_level;        /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
+    double storey_rate;        /* [1/s2] times the square of a step: what the other storeys change of one, at most */
+    int yielding;              /* some storey did in the last step */
+    double hysteresis;         /* [J] */
+    m22 *newton_g, *newton_LU; /* (rows, rows) of Active */
+    double LU_of;              /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
+    int are_linear;            /* all devices */
+    vec *bubble;               /* (c_pad) [N] of the contact forces over the step under way */
+    vec *peak_u, *peak_d, *peak_a;                              /* (n_pad) */
+    double v0[FLOORS_PAD_MAX];                                  /* [m/s] of the open contact */
+    int side[FLOORS_PAD_MAX];                                   /* 0 no contact, +1 or -1 */
+    double force_slope[CHANNELS_MAX], force_bend[CHANNELS_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
     FloorSet in_contact;
     int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
     double speed;      /* [m/s] largest |w'| */
@@ -181,12 +195,14 @@ typedef struct FastWork {
 
     FlightScratch flight;
     ContactScratch contact;
+    StoreyScratch storeys;
     ReachScratch reach;
     RecordScratch record;
 
     /* energy account and counts */
     double contact_lost, contact_clamped;
-    double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
+    double device_taken, stroke, device_force; /* [J], [m], [N] by and across devices, the largest */
+    double approach_max[FLOORS_PAD_MAX];       /* [m] deepest, of steel and bumper together */
     long closings[FLOORS_PAD_MAX];
     long impacts, v0_limited, steps, flights, forces;
 } FastWork;

@@ -6,6 +6,7 @@ typedef struct {
     double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */
     double solver_tolerance;     /* of the contact forces of one step, relative to what the step moves */
     double energy_tolerance;     /* of one step, share of the input energy so far; 0: all steps are as above */
+    double device_error;         /* of a step of devices alone, share of the energy that they turn over */
     double steps_max;            /* steps after which a run is given up */
     double peak_tolerance;       /* share of a peak that may be uncertain inside a step */
     double flexibility_left_out; /* static, of the highest core modes, share of a contact's; 0: all are kept */

@@ -28,16 +28,27 @@ static inline double larger(double a, double b)
 typedef double vec __attribute__((vector_size(8 * FAST_LANES)));
 typedef int64_t mask __attribute__((vector_size(8 * FAST_LANES))); /* all ones where true */
 
+static inline vec vec_where(mask m, vec a, vec b)
+{
+    return (vec)(((mask)a & m) | ((mask)b & ~m));
+}
+
 /* The greater of the two; b where either is not a number. */
 static inline vec vec_max(vec a, vec b)
 {
-    const mask m = a > b;
-    return (vec)(((mask)a & m) | ((mask)b & ~m));
+    return vec_where(a > b, a, b);
 }
 
 static inline vec vec_abs(vec a)
 {
     return (vec)((mask)a & INT64_MAX);
+}
+
+static inline vec vec_sqrt(vec a)
+{
+    for (int i = 0; i < LANES; i++)
+        a[i] = __builtin_sqrt(a[i]);
+    return a;
 }
 
 /* At least sqrt(a^2 + b^2), at most 8 % more, without a root. */

@@ -1,0 +1,98 @@
+#include "analysis/fragility.h"
+
+#include <math.h>
+
+static double normal_cdf(double z)
+{
+    return 0.5 * erfc(-z * M_SQRT1_2);
+}
+
+/* Where exceeded intensities begin above all others: between the last without and the first with. NAN: they overlap. */
+static double parting_of(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
+{
+    double none = 0, all = INFINITY;
+    for (size_t j = 0; j < n; j++) {
+        none = exceeded[j] < n_at[j] ? fmax(none, x[j]) : none;
+        all = exceeded[j] > 0 ? fmin(all, x[j]) : all;
+    }
+    return none > 0 && isfinite(all) && none < all ? sqrt(none * all) : NAN;
+}
+
+typedef struct {
+    double gradient[2], information[3]; /* of a, b; aa, ab, bb */
+} Score;
+
+static Score score_of(size_t n, const double x[], const size_t n_at[], const size_t exceeded[], double a, double b)
+{
+    Score s = {{0}, {0}};
+    for (size_t j = 0; j < n; j++) {
+        const double l = log(x[j]), z = fmin(fmax(a + b * l, -8), 8);
+        const double p = normal_cdf(z), q = normal_cdf(-z), density = exp(-0.5 * z * z) / sqrt(2 * M_PI);
+        const double w = (double)n_at[j] * density * density / (p * q);
+        const double g = density * ((double)exceeded[j] / p - ((double)n_at[j] - (double)exceeded[j]) / q);
+        s.gradient[0] += g;
+        s.gradient[1] += g * l;
+        s.information[0] += w;
+        s.information[1] += w * l;
+        s.information[2] += w * l * l;
+    }
+    return s;
+}
+
+Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
+{
+    Fragility f = {NAN, NAN, NAN, NAN};
+    size_t all = 0, hits = 0;
+    double mean = 0, a, b = 2;
+    for (size_t j = 0; j < n; j++) {
+        all += n_at[j];
+        hits += exceeded[j];
+        mean += log(x[j]) / (double)n;
+    }
+    const double parting = parting_of(n, x, n_at, exceeded);
+    if (hits == 0 || hits == all)
+        return f;
+    if (isfinite(parting)) {
+        f.median = parting;
+        return f;
+    }
+    a = -b * mean;
+    Score s = {{0}, {0}};
+    for (int i = 0; i < 200; i++) {
+        s = score_of(n, x, n_at, exceeded, a, b);
+        const double *h = s.information, det = h[0] * h[2] - h[1] * h[1];
+        const double da = (h[2] * s.gradient[0] - h[1] * s.gradient[1]) / det;
+        const double db = (h[0] * s.gradient[1] - h[1] * s.gradient[0]) / det;
+        const double step = fmin(1, 1 / (fabs(da + db * mean) + fabs(db))); /* no further than a unit of z at once */
+        a += step * da;
+        b += step * db;
+        if (fabs(da) + fabs(db) <= 1e-12 * (fabs(a) + fabs(b)))
+            break;
+    }
+    if (!(b > 0)) /* rarer with intensity: no such curve */
+        return f;
+    s = score_of(n, x, n_at, exceeded, a, b);
+    const double *h = s.information, det = h[0] * h[2] - h[1] * h[1];
+    const double aa = h[2] / det, bb = h[0] / det, ab = -h[1] / det, u = -1 / b, v = a / (b * b);
+    return (Fragility){exp(-a / b), 1 / b, sqrt(u * u * aa + 2 * u * v * ab + v * v * bb), sqrt(bb) / (b * b)};
+}
+
+double fragility_at(const Fragility *f, double x)
+{
+    return isnan(f->beta) ? (isnan(f->median) ? NAN : x > f->median) : normal_cdf(log(x / f->median) / f->beta);
+}
+
+double fragility_rate(const Fragility *f, size_t n, const double hazard[])
+{
+    enum { PIECES = 200 };
+    double rate = 0;
+    for (size_t i = 0; i + 1 < n; i++) {
+        const double *from = hazard + 2 * i, *to = from + 2, k = log(to[1] / from[1]) / log(to[0] / from[0]);
+        for (int j = 0; j < PIECES; j++) {
+            const double x = from[0] * pow(to[0] / from[0], (double)j / PIECES),
+                         y = from[0] * pow(to[0] / from[0], (j + 1.0) / PIECES);
+            rate += fragility_at(f, sqrt(x * y)) * from[1] * (pow(x / from[0], k) - pow(y / from[0], k));
+        }
+    }
+    return rate + hazard[2 * n - 1] * fragility_at(f, hazard[2 * n - 2]);
+}

@@ -1,0 +1,36 @@
+/* analysis/fragility.h -- the probability of exceeding a limit, by intensity, and how often that happens.
+ *
+ *   P(exceeded | x) = Phi(ln(x / median) / beta)
+ *
+ * of n_j simulations at intensity x_j of which z_j exceed the limit, by maximum likelihood of the binomial counts
+ *
+ *   sum_j z_j ln P(x_j) + (n_j - z_j) ln(1 - P(x_j))
+ *
+ * in a = -ln(median) / beta, b = 1 / beta, where it is concave: Fisher scoring. Standard errors of ln median and of beta
+ * are those of the inverse information (delta method). With all or none exceeded nothing is known; where the levels
+ * part without overlap (none below, all above) the median lies between them and beta is not known.
+ *
+ *   rate = integral P(exceeded | x) |d lambda(x)|     [1/year], lambda: the hazard curve, yearly rate of more than x
+ *
+ * lambda is a power of x between its points. Below the first point nothing is counted, above the last the rate there
+ * times P there.
+ *
+ * Sources  Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra
+ *          31 (2015) 579-599; the integral: Cornell, Jalayer, Hamburger and Foutch, J. Struct. Eng. 128 (2002) 526-533
+ * Threads  pure functions */
+#pragma once
+
+#include <stddef.h>
+
+typedef struct {
+    double median, beta;          /* [unit of x], [-]; NAN: not known */
+    double sd_ln_median, sd_beta; /* standard errors; NAN: not known */
+} Fragility;
+
+/* x, n_at, exceeded (n) of the intensities. */
+Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const size_t exceeded[]);
+
+double fragility_at(const Fragility *f, double x);
+
+/* hazard (n, 2): x rising, lambda falling, all above 0. */
+double fragility_rate(const Fragility *f, size_t n, const double hazard[]);

@@ -1,0 +1,45 @@
+#include "cmd/improve.h"
+
+#include "cmd/designs.h"
+#include "settings/options.h"
+#include "store/run_read.h"
+#include "study/named.h"
+
+Status improve_open(Improve *m, const Args *args, const char *word, Err *err)
+{
+    RecordPaths moved;
+    TRY(run_wanted(args->operand, err));
+    TRY(store_open(&m->store, args->operand, 0, err));
+    TRY(store_read(m->store, &m->run, err));
+    TRY(design_of_run(&m->run, word, &m->row, NULL, err));
+    TRY(args_moved(args, &moved, err));
+    return record_paths_find(m->run.settings, m->run.provenance, &moved, err);
+}
+
+Status improve_store(Improve *m, const Evaluation *design, Err *err)
+{
+    Run now;
+    const Run *run = &m->run;
+    TRY(store_polished(m->store, design, run->tried_to_polish, run->polished_at, &m->id, err));
+    if (run->n_sessions > 0 && run->session[run->n_sessions - 1].is_final) /* else its search goes on */
+        TRY(named_simulate(m->store, run->settings, NULL, NULL, err));
+    TRY(store_write_front(m->store, &now, err));
+    m->knee = now.n_front > 0 ? now.table.row[run_knee(&now)].id : 0;
+    run_free(&now);
+    return STATUS_OK;
+}
+
+void improve_say(const Improve *m)
+{
+    const long before = m->run.n_front > 0 ? m->run.table.row[run_knee(&m->run)].id : 0;
+    if (m->id)
+        printf("stored in the run as design %ld.\n", m->id);
+    if (m->id && m->knee != before)
+        printf("%s:knee was design %ld and is now design %ld.\n", m->run.folder, before, m->knee);
+}
+
+void improve_close(Improve *m)
+{
+    run_free(&m->run);
+    store_free(m->store);
+}

@@ -1,0 +1,221 @@
+#include "motion/suite.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/list.h"
+#include "motion/builtin.h"
+#include "motion/synthetic.h"
+
+/* -- a source ------------------------------------------------------------------------------------------------------ */
+
+static const char CHANNEL[] = " channel=", FACTOR[] = " factor=";
+
+size_t source_path_length(const char *text)
+{
+    size_t n = strlen(text);
+    const char *channel = strstr(text, CHANNEL), *factor = strstr(text, FACTOR);
+    n = channel ? MIN_OF(n, (size_t)(channel - text)) : n;
+    n = factor ? MIN_OF(n, (size_t)(factor - text)) : n;
+    while (n > 1 && text[n - 1] == ' ')
+        n--;
+    return n;
+}
+
+Status source_read(const char *text, Source *out, Err *err)
+{
+    const size_t length = source_path_length(text);
+    char words[OPTION_TEXT_MAX], *rest = words, *end;
+    *out = (Source){.factor = 1};
+    snprintf(out->path, sizeof out->path, "%.*s", (int)length, text);
+    snprintf(words, sizeof words, "%s", text + length);
+    for (char *word; (word = strsep(&rest, " \t"));) {
+        const char *value = strchr(word, '=');
+        if (strncmp(word, CHANNEL + 1, sizeof CHANNEL - 2) == 0 && strlen(value) > 1)
+            snprintf(out->channel, sizeof out->channel, "%s", value + 1);
+        else if (strncmp(word, FACTOR + 1, sizeof FACTOR - 2) == 0) {
+            out->factor = strtod(value + 1, &end);
+            if (end == value + 1 || *end || !(out->factor > 0 && isfinite(out->factor)))
+                return bad_data(err, "%s: '%s': a factor is a number above 0", out->path, word);
+        } else if (*word)
+            return bad_data(err, "%s: '%s' is neither channel=NAME nor factor=NUMBER", out->path, word);
+    }
+    return STATUS_OK;
+}
+
+/* -- a suite ------------------------------------------------------------------------------------------------------- */
+
+static int is_visible(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
+}
+
+static int is_folder(const char *path)
+{
+    struct stat there;
+    return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
+}
+
+static int is_there(const char *source)
+{
+    char path[OPTION_TEXT_MAX];
+    snprintf(path, sizeof path, "%.*s", (int)source_path_length(source), source);
+    return builtin_name(path) || access(path, F_OK) == 0;
+}
+
+/* name in the folder of the first n characters of `path`, unless it leads from the root. */
+static Status put_inside(char out[OPTION_TEXT_MAX], const char *path, size_t n, const char *name, Err *err)
+{
+    const int is_whole = name[0] == '/' || builtin_name(name) || n == 0;
+    if (snprintf(out, OPTION_TEXT_MAX, "%.*s%s%s", is_whole ? 0 : (int)n, path, is_whole ? "" : "/", name) >=
+        OPTION_TEXT_MAX)
+        return bad_data(err, "%s: the path of %s is too long", path, name);
+    return STATUS_OK;
+}
+
+static Status each_of_folder(const char *folder, SourceFn take, void *user, Err *err)
+{
+    struct dirent **names = NULL;
+    char path[OPTION_TEXT_MAX];
+    size_t length = strlen(folder), n_files = 0;
+    Status status = STATUS_OK;
+    const int n = scandir(folder, &names, is_visible, by_name);
+    if (n < 0)
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    for (int i = 0; i < n; i++) {
+        if (status == STATUS_OK)
+            status = put_inside(path, folder, length, names[i]->d_name, err);
+        if (status == STATUS_OK && !is_folder(path)) {
+            n_files++;
+            status = take(path, user, err);
+        }
+        free(names[i]);
+    }
+    free(names);
+    return status == STATUS_OK && n_files == 0 ? bad_data(err, "%s: is empty", folder) : status;
+}
+
+static Status each_of_list(const char *path, SourceFn take, void *user, Err *err)
+{
+    char line[OPTION_TEXT_MAX], source[OPTION_TEXT_MAX];
+    const char *slash = strrchr(path, '/');
+    FILE *f = fopen(path, "r");
+    size_t n = 0;
+    Status status = STATUS_OK;
+    if (!f)
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
+    for (int at = 1; status == STATUS_OK && fgets(line, sizeof line, f); at++) {
+        Source s;
+        Err why = {0};
+        if (!strchr(line, '\n') && !feof(f))
+            status = bad_data(err, "%s:%d: is longer than %d characters", path, at, OPTION_TEXT_MAX - 2);
+        size_t length = strcspn(line, "#\r\n");
+        while (length > 0 && strchr(" \t", line[length - 1]))
+            length--;
+        line[length] = 0;
+        const char *begin = line + strspn(line, " \t");
+        if (status != STATUS_OK || !*begin)
+            continue;
+        n++;
+        status = put_inside(source, path, slash ? (size_t)(slash - path) : 0, begin, err);
+        if (status == STATUS_OK && (status = source_read(source, &s, &why)) != STATUS_OK)
+            fail(err, status, "%s:%d: %.300s", path, at, why.text);
+        if (status == STATUS_OK)
+            status = take(source, user, err);
+    }
+    fclose(f);
+    return status == STATUS_OK && n == 0 ? bad_data(err, "%s: names no record", path) : status;
+}
+
+static Status each_of_program(SourceFn take, void *user, Err *err)
+{
+    char source[OPTION_TEXT_MAX];
+    for (int i = 1; i <= SUITE_MOTIONS; i++) {
+        snprintf(source, sizeof source, SUITE_SOURCE "-%02d", i);
+        TRY(take(source, user, err));
+    }
+    return STATUS_OK;
+}
+
+static int is_list(const char *path)
+{
+    static const char END[] = "list.txt";
+    const size_t n = strlen(path);
+    return n >= sizeof END - 1 && strcmp(path + n - (sizeof END - 1), END) == 0;
+}
+
+static int is_suite(const char *item)
+{
+    return strcmp(item, SUITE_SOURCE) == 0 || is_list(item) || is_folder(item);
+}
+
+Status suite_each(const char *item, SourceFn take, void *user, Err *err)
+{
+    if (strcmp(item, SUITE_SOURCE) == 0)
+        return each_of_program(take, user, err);
+    if (is_list(item) || is_folder(item))
+        return (is_list(item) ? each_of_list : each_of_folder)(item, take, user, err);
+    return is_there(item) ? take(item, user, err) : fail(err, STATUS_MISSING, "%s: there is no such file or folder", item);
+}
+
+/* -- a study ------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const char *first;
+    SourceFn *take;
+    void *user;
+} Others;
+
+/* The same file, however its path is written, with the same words behind it. */
+static int is_same(const char *a, const char *b)
+{
+    struct stat s, t;
+    Source of_a, of_b;
+    return strcmp(a, b) == 0 ||
+           (strcmp(a + source_path_length(a), b + source_path_length(b)) == 0 &&
+            source_read(a, &of_a, NULL) == STATUS_OK && source_read(b, &of_b, NULL) == STATUS_OK &&
+            stat(of_a.path, &s) == 0 && stat(of_b.path, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
+}
+
+static Status take_other(const char *source, void *user, Err *err)
+{
+    const Others *o = user;
+    return is_same(source, o->first) ? STATUS_OK : o->take(source, o->user, err);
+}
+
+Status suite_of_study(const MotionOptions *o, SourceFn take, void *user, Err *err)
+{
+    char item[OPTION_TEXT_MAX];
+    const size_t n = list_is_given(o->records) ? list_count(o->records) : 0;
+    TRY(take(o->record, user, err));
+    for (size_t i = 0; i < n; i++) {
+        if (!list_item(o->records, i, item, sizeof item))
+            return bad_data(err, "motion.records: item %zu is empty or too long", i + 1);
+        TRY(is_suite(item) ? suite_each(item, take_other, &(Others){o->record, take, user}, err)
+                           : take(item, user, err));
+    }
+    return STATUS_OK;
+}
+
+static Status count(const char *source, void *user, Err *err)
+{
+    (void)source;
+    (void)err;
+    ++*(size_t *)user;
+    return STATUS_OK;
+}
+
+size_t suite_count(const MotionOptions *o)
+{
+    size_t n = 0;
+    return suite_of_study(o, count, &n, NULL) == STATUS_OK ? n : 1;
+}

@@ -1,0 +1,147 @@
+/* Constraint values that external workers answer: how many there are is learned, and they bound the front. */
+#include "runs.h"
+
+#include <signal.h>
+
+/* Of mode `bounded` the front is x2 = 0, x3 = a, x1 = 6 .. 15 among 882 designs. */
+static void write_bounded(const char *name, const char *mode, const char *search)
+{
+    char text[2 * PATH_MAX];
+    snprintf(text, sizeof text,
+             "[problem]\nkind = external\ncommand = sh tests/worker.sh %s\nvariables = 3\nobjectives = 2\nlower = 0\n"
+             "upper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 90\n"
+             "generations = 200\nthreads = 1\n%s",
+             mode, search);
+    write_in_place(name, text);
+}
+
+static Run run_of(const char *name)
+{
+    Run run;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
+    return run;
+}
+
+static void assert_starts_with(const char *file, const char *head)
+{
+    char *text = read_in_place(file);
+    assert_memory_equal(text, head, strlen(head));
+    free(text);
+}
+
+TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
+{
+    write_bounded("bounded.ini", "bounded", "");
+    free(output_of("optimize @/bounded.ini --out @/bounded"));
+    Run run = run_of("bounded");
+    assert_int_equal(run.n_front, 10);
+    for (size_t i = 0; i < run.n_front; i++) {
+        const double *x = run_x(&run, run.front[i]);
+        assert_true(x[0] == 6.0 + (double)(run_f(&run, run.front[i])[0] - 6.0) && x[1] == 0.0 && x[2] == 0.0);
+    }
+    for (size_t i = 0; i < run.table.n; i++) {
+        const Evaluation *e = &run.table.row[i];
+        assert_true(e->extra[0] == 6.0 - e->x[0] && e->extra[1] == e->x[0] + e->x[1] - 15.0);
+        assert_true(e->violation == fmax(e->extra[0], 0.0) + fmax(e->extra[1], 0.0));
+    }
+    run_free(&run);
+    assert_starts_with("bounded/front.csv", "id,x1,x2,x3,f1,f2,g_1,g_2\n");
+    json_t *all = json_of("export @/bounded --json");
+    json_t *last = json_array_get(json_object_get(all, "columns"), 6);
+    assert_string_equal(json_string_value(json_object_get(last, "role")), "constraint");
+    json_decref(all);
+}
+
+TEST(every_design_is_asked_for_once_the_first_one_too)
+{
+    char mode[PATH_MAX];
+    int asked[91] = {0}, id;
+    snprintf(mode, sizeof mode, "bounded %.1000s/ids", place.folder);
+    write_bounded("ids.ini", mode, "");
+    free(output_of("optimize @/ids.ini --out @/asked"));
+    char path[PATH_MAX];
+    FILE *f = fopen(path_of("ids", path), "r");
+    assert_non_null(f);
+    while (fscanf(f, "%d", &id) == 1)
+        asked[id]++;
+    fclose(f);
+    for (id = 1; id <= 90; id++)
+        assert_int_equal(asked[id], 1);
+}
+
+TEST(another_number_of_values_than_in_the_first_answer_fails_the_design_alone)
+{
+    write_bounded("odd.ini", "unbounded", "");
+    free(output_of("optimize @/odd.ini --out @/odd"));
+    Run run = run_of("odd");
+    assert_int_equal(run.table.n, 90);
+    for (size_t i = 0; i < run.table.n; i++)
+        assert_int_equal(run.table.row[i].outcome, (i + 1) % 3 == 0 ? OUTCOME_NOT_FINITE : OUTCOME_OK);
+    assert_string_equal(run.table.row[2].reason, "g has 0 values and not 2 as in the first answer of the run");
+    run_free(&run);
+}
+
+/* The designs that fail before are kept as well. */
+TEST(where_the_first_designs_fail_the_first_that_succeeds_says_how_many)
+{
+    write_in_place("late.sh", "while read -r line; do id=${line#*:}; id=${id%%,*}\n"
+                              "[ $id -lt 4 ] && echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"early\\\"}\" || "
+                              "echo \"{\\\"id\\\":$id,\\\"f\\\":[$id,1],\\\"g\\\":[$id]}\"\ndone\n");
+    char *text = in_place("late.sh"), line[PATH_MAX + 64];
+    snprintf(line, sizeof line, "--set 'problem.command=sh %s'", text);
+    free(text);
+    write_bounded("late.ini", "bounded", "");
+    char arguments[PATH_MAX + 256];
+    snprintf(arguments, sizeof arguments, "optimize @/late.ini --out @/late %s", line);
+    expect(69, "search.limits: none of 87 designs keeps g<=0; those that come nearest", arguments);
+    Run run = run_of("late");
+    for (size_t i = 0; i < run.table.n; i++)
+        assert_int_equal(run.table.row[i].outcome, i < 3 ? OUTCOME_ERROR : OUTCOME_OK);
+    assert_true(run.schema.n_extra == 1 && run.table.row[3].extra[0] == 4.0);
+    run_free(&run);
+}
+
+TEST(threads_and_kills_change_no_byte_of_a_search_with_words_numbers_and_constraints)
+{
+    static const size_t KILLED_AT[] = {1, 9, 17, 40, 66};
+    write_bounded("bytes.ini", "bounded", "");
+    free(output_of("optimize @/bytes.ini --out @/whole"));
+    free(output_of("optimize @/bytes.ini --out @/three --threads 3"));
+    char *whole = all_of("whole"), *three = all_of("three");
+    assert_string_equal(whole, three);
+    free(three);
+    for (size_t i = 0; i < N_OF(KILLED_AT); i++) {
+        const pid_t pid = start("bytes.ini", "killed");
+        const double until = now_s() + 60;
+        while (finished_in("killed") < KILLED_AT[i] && now_s() < until)
+            rest(0.005);
+        kill(pid, SIGKILL);
+        wait_end(pid);
+    }
+    free(output_of("optimize @/bytes.ini --out @/killed"));
+    assert_int_equal(finished_in("killed"), 90);
+    assert_same_run("whole", "killed");
+    free(output_of("optimize @/bytes.ini --out @/arrived --set search.asynchronous=on"));
+    char *arrived = all_of("arrived");
+    assert_string_equal(whole, arrived);
+    free(whole);
+    free(arrived);
+}
+
+TEST(the_welded_beam_of_the_example_has_four_constraints)
+{
+    if (system("command -v python3 >/dev/null") != 0)
+        skip();
+    free(output_of("optimize configs/beam.ini --out @/beam --max-evals 40"));
+    Run run = run_of("beam");
+    assert_int_equal(run.schema.n_extra, 4);
+    assert_less(0, run.n_front);
+    run_free(&run);
+}
+
+int main(void)
+{
+    return RUN_TESTS(prepare, clear_place);
+}

@@ -1,0 +1,280 @@
+/* Devices of a design: links and the tuned mass against the exact linear answer, and engines against each other where
+ * floors and core collide as well. */
+#include <string.h>
+#include <unistd.h>
+
+#include "check.h"
+#include "scene_options.h"
+#include "sim/device.h"
+
+enum { FLOORS = 20, LINKS_AT = FLOORS + 2, MASS_AT = LINKS_AT + FLOORS };
+
+typedef struct {
+    Settings settings;
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    double x[MASS_AT + 3 + FLOORS];
+} Tower;
+
+/* The paper's tower under a motion of the program, with a link on every floor and a tuned mass. */
+static void tower_set(Tower *t, const char *variables, Engine engine, double gap)
+{
+    *t = (Tower){0};
+    paper_defaults(&t->settings);
+    t->settings.sim.duration_s = 15;
+    t->settings.sim.accuracy = ACCURACY_FINE;
+    t->settings.sim.forces = FORCES_YES;
+    t->settings.sim.engine = engine;
+    snprintf(t->settings.design.variables, OPTION_TEXT_MAX, "%s", variables);
+    snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
+    for (int j = 0; j < FLOORS; j++)
+        t->x[j] = gap * (j + 1);
+    t->x[FLOORS] = 0.030;
+    t->x[FLOORS + 1] = 0.0216;
+}
+
+static SimResult tower_run(Tower *t, SceneKind kind, LinearDevice device)
+{
+    SimResult r;
+    Err err = {0};
+    const SceneOptions options = settings_scene(&t->settings);
+    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&t->motion, 0.3, t->settings.motion.record[0] == 'b' ? 1 : 3, &err), &err);
+    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
+    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
+    sim_worker_device(t->worker, &device);
+    CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
+    if (r.outcome != RUN_OK)
+        print_error("%s\n", r.reason);
+    assert_int_equal(r.outcome, RUN_OK);
+    sim_worker_free(t->worker);
+    scene_free(t->scene);
+    motion_free(&t->motion);
+    return r;
+}
+
+static void fit_links(Tower *t, double damping)
+{
+    for (int j = 0; j < FLOORS; j++)
+        t->x[LINKS_AT + j] = damping;
+}
+
+static void fit_mass(double x[], double kg, double hz, double damping)
+{
+    x[0] = kg;
+    x[1] = hz;
+    x[2] = damping;
+}
+
+static const LinearDevice NONE;
+
+/* Energies in joules: of the tuned mass alone the input of the core is not part. */
+static void assert_alike(const SimResult *r, const SimResult *wanted, double tolerance)
+{
+    assert_close(r->j1_m, wanted->j1_m, tolerance);
+    assert_close(r->j2_m, wanted->j2_m, tolerance);
+    assert_close(r->j3_g, wanted->j3_g, tolerance);
+    assert_close(r->ed1_pct * r->input_energy_j, wanted->ed1_pct * wanted->input_energy_j, tolerance);
+    assert_close(r->damped_building_j, wanted->damped_building_j, tolerance);
+    assert_close(r->stroke_m, wanted->stroke_m, tolerance);
+    assert_less(r->energy_balance_error, 1e-5);
+}
+
+TEST(links_of_a_design_do_what_the_exact_linear_engine_says)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
+    const SimResult exact = tower_run(&t, SCENE_LINKS, (LinearDevice){.link_ns_m = 0.865e6});
+    tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 1);
+    fit_links(&t, 0.865e6);
+    const SimResult fine = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_alike(&fine, &exact, 1e-6);
+    assert_close(fine.dashpot_n, exact.dashpot_n, 1e-6);
+    assert_close(fine.input_energy_j, exact.input_energy_j, 1e-6);
+    assert_close(fine.damped_core_j + fine.device_loss_j, exact.damped_core_j, 1e-6);
+    assert_close(fine.forces.base_shear_n, exact.forces.base_shear_n, 1e-6);
+    assert_less(50, fine.ed_devices_pct);
+    t.settings.sim.accuracy = ACCURACY_STANDARD;
+    const SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_alike(&r, &exact, 1e-3);
+    assert_true(10 * r.steps < fine.steps);
+}
+
+TEST(a_tuned_mass_of_a_design_does_what_the_exact_linear_engine_says)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
+    const SimResult exact = tower_run(&t, SCENE_TMD, (LinearDevice){.tmd_hz = 0.25, .tmd_damping = 0.1});
+    tower_set(&t, "gaps, thickness, tuned_mass", ENGINE_FAST, 1);
+    fit_mass(t.x + LINKS_AT, exact.mcore_kg, 0.25, 0.1);
+    SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_alike(&r, &exact, 1e-6);
+    assert_close(r.forces.building_base_shear_n, exact.forces.building_base_shear_n, 1e-6);
+    t.settings.sim.accuracy = ACCURACY_STANDARD;
+    r = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_alike(&r, &exact, 1e-3);
+}
+
+/* Some floors have links, all have gaps, storeys yield and a mass hangs at the roof. */
+static SimResult run_all(Engine engine, double exponent, double yield_drift)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness, links, tuned_mass", engine, 0.003);
+    t.settings.design.link_exponent = exponent;
+    t.settings.building.yield_drift = yield_drift;
+    t.settings.sim.duration_s = 8;
+    for (int j = 0; j < FLOORS; j++)
+        t.x[LINKS_AT + j] = j % 3 == 0 ? 0.2e6 : 0;
+    fit_mass(t.x + MASS_AT, 3e5, 0.25, 0.1);
+    return tower_run(&t, SCENE_IMPACT, NONE);
+}
+
+TEST(both_engines_agree_on_devices_beside_impacts_and_yielding)
+{
+    static const double EXPONENT[] = {1, 0.3, 1}, YIELD[] = {0, 0, 0.002};
+    for (int i = 0; i < 3; i++) {
+        const SimResult fast = run_all(ENGINE_FAST, EXPONENT[i], YIELD[i]);
+        const SimResult cvode = run_all(ENGINE_CVODE, EXPONENT[i], YIELD[i]);
+        assert_true(fast.impacts > 20);
+        assert_less(5, fast.ed_devices_pct);
+        assert_true(YIELD[i] == 0 || fast.ed_hysteresis_pct > 0.5);
+        assert_close(fast.hysteresis_j, cvode.hysteresis_j, 2e-3);
+        assert_alike(&fast, &cvode, 2e-3);
+        assert_close(fast.dashpot_n, cvode.dashpot_n, 1e-4);
+        assert_close(fast.device_loss_j, cvode.device_loss_j, 2e-3);
+    }
+}
+
+TEST(links_of_zero_change_no_bit)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness", ENGINE_FAST, 0.006);
+    SimResult without = tower_run(&t, SCENE_IMPACT, NONE);
+    tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 0.006);
+    SimResult with = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_true(with.impacts > 20);
+    assert_true(with.j1_m == without.j1_m && with.j3_g == without.j3_g && with.edcs_pct == without.edcs_pct &&
+                with.steps == without.steps && with.device_loss_j == 0);
+}
+
+/* A mass that coasts on a power law: m v' = -c v^a, so that v^(1 - a) falls by (1 - a) c / m a second. */
+TEST(a_power_law_stops_a_mass_as_its_closed_form_says)
+{
+    const Device law = {.damping = 3e5, .exponent = 0.3};
+    const double mass = 1e5, h = 1e-5;
+    double v = 1, t = 0, slope;
+    for (; t < 0.2; t += h) {
+        const double middle = v - 0.5 * h * device_viscous(&law, v, &slope) / mass;
+        v -= h * device_viscous(&law, middle, &slope) / mass;
+    }
+    assert_close(pow(v, 0.7), 1 - 0.7 * 3 * t, 1e-5);
+    const double e = 1e-6, up = device_viscous(&law, 0.1 + e, &slope), down = device_viscous(&law, 0.1 - e, &slope);
+    device_viscous(&law, 0.1, &slope);
+    assert_close(slope, 0.5 * (up - down) / e, 1e-6);
+}
+
+/* SPEC of the reference: links of 0.865 MN s/m on the early window of Sylmar. */
+TEST(links_have_the_reference_numbers)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 1);
+    snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
+    if (access(t.settings.motion.record, R_OK) != 0) {
+        print_message("skipped: %s is not there\n", t.settings.motion.record);
+        skip();
+    }
+    t.settings.sim.duration_s = 11;
+    fit_links(&t, 0.865e6);
+    const SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_close(r.j1_m, 0.336538, 1e-4);
+    assert_close(r.j2_m, 0.040207, 1e-4);
+    assert_close(r.j3_g, 0.18920, 1e-3);
+    assert_close(r.input_energy_j, 1.81885e6, 2e-3);
+    assert_close(r.ed1_pct, 2.066, 2e-3);
+    assert_close(r.edcs_pct, 0.098, 5e-3);
+    assert_close(r.dashpot_n, 0.387e6, 2e-3);
+}
+
+/* Floors 1 to 10 have a stop, 11 to 20 what the word says. */
+static SimResult run_choice(int word)
+{
+    Tower t;
+    tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 0.006);
+    snprintf(t.settings.design.devices, OPTION_TEXT_MAX, "gap, link, none");
+    t.settings.design.device_zones = 2;
+    t.settings.sim.duration_s = 8;
+    fit_links(&t, 1e6);
+    t.x[MASS_AT] = 0;
+    t.x[MASS_AT + 1] = word;
+    return tower_run(&t, SCENE_IMPACT, NONE);
+}
+
+TEST(a_floor_has_the_device_that_is_chosen_alone)
+{
+    const SimResult stops = run_choice(0), links = run_choice(1), none = run_choice(2);
+    Tower t;
+    tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 0.006);
+    t.settings.sim.duration_s = 8;
+    const SimResult plain = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_true(stops.j1_m == plain.j1_m && stops.j3_g == plain.j3_g && stops.impacts == plain.impacts);
+    for (int j = FLOORS / 2; j < FLOORS; j++)
+        t.x[j] = 5, t.x[LINKS_AT + j] = 1e6;
+    const SimResult wanted = tower_run(&t, SCENE_IMPACT, NONE);
+    assert_close(links.j1_m, wanted.j1_m, 1e-6);
+    assert_close(links.ed_devices_pct, wanted.ed_devices_pct, 1e-3);
+    assert_true(links.n_devices == FLOORS && none.n_devices == FLOORS / 2 && none.device_loss_j == 0);
+    assert_true(none.closings[FLOORS - 1] == 0 && links.closings[FLOORS - 1] == 0 && stops.closings[FLOORS - 1] > 0);
+}
+
+TEST(devices_are_refused_by_name)
+{
+    static const struct {
+        const char *variables, *devices, *why;
+    } bad[] = {{"gaps, thickness", "gap, link", "add links to design.variables"},
+               {"gaps, thickness, links", "gap, lnk", "lnk"},
+               {"gaps, thickness, links", "gap, gap", "gap stands there twice"},
+               {"gaps, thickness, links", "link", "link alone is no choice"},
+               {"gaps, thickness", "gap, bumper", "add bumper to design.variables"}};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        DesignOptions o = scene_defaults().design;
+        DesignSpace s;
+        Err err = {0};
+        snprintf(o.variables, sizeof o.variables, "%s", bad[i].variables);
+        snprintf(o.devices, sizeof o.devices, "%s", bad[i].devices);
+        assert_int_equal(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, bad[i].why));
+    }
+}
+
+TEST(kinds_of_the_variables_of_devices)
+{
+    DesignOptions o = scene_defaults().design;
+    DesignSpace s;
+    Err err = {0};
+    char name[TABLE_NAME_MAX];
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    snprintf(o.variables, sizeof o.variables, "gaps, thickness, links, tuned_mass");
+    snprintf(o.devices, sizeof o.devices, "gap, link, none");
+    o.gap_zones = o.link_zones = o.device_zones = 2;
+    CHECK_OK(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), &err);
+    static const char *const NAMES[] = {"gap_zone_1_m",       "gap_zone_2_m",      "t_base_m",      "t_top_m",
+                                        "link_zone_1_n_s_m",  "link_zone_2_n_s_m", "tuned_mass_kg", "tuned_mass_hz",
+                                        "tuned_mass_damping", "device_zone_1",     "device_zone_2"};
+    assert_int_equal(s.n_var, 11);
+    design_bounds(&s, &o, lower, upper);
+    for (int j = 0; j < s.n_var; j++) {
+        design_variable_name(&s, j, name);
+        assert_string_equal(name, NAMES[j]);
+        assert_int_equal(design_is_choice(&s, j), j >= 9);
+        assert_int_equal(design_is_log(&s, j), j >= 4 && j < 9);
+        assert_less(lower[j], upper[j]);
+        if (j >= 9)
+            assert_true(lower[j] == 0 && upper[j] == 2);
+    }
+}
+
+int main(void)
+{
+    return RUN_TESTS(NULL, NULL);
+}

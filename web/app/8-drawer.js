@@ -1,0 +1,94 @@
+// The design that was clicked, in a drawer beside the pictures, which stay where they are: its numbers, gaps and peaks, and
+// what can be done with it.
+
+const drawer = document.body.appendChild(element("aside", { id: "drawer", tabindex: "-1", hidden: true, "aria-labelledby": "drawer-title" }));
+const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
+
+// What imtet serve adds: buttons, and a promise of the design in detail with what follows the peaks.
+const drawerMore = { buttons: () => [], detail: () => null, rest: () => {} };
+
+// A change of widths moves everything; what is looked at stays at its height.
+function keepInPlace(act) {
+  const seen = [...document.querySelectorAll("main figure, main summary, main table, main h2")].find((e) => e.getBoundingClientRect().bottom > 0.3 * window.innerHeight);
+  const before = seen?.getBoundingClientRect().top;
+  act();
+  if (seen) window.scrollBy({ top: seen.getBoundingClientRect().top - before, behavior: "instant" });
+}
+
+function showDrawer(isOpen) {
+  if (isOpen === !drawer.hidden) return;
+  keepInPlace(() => {
+    drawer.hidden = !isOpen;
+    document.documentElement.classList.toggle("beside", isOpen);
+    layoutChanged();
+    drawAll();
+  });
+}
+
+let opener; // had the focus before
+function closeDrawer() {
+  showDrawer(false);
+  opener?.focus?.({ preventScroll: true });
+}
+
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && axisMenu.hidden && !drawer.hidden) closeDrawer();
+});
+
+function difference(value, before) {
+  const pct = (100 * (value - before)) / Math.abs(before);
+  return element("small", { class: "difference" }, Number.isFinite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
+}
+
+function numbersOf(row) {
+  const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
+  return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
+    ...[...results, ...variables.filter((c) => c.family.length === 1)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+      ...(other === undefined ? [] : [difference(c.value[row], c.value[other])])]))]);
+}
+
+// Of a design that was not simulated again: what its variables say.
+function familyFigure(host, family, row) {
+  const [first] = family, name = first.title.replace(/[, ]+(zone )?\d+$/, ""), place = /zone/.test(first.title) ? "zone" : "floor";
+  const rows = family.map((c, j) => ({ place: j + 1, v: c.value[row] }));
+  figure(host, `${name[0].toUpperCase()}${name.slice(1)}s`, null, (width) => chart({
+    width, height: 70 + Math.min(260, 16 * family.length), ariaLabel: `${name} by ${place}`, x: { label: titleUnit({ ...first, title: name }), grid: true, zero: true, nice: true, ticks: 4 }, y: { ...floorAxis(family.length), label: run.tower ? place : "" },
+    marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.place - 0.38, y2: (r) => r.place + 0.38, fill: BLUE, title: (r) => `${place} ${r.place}: ${show(r.v)} ${first.unit}` }), charts.ruleX([0])],
+  }));
+}
+
+const commandsOf = (id) => [`imtet evaluate ${run.folder} --design ${id}`, ...(run.tower ? [`imtet simplify ${run.folder} --design ${id}`] : []), `imtet report ${run.folder} --design ${id}`].join("\n");
+
+// The row of front.csv with its head.
+const exportDesign = (row) => saveFile(`${run.name}-${ids[row]}.csv`, csvOf((i) => i === row));
+
+function fillDrawer(row, d) {
+  const id = ids[row];
+  refill(drawer, (host) => {
+    host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
+      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => exportDesign(row), { title: "its row of front.csv" })), numbersOf(row));
+    if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
+    if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
+    if (d?.gap_m) gapFigure(host, d);
+    else for (const family of families.values()) if (!family[0].sense && family.length > 1) familyFigure(host, family, row);
+    if (d?.with_core) peakPart(host, d, 240);
+    host.append(element("details", {}, element("summary", {}, "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
+    if (d?.with_core) drawerMore.rest(host, d);
+  });
+  drawer.dataset.id = d?.waits ? "" : id;
+}
+
+async function openDrawer(row) {
+  const id = ids[row], isNew = drawer.hidden;
+  if (!drawer.contains(document.activeElement)) opener = document.activeElement;
+  const answer = drawerMore.detail(row);
+  drawer.dataset.wanted = id;
+  fillDrawer(row, answer ? { waits: true } : id === run.chosen ? run.detail : null);
+  showDrawer(true);
+  if (isNew) drawAll(); // it has a width now
+  drawer.scrollTop = 0;
+  drawer.focus({ preventScroll: true });
+  if (!answer) return;
+  const d = await answer.catch((error) => ({ reason: error.message }));
+  if (drawer.dataset.wanted === String(id) && !drawer.hidden) fillDrawer(row, d);
+}
