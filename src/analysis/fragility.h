@@ -6,7 +6,7 @@
  *
  *   sum_j z_j ln P(x_j) + (n_j - z_j) ln(1 - P(x_j))
  *
- * in a = -ln(median) / beta, b = 1 / beta, where it is concave: Fisher scoring. Standard errors of ln median and of beta
+ * in a = -ln(median) / beta, b = 1 / beta, where it is concave: Fisher scoring. Standard errors of ln median and beta
  * are those of the inverse information (delta method). With all or none exceeded nothing is known; where the levels
  * part without overlap (none below, all above) the median lies between them and beta is not known.
  *

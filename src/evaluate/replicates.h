@@ -15,7 +15,7 @@
  *                   them counted in part (Rockafellar and Uryasev, J. Risk 2 (2000) 21-41)
  *   chances         (evaluate/measures.h) mean and deviation of all, by every rule
  *
- * Standard errors of these numbers, of records drawn from those that could come, are by the bootstrap: standard deviation
+ * Standard errors of these numbers, of records drawn from those that could come, are by the bootstrap: the deviation
  * over BOOTSTRAP suites of as many records, drawn with replacement by a stream of their own; of one record NAN
  * (Efron, Ann. Statist. 7 (1979) 1-26). That of the worst is a lower bound, for no suite has a worse record.
  *

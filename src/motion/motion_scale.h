@@ -46,7 +46,7 @@
  * otherwise it must not contradict the file; it does not matter to a built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
 
-/* The record of the options, a source (motion/suite.h), read and processed as they say; not scaled yet (motion_scale). */
+/* The record of the options, a source (motion/suite.h), read and processed as they say; not scaled yet. */
 Status motion_open(Motion *m, const MotionOptions *o, Err *err);
 
 /* Base line and filters; m->accel may be another one afterwards. */

@@ -164,7 +164,8 @@ Status suite_each(const char *item, SourceFn take, void *user, Err *err)
         return each_of_program(take, user, err);
     if (is_list(item) || is_folder(item))
         return (is_list(item) ? each_of_list : each_of_folder)(item, take, user, err);
-    return is_there(item) ? take(item, user, err) : fail(err, STATUS_MISSING, "%s: there is no such file or folder", item);
+    return is_there(item) ? take(item, user, err)
+                          : fail(err, STATUS_MISSING, "%s: there is no such file or folder", item);
 }
 
 /* -- a study ------------------------------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
  *   S_i(T) = S(T) exp(eps_i(T)) / mean_j exp(eps_j(T))              S: asce7 sds=1 sd1=0.6
  *
  * eps_i are smooth random functions of ln T of standard deviation SUITE_SPREAD, so that records differ as recorded
- * ones do, and their mean is S. The envelope e_i rises as a square, stays, and falls as exp(-t / decay), its times drawn
+ * ones do, and their mean is S. The envelope e_i rises as a square, stays, falls as exp(-t / decay), its times drawn
  * too; two terms along the envelope leave the ground at rest, without velocity and displacement. Random numbers are
  * those of streams keyed by the number of the motion: the same samples every time, to whole millionths of m/s2.
  *
