@@ -461,6 +461,61 @@ TEST(designs_records_and_floors_that_are_not_there_are_refused)
     expect(74, "", "report @/dtlz --out /no/such/folder/x.html");
 }
 
+/* The number in the first cell behind a row's name, below a heading. */
+static double first_cell(const char *page, const char *heading, const char *name)
+{
+    char row[80];
+    const char *at = strstr(page, heading);
+    snprintf(row, sizeof row, ">%s</th><td>", name);
+    at = at ? strstr(at, row) : NULL;
+    if (!at)
+        fail_msg("%s: no %s", heading, row);
+    return at ? atof(at + strlen(row)) : NAN;
+}
+
+TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covered)
+{
+    static const char *const PARTS[] = {"Building, core and ground motion",
+                                        "The design</h2>",
+                                        "The response, by four calculations",
+                                        "Forces and stresses",
+                                        "kept</td>",
+                                        "Which effects the model needs",
+                                        "Records one by one",
+                                        ">builtin:kobe-like,",
+                                        ">builtin:elcentro-like,",
+                                        "Against intensity",
+                                        "As built",
+                                        "no stiffeners",
+                                        "matrices_fnv1a",
+                                        "</html>"};
+    expect(0, "", "report @/tower --dossier @/dossier.html --record builtin:elcentro-like");
+    char *page = read_in_place("dossier.html");
+    const char *at = page;
+    for (size_t i = 0; i < N_OF(PARTS); i++) {
+        at = strstr(at, PARTS[i]);
+        if (!at)
+            fail_msg("no %s behind what has to stand before it", PARTS[i]);
+    }
+    json_t *fine = json_of("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
+    const double wanted = number(fine, "j1_m");
+    assert_close(first_cell(page, PARTS[2], "accuracy fine"), wanted, 5e-3); /* three digits */
+    assert_close(first_cell(page, PARTS[2], "by CVODE (SUNDIALS)"), wanted, 5e-3);
+    assert_close(first_cell(page, "<h1>", "no core"), report.detail.result[SCENE_NO_CORE].j1_m, 5e-3);
+    assert_null(strstr(page, "<script"));
+    json_decref(fine);
+    free(page);
+}
+
+TEST(a_dossier_that_cannot_be_made_is_refused_before_anything_is_simulated)
+{
+    expect(65, "is of a design of the tower", "report @/dtlz --dossier @/d.html");
+    expect(2, "do not go together", "report @/tower --dossier @/d.html --out @/page.html");
+    snprintf(place.under, sizeof place.under, "env PATH=/nowhere");
+    expect(66, "neither chromium nor weasyprint", "report @/tower --dossier @/d.pdf");
+    place.under[0] = 0;
+}
+
 static long size_of(const char *run, const char *name)
 {
     char path[256];

@@ -63,3 +63,12 @@ int text_close(FILE *stream)
     const int failed = ferror(stream);
     return fclose(stream) != 0 || failed;
 }
+
+void text_html(FILE *out, const char *words)
+{
+    for (; *words; words++)
+        if (strchr("<>&\"", *words))
+            fprintf(out, "&#%d;", *words);
+        else
+            fputc(*words, out);
+}

@@ -1,5 +1,5 @@
-/* base/text.h -- a stream into memory that says when there was none: glibc's open_memstream loses what it had no room
- * for, and neither ferror nor fclose tells.
+/* base/text.h -- words inside HTML, and a stream into memory that says when there was none: glibc's open_memstream loses
+ * what it had no room for, and neither ferror nor fclose tells.
  *
  * Ownership  *text is malloc'd, ends with a zero byte behind its *length, and is the caller's
  * Errors     text_open: NULL; text_close: not 0. *text is NULL then */
@@ -9,3 +9,6 @@
 
 FILE *text_open(char **text, size_t *length);
 int text_close(FILE *stream);
+
+/* Words of users inside HTML or SVG. */
+void text_html(FILE *out, const char *words);

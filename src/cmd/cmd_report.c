@@ -4,6 +4,7 @@
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/dossier.h"
 #include "motion/builtin.h"
 #include "motion/suite.h"
 #include "motion/motion_scale.h"
@@ -12,8 +13,9 @@
 
 enum { RECORDS_MAX = 32 };
 
+/* The study's own come first. */
 typedef struct {
-    size_t n, n_seen; /* n_seen: records of the run */
+    size_t n, n_seen; /* n_seen: records of the run, whose first one the design is simulated under anyway */
     const char *path[RECORDS_MAX];
     char own[RECORDS_MAX][OPTION_TEXT_MAX]; /* those that the run names */
 } Records;
@@ -27,37 +29,43 @@ static Status take_own(const char *source, void *user, Err *err)
     return option_put_path(r->own[r->n++], source, err);
 }
 
-/* Those of the command line, else the further ones of the run, else the built-in motions that it did not use. */
+static Status take_given(const char *source, void *user, Err *err)
+{
+    ((Records *)user)->n_seen++;
+    return take_own(source, user, err);
+}
+
+/* The further ones of the run, those of the command line, and where there is neither the built-in motions that the run
+ * did not use. */
 static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
 {
     static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
-    const size_t n = suite_count(&run->motion);
-    for (int i = 0; r->n < RECORDS_MAX && (path = args_next(args, "--record", &i));)
-        r->path[r->n++] = path;
-    const int is_given = r->n > 0;
+    TRY(suite_of_study(&run->motion, take_own, r, err));
+    for (int i = 0; (path = args_next(args, "--record", &i));)
+        TRY(take_given(path, r, err));
+    if (args_has(args, "--records"))
+        TRY(suite_each(args_value(args, "--records"), take_given, r, err));
     if (r->n == RECORDS_MAX)
-        return misused(err, "--record: more than %d earthquakes make no report", RECORDS_MAX - 1);
-    if (!is_given)
-        TRY(suite_of_study(&run->motion, take_own, r, err));
-    for (size_t i = 0; !is_given && n == 1 && i < N_OF(BUILT_IN); i++)
+        return misused(err, "more than %d earthquakes make no report", RECORDS_MAX - 1);
+    const int none = r->n == 0;
+    for (size_t i = 0; none && i < N_OF(BUILT_IN); i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
             r->path[r->n++] = BUILT_IN[i];
     return STATUS_OK;
 }
 
-static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
+static Status open_report(const Args *args, const Run *run, Records *records, Report *r, Err *err)
 {
     const char *design = args_value(args, "--design");
     Settings other = *run->settings;
-    Records records = {0};
     size_t row;
     long floor;
-    DetailOptions options = {.other = &other, .records = records.path, .with_ladder = !args_has(args, "--pictures")};
+    DetailOptions options = {.other = &other, .records = records->path, .with_ladder = !args_has(args, "--pictures")};
     TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
-    TRY(take_records(args, &other, &records, err));
-    options.n_records = records.n;
+    TRY(take_records(args, &other, records, err));
+    options.n_records = records->n;
     TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
     options.floor = (int)floor - 1;
     TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
@@ -72,12 +80,15 @@ static void drop_link(const char *path)
         unlink(path);
 }
 
-/* Where the page goes, or the pictures instead of it. */
+/* Where the page goes, or the pictures or the dossier instead of it. */
 static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
 {
-    const char *page = args_value(args, "--out"), *folder = args_value(args, "--pictures");
-    const char *given = page ? page : folder;
-    TRY(args_alone(args, "--out", "--pictures", err));
+    static const char *const PLACES[] = {"--out", "--pictures", "--dossier"};
+    const char *given = NULL;
+    for (size_t i = 0; i < N_OF(PLACES); i++)
+        given = given ? given : args_value(args, PLACES[i]);
+    TRY(args_alone(args, "--out", "--pictures --dossier", err));
+    TRY(args_alone(args, "--pictures", "--dossier", err));
     if (snprintf(path, PATH_MAX, "%s%s", given ? given : args->operand, given ? "" : "/report.html") >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (!given)
@@ -85,14 +96,37 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
     return STATUS_OK;
 }
 
+static Status check_dossier(const Run *run, const char *path, Err *err)
+{
+    if (run->settings->problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "%s: --dossier is of a design of the tower (problem.kind)", run->folder);
+    return dossier_check(path, err);
+}
+
+static Status dossier(const Args *args, const Run *run, const Report *r, const Records *records, const char *path,
+                      Err *err)
+{
+    Settings s = *run->settings;
+    RecordPaths moved;
+    TRY(args_moved(args, &moved, err));
+    TRY(record_paths_find(&s, run->provenance, &moved, err));
+    run_steps(run, r->chosen, &s.sim);
+    return dossier_write(r, &s, records->n, records->path, path, err);
+}
+
 static Status report(const Args *args, const Run *run, Err *err)
 {
     char path[PATH_MAX];
     Report r = {0};
+    Records records = {0};
+    const int is_dossier = args_has(args, "--dossier");
     TRY(take_target(args, path, err));
-    Status status = open_report(args, run, &r, err);
+    TRY(is_dossier ? check_dossier(run, path, err) : STATUS_OK);
+    Status status = open_report(args, run, &records, &r, err);
     if (status == STATUS_OK)
-        status = args_has(args, "--pictures") ? report_pictures(&r, path, err) : report_page(&r, path, err);
+        status = is_dossier                     ? dossier(args, run, &r, &records, path, err)
+                 : args_has(args, "--pictures") ? report_pictures(&r, path, err)
+                                                : report_page(&r, path, err);
     report_close(&r);
     if (status == STATUS_OK && strcmp(path, "-") != 0)
         printf("%s\n", path);
@@ -102,9 +136,11 @@ static Status report(const Args *args, const Run *run, Err *err)
 static const ArgOption OPTIONS[] = {
     VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
     VALUE("--pictures", "DIR", "instead of the page pictures for a paper into DIR, SVG and PNG, by gnuplot"),
+    VALUE("--dossier", "FILE", "instead of the page all that a checker of the design needs, .html to print or .pdf"),
     VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
     VALUES("--record", "FILE",
-           "another earthquake for it; may be repeated (default: motion.records, else the built-in ones)"),
+           "another earthquake for it, behind those of the study; may be repeated (default: the built-in ones)"),
+    VALUE("--records", "FOLDER", "more of them: every record of a folder or of a list"),
     VALUE("--floor", "N", "whose displacement is shown over time (default: the middle one)"),
     OPTION_MOVED,
     OPTION_CHANNEL,
@@ -119,17 +155,24 @@ const Command CMD_REPORT = {
     .operand = "RUN",
     .summary = "one HTML page to look at a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",
-    .details = "Writes one file that needs no network. First what was studied and found, with warnings; then the "
-               "front: parallel\n"
-               "coordinates whose axes are moved, turned over and hidden, any two columns, gaps as a heat map, all "
-               "pairs with\n"
-               "their correlations, typical designs, which variables matter (Sobol indices), designs chosen by ranges "
-               "as a table\n"
-               "and as CSV; the growth of the hypervolume; of one design, simulated again, its gaps, peaks, forces, "
-               "energies,\n"
-               "the displacement of a floor, and other earthquakes. --pga, --unit and --channel are for "
-               "those; else\n"
-               "they are scaled as the run's own. `imtet serve` shows the same page live.",
+    .details =
+        "Writes one file that needs no network. First what was studied and found, with warnings; then the "
+        "front: parallel\n"
+        "coordinates whose axes are moved, turned over and hidden, any two columns, gaps as a heat map, all "
+        "pairs with\n"
+        "their correlations, typical designs, which variables matter (Sobol indices), designs chosen by ranges "
+        "as a table\n"
+        "and as CSV; the growth of the hypervolume; of one design, simulated again, its gaps, peaks, forces, "
+        "energies,\n"
+        "the displacement of a floor, and other earthquakes. --pga, --unit and --channel are for "
+        "those; else\n"
+        "they are scaled as the run's own. `imtet serve` shows the same page live.\n\n"
+        "--dossier: one document of some ten pages on the design: building, core, devices, drawings; simulated at "
+        "accuracy\n"
+        "fine, by CVODE and on the full model; forces with limits, ladder, every record, intensities, as built,\n"
+        "sensitivities, what is not covered, provenance. CVODE takes minutes under a long record. A PDF takes "
+        "chromium\n"
+        "or weasyprint.",
     .options = OPTIONS,
     .is_alone = 1,
     .run_of = report,

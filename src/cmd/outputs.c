@@ -11,7 +11,8 @@
 #include "store/output.h"
 
 /* Options whose value is a file that is written. */
-static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra", "--out"};
+static const char *const WRITTEN[] = {"--csv",           "--svg", "--history", "--contacts",
+                                      "--floor-spectra", "--out", "--dossier"};
 enum { N_WRITTEN = N_OF(WRITTEN) };
 
 static int is_written(const Given *g)

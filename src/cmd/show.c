@@ -4,6 +4,7 @@
 #include "base/visible.h"
 #include "base/figure.h"
 #include "base/hypervolume.h"
+#include "base/text.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "settings/settings.h"
@@ -203,6 +204,36 @@ Status figures_csv(json_t *table, const char *path, Err *err)
     json_decref(columns);
     json_decref(table);
     return status;
+}
+
+/* row NULL: the names. */
+static void html_row(FILE *out, json_t *columns, const json_t *row)
+{
+    const char *name, *tag = "th";
+    char text[CELL_MAX];
+    json_t *unused;
+    fputs("<tr>", out);
+    json_object_foreach(columns, name, unused)
+    {
+        cell_words(json_object_get(row, name), text);
+        fprintf(out, "<%s%s>", tag, *name == ' ' ? " class=\"words\"" : "");
+        text_html(out, row ? text : name);
+        fprintf(out, "</%s>", tag);
+        tag = row ? "td" : "th";
+    }
+    fputs("</tr>\n", out);
+}
+
+void figures_html(FILE *out, json_t *table)
+{
+    json_t *columns = columns_of(table), *row;
+    size_t i;
+    fputs("<table>\n", out);
+    html_row(out, columns, NULL);
+    json_array_foreach(table, i, row) html_row(out, columns, row);
+    fputs("</table>\n", out);
+    json_decref(columns);
+    json_decref(table);
 }
 
 Status show_json(json_t *all, Err *err)
@@ -519,7 +550,8 @@ json_t *json_review(const FrontReview *r)
 
 /* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth; none
  * that the baseline does not have, such as the mass of a core where there is none. */
-static void print_better(const char *verb, const Schema *schema, double sign, const double natural[], const Baseline *b)
+static void print_better(FILE *out, const char *verb, const Schema *schema, double sign, const double natural[],
+                         const Baseline *b)
 {
     static const double SHARE = 1e-3;
     int n = 0;
@@ -527,21 +559,21 @@ static void print_better(const char *verb, const Schema *schema, double sign, co
         const Column *c = schema_objective(schema, k);
         const double other = b->value[schema->order.of[k]];
         if (other != 0 && sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
-            printf("%s%s", n++ ? ", " : verb, c->name);
+            fprintf(out, "%s%s", n++ ? ", " : verb, c->name);
     }
     if (n == 0)
-        printf("%snothing", verb);
+        fprintf(out, "%snothing", verb);
 }
 
-void show_verdicts(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
+void show_verdicts(FILE *out, const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
 {
     char device[DEVICE_TEXT_MAX];
     for (int k = 0; k < N_BASELINES; k++) {
         baseline_device_text(k, &baseline[k].device, device);
-        printf("against %s%s%s%s: impacts ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "");
-        print_better("win in ", schema, 1, natural, &baseline[k]);
-        print_better("; lose in ", schema, -1, natural, &baseline[k]);
-        putchar('\n');
+        fprintf(out, "against %s%s%s%s: impacts ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "");
+        print_better(out, "win in ", schema, 1, natural, &baseline[k]);
+        print_better(out, "; lose in ", schema, -1, natural, &baseline[k]);
+        fputc('\n', out);
     }
 }
 

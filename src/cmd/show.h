@@ -2,9 +2,9 @@
  *
  *   table   a JSON array of rows; a row is an object, a column a key of it, in the order in which the rows bring them
  *   cell    text, a whole number, a number, or none (null, or left out)
- *   shown   aligned under the names on standard output, numbers with four digits; as CSV and JSON with all of them
+ *   shown   aligned under the names on standard output or in HTML, numbers with four digits; as CSV and JSON with all
  *
- * Ownership  figures_print, figures_csv and show_json take the reference; rows are borrowed from their table */
+ * Ownership  figures_print, _csv, _html and show_json take the reference; rows are borrowed from their table */
 #ifndef IMTET_CMD_SHOW_H
 #define IMTET_CMD_SHOW_H
 
@@ -28,6 +28,7 @@ void figures_print(json_t *table);
 /* An object on standard output, a line for every member that is neither empty nor rows; borrowed. */
 void figures_list(int indent, json_t *o);
 Status figures_csv(json_t *table, const char *path, Err *err);
+void figures_html(FILE *out, json_t *table);
 Status show_json(json_t *all, Err *err);
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
@@ -78,7 +79,7 @@ json_t *json_review(const FrontReview *r);
 
 /* "against viscous links (...): impacts win in ...; lose in ..." by more than a thousandth; natural values of a
  * design with impacts. */
-void show_verdicts(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
+void show_verdicts(FILE *out, const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);

@@ -1,13 +1,9 @@
 #include "report/gnuplot.h"
 
 #include <errno.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include "report/program.h"
 #include "store/output.h"
-
-extern char **environ;
 
 void gnuplot_number(FILE *script, double value)
 {
@@ -27,26 +23,6 @@ void gnuplot_quote(FILE *script, const char *text)
             fputc(*text, script);
     }
     fputc('\'', script);
-}
-
-/* Its exit status, or -1 with errno where it could not be started. */
-static int run(FILE *script, FILE *picture, FILE *faults)
-{
-    char *const words[] = {"gnuplot", "--default-settings", "-", NULL};
-    posix_spawn_file_actions_t actions;
-    pid_t pid;
-    int status = 0;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(faults), STDERR_FILENO);
-    errno = posix_spawnp(&pid, words[0], &actions, NULL, words, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (errno)
-        return -1;
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR)
-        ;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
 /* The sentence that says what is wrong: the last line that it wrote, behind the script's line and a mark under it. */
@@ -69,7 +45,8 @@ static Status draw(Output *o, FILE *script, FILE *faults, GnuplotScript write, c
     write(script, user);
     if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0)
         return fail(err, STATUS_IO, "the script for gnuplot could not be written: %s", strerror(errno));
-    const int status = run(script, o->stream, faults);
+    char *const words[] = {"gnuplot", "--default-settings", "-", NULL};
+    const int status = program_run(words, script, o->stream, faults);
     if (status == -1 || status == 127)
         return fail(err, STATUS_MISSING,
                     "%s: gnuplot, which draws it, cannot be started; install it (Debian: apt install gnuplot-nox), or "

@@ -1,5 +1,7 @@
 #include "scene/building_svg.h"
 
+#include "base/text.h"
+
 /* Sizes in px. */
 static const double TOP = 40, LEFT = 60, HEIGHT = 640, WIDTH_MAX = 520, MODE_WIDTH = 64, LABELS = 95;
 enum { MODES_SHOWN = 10 };
@@ -30,16 +32,6 @@ static double height_of(const Building *b, int floor)
     return z;
 }
 
-/* Names come from users. */
-static void print_text(FILE *out, const char *text)
-{
-    for (; *text; text++)
-        if (strchr("<>&\"", *text))
-            fprintf(out, "&#%d;", *text);
-        else
-            fputc(*text, out);
-}
-
 /* ---- the building --------------------------------------------------------------------------------------------- */
 
 static void draw_element(const Drawing *d, const Frame *f, const FrameElement *e)
@@ -48,9 +40,9 @@ static void draw_element(const Drawing *d, const Frame *f, const FrameElement *e
     const double x[2] = {px(d, a->x), px(d, b->x)}, y[2] = {py(d, a->z), py(d, b->z)};
     fprintf(d->out, "<line class=\"e\" x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\"><title>", x[0], y[0], x[1],
             y[1]);
-    print_text(d->out, e->name);
+    text_html(d->out, e->name);
     fputs(": ", d->out);
-    print_text(d->out, f->section[e->section].name);
+    text_html(d->out, f->section[e->section].name);
     fputs("</title></line>\n", d->out);
     for (int end = 0; end < 2; end++) /* a pin, 6 px along the element */
         if (e->pinned[end]) {

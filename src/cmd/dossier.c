@@ -1,0 +1,674 @@
+#include "cmd/dossier.h"
+
+#include <limits.h>
+#include <unistd.h>
+
+#include "analysis/evaluations.h"
+#include "analysis/fragility.h"
+#include "analysis/full_model.h"
+#include "analysis/sensitivity.h"
+#include "base/figure.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "cmd/show.h"
+#include "evaluate/limits.h"
+#include "report/drawings.h"
+#include "report/program.h"
+#include "report/report_json.h"
+#include "report/words.h"
+#include "scene/building_svg.h"
+#include "settings/settings.h"
+#include "store/folder.h"
+#include "store/output.h"
+#include "store/provenance.h"
+
+enum { AS_BUILT = 16, LEVELS = 6 };
+static const double LEVEL_STEP_G = 0.1, GAP_BUILT_M = 0.005, DRIFT_LIMIT = 0.02, YIELD_PA = 235e6;
+
+static const MeasureId RESPONSE[] = {MEASURE_J1,  MEASURE_J2,     MEASURE_DRIFT_RATIO, MEASURE_J3,
+                                     MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
+static const MeasureId DEMAND[] = {MEASURE_DRIFT_RATIO,   MEASURE_DUCTILITY,     MEASURE_RESIDUAL_DRIFT,
+                                   MEASURE_CONTACT_FORCE, MEASURE_PRESSURE,      MEASURE_INDENTATION,
+                                   MEASURE_BUMPER_STRAIN, MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING,
+                                   MEASURE_CORE_STRESS,   MEASURE_CORE_BUCKLING, MEASURE_BUILDING_SHEAR,
+                                   MEASURE_BASE_SHEAR,    MEASURE_BASE_ROTATION, MEASURE_UPLIFT};
+
+typedef struct {
+    const Report *r;
+    const Detail *d;
+    const Settings *s;
+    const double *x;
+    FILE *out;
+} Dossier;
+
+/* ---- figures --------------------------------------------------------------------------------------------------- */
+
+static void put_text(json_t *row, const char *column, const char *text)
+{
+    json_object_set_new(row, column, json_words(text));
+}
+
+/* A line of what something is, in words. */
+static void add_line(json_t *table, const char *what, const char *text)
+{
+    put_text(json_put(figures_row(table), "=%s", what), " ", text);
+}
+
+static void put_named(json_t *row, MeasureId k, double value, double error, double sd)
+{
+    const Words w = words_of_measure(k);
+    char head[80];
+    snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+    figures_put(row, head, w.factor * value, w.factor * error, w.factor * sd);
+}
+
+/* error (N_MEASURES); NULL: not known. */
+static void add_response(json_t *table, const char *label, const SimResult *r, const double error[])
+{
+    json_t *row = json_put(figures_row(table), "=%s", label);
+    for (size_t i = 0; i < N_OF(RESPONSE); i++)
+        put_named(row, RESPONSE[i], r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
+                  error ? error[RESPONSE[i]] : NAN, NAN);
+    json_put(row, "impacts=%ld", r->impacts);
+    if (r->outcome != RUN_OK)
+        put_text(row, " ", r->reason);
+}
+
+static void heading(const Dossier *o, const char *title)
+{
+    fprintf(o->out, "<h2>%s</h2>\n", title);
+}
+
+static void say(const Dossier *o, const char *text)
+{
+    fputs("<p>", o->out);
+    text_html(o->out, text);
+    fputs("</p>\n", o->out);
+}
+
+static void put_lines(json_t *table, const char *what, const char *format, double value)
+{
+    char text[64];
+    snprintf(text, sizeof text, format, value);
+    add_line(table, what, text);
+}
+
+/* ---- what it is ------------------------------------------------------------------------------------------------ */
+
+static void write_summary(const Dossier *o)
+{
+    const Detail *d = o->d;
+    const SimResult *own = &d->result[SCENE_IMPACT];
+    json_t *table = json_array();
+    char now[24], rule[RULE_WORDS_MAX];
+    utc_now(now);
+    words_of_rule(o->s, rule);
+    fprintf(o->out, "<h1>Design %ld of ", o->r->run->table.row[o->r->chosen].id);
+    text_html(o->out, o->r->run->folder);
+    fprintf(o->out,
+            "</h1>\n<p class=\"sub\">imtet %s (%s), %s. Found in %zu simulated designs%s%s, %zu of them "
+            "nondominated.</p>\n",
+            program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
+            o->r->run->n_front);
+    add_response(table, "this design", own, d->error);
+    add_response(table, "no core", &d->result[SCENE_NO_CORE], NULL);
+    add_response(table, "rigidly connected", &d->result[SCENE_RIGID], NULL);
+    add_response(table, "tuned mass damper", &d->result[SCENE_TMD], NULL);
+    add_response(table, "viscous links", &d->result[SCENE_LINKS], NULL);
+    figures_html(o->out, table);
+    say(o, "Under the first record of the study. Behind the sign stands the likely error of the integration. The other "
+           "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
+           "dashpot on every floor (one constant, optimized).");
+    fputs("<p class=\"lines\">", o->out);
+    show_verdicts(o->out, &o->r->run->schema, run_f(o->r->run, o->r->chosen), d->baseline);
+    fprintf(o->out,
+            "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>. Largest bending stress of the core: <b>%.3g MPa</b>, "
+            "%.3g "
+            "times the buckling stress of its bare wall. Nothing here is designed for them.</p>\n",
+            1e-6 * own->forces.contact_force_max_n, 1e-6 * own->forces.core_stress_pa,
+            own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
+}
+
+static void write_building(const Dossier *o)
+{
+    Building b = {0};
+    Frame frame = {0};
+    Err e = {0};
+    const int has_frame = frame_is(o->s->building.model);
+    json_t *table = json_array();
+    heading(o, "Building, core and ground motion");
+    Status status = building_load(&b, &o->s->building, &e);
+    if (status == STATUS_OK && has_frame)
+        status = frame_read(&frame, &o->s->building, &e);
+    if (status == STATUS_OK) {
+        put_lines(table, "floors", "%.0f", b.n);
+        put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));
+        put_lines(table, "first period of the building [s]", "%.3f", 1 / o->d->building_hz[0]);
+        put_lines(table, "damping of its first mode [%]", "%.2f", 100 * b.zeta[0]);
+        put_lines(table, "mass of the core [t]", "%.0f", 1e-3 * o->d->result[SCENE_IMPACT].mcore_kg);
+        put_lines(table, "first period of the core [s]", "%.3f", 1 / o->d->core_hz[0]);
+        put_lines(table, "damping of the core [%]", "%.2f", 100 * o->s->core.damping);
+        put_lines(table, "outer side of the core [m]", "%.2f", o->s->core.width_m);
+        put_lines(table, "coefficient of restitution", "%.2f", o->s->contact.restitution);
+        put_lines(table, "radius of a contact [m]", "%.3f", o->s->contact.radius_m);
+        put_lines(table, "peak ground acceleration [g]", "%.3f", o->d->pga_g);
+        put_lines(table, "length of the motion [s]", "%.1f", o->d->duration_s);
+        add_line(table, "model of the building", o->s->building.model);
+        add_line(table, "foundation of the core", o->s->core.foundation);
+        add_line(table, "ground motion", o->d->record);
+        figures_html(o->out, table);
+        fputs("<figure class=\"wide\">", o->out);
+        status = building_svg(o->out, &b, has_frame ? &frame : NULL, &e);
+        fputs("<figcaption>The building to scale; its first mode shapes with period and share of the mass.</figcaption>"
+              "</figure>\n",
+              o->out);
+    } else {
+        json_decref(table);
+    }
+    if (status != STATUS_OK)
+        say(o, e.text);
+    building_free(&b);
+    frame_free(&frame);
+}
+
+static void write_design(const Dossier *o)
+{
+    const Schema *schema = &o->r->run->schema;
+    Design design;
+    design_of(&schema->design, o->x, &design);
+    heading(o, "The design");
+    fputs("<figure>", o->out);
+    draw_devices(o->out, o->d, &schema->design, &design);
+    fputs("<figcaption>Section: tower, core and what is between them. Heights to scale, gaps and walls each in "
+          "proportion "
+          "to their largest. Orange: a stop (thick: with a bumper); green: a dashpot.</figcaption></figure>\n",
+          o->out);
+}
+
+/* ---- how it responds ------------------------------------------------------------------------------------------- */
+
+static Status simulate_with(const Dossier *o, const char *key, const char *value, SimResult *out, Err *err)
+{
+    Settings s = *o->s;
+    Problem p;
+    TRY(settings_put(&s, key, value, err));
+    TRY(settings_check(&s, err));
+    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
+    const Status status = tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = o->x}, out, err);
+    problem_close(&p);
+    return status;
+}
+
+static void add_with(const Dossier *o, json_t *table, const char *label, const char *key, const char *value)
+{
+    SimResult r = {0};
+    Err e = {0};
+    if (simulate_with(o, key, value, &r, &e) == STATUS_OK)
+        add_response(table, label, &r, NULL);
+    else
+        add_line(table, label, e.text);
+}
+
+static void add_full_model(const Dossier *o, json_t *table)
+{
+    FullModel m = {0};
+    Err e = {0};
+    char label[64];
+    if (!frame_is(o->s->building.model)) {
+        add_line(table, "full model", "this building has no degrees of freedom but its floors");
+        return;
+    }
+    if (full_model_find(o->s, SCENE_IMPACT, 1, o->x, 0, &m, &e) == STATUS_OK) {
+        snprintf(label, sizeof label, "full model, %d degrees of freedom", m.dofs[FULL]);
+        add_response(table, label, m.result[FULL], NULL);
+    } else {
+        add_line(table, "full model", e.text);
+    }
+    full_model_free(&m);
+}
+
+static void write_response(const Dossier *o)
+{
+    static const char *const NAMES[CURVES_SHOWN] = {"this design", "no core", "rigidly connected", "viscous links"};
+    const SimResult *r = o->d->result,
+                    *curve[CURVES_SHOWN] = {&r[SCENE_IMPACT], &r[SCENE_NO_CORE], &r[SCENE_RIGID], &r[SCENE_LINKS]};
+    Panel panels[] = {{.title = "displacement [m]", .factor = 1},
+                      {.title = "drift ratio [%]", .factor = 100},
+                      {.title = "acceleration [g]", .factor = 1}};
+    json_t *table = json_array();
+    heading(o, "The response, by four calculations");
+    add_response(table, "as the study knows it", &r[SCENE_IMPACT], o->d->error);
+    add_with(o, table, "accuracy fine", "sim.accuracy", "fine");
+    add_with(o, table, "by CVODE (SUNDIALS)", "sim.engine", "cvode");
+    add_full_model(o, table);
+    figures_html(o->out, table);
+    say(o,
+        "The same record each time. CVODE integrates the equations of motion without the study's engine. Contacts that "
+        "graze may separate two calculations: J3 is then the least certain figure.");
+    for (int c = 0; c < CURVES_SHOWN; c++)
+        if (curve[c]->outcome == RUN_OK) {
+            panels[0].curve[c] = curve[c]->peak_displacement_m;
+            panels[1].curve[c] = curve[c]->drift_ratio;
+            panels[2].curve[c] = curve[c]->peak_acceleration_g;
+        }
+    fputs("<figure>", o->out);
+    draw_profiles(o->out, o->d, NAMES, N_OF(panels), panels);
+    fputs("<figcaption>Peaks over the height.</figcaption></figure>\n<figure>", o->out);
+    draw_history(o->out, o->d);
+    fprintf(o->out, "<figcaption>Displacement of floor %d.</figcaption></figure>\n", o->d->floor + 1);
+}
+
+/* ---- what it has to bear --------------------------------------------------------------------------------------- */
+
+/* The study's limit on measure k in words, and whether the value keeps it. */
+static void put_limit(const Dossier *o, json_t *row, int k, double value)
+{
+    const Schema *schema = &o->r->run->schema;
+    Limits l = {0};
+    char text[64] = "none set";
+    const char *kept = "-";
+    if (limits_read(&l, schema, o->s->search.limits, NULL) != STATUS_OK)
+        l.n = 0;
+    for (size_t i = 0; i < l.n; i++)
+        if (schema->order.of[l.limit[i].result] == k) {
+            snprintf(text, sizeof text, "%s %.4g",
+                     l.limit[i].sign > 0 ? "<=" : ">=", words_of_measure(k).factor * l.limit[i].bound);
+            kept = l.limit[i].sign * (value - l.limit[i].bound) <= 0 ? "kept" : "exceeded";
+        }
+    put_text(row, " limit of the study", text);
+    put_text(row, " verdict", kept);
+}
+
+static void write_demand(const Dossier *o)
+{
+    const SimResult *r = &o->d->result[SCENE_IMPACT];
+    const SimForces *f = &r->forces;
+    const Panel panels[] = {{"contact force, right [MN]", 1e-6, 1, {f->contact_force_n[0]}},
+                            {"contact force, left [MN]", 1e-6, 1, {f->contact_force_n[1]}},
+                            {"stress of the core [MPa]", 1e-6, 0, {f->core_storey_stress_pa}}};
+    static const char *const NAMES[CURVES_SHOWN] = {"this design"};
+    json_t *table = json_array();
+    heading(o, "Forces and stresses, with their limits");
+    for (size_t i = 0; i < N_OF(DEMAND); i++) {
+        const Words w = words_of_measure(DEMAND[i]);
+        const double value = measure_value(r, DEMAND[i]);
+        char head[80];
+        if (!isfinite(value) || (DEMAND[i] == MEASURE_BUMPER_STRAIN && value <= 0))
+            continue;
+        snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+        json_t *row = json_put(figures_row(table), "=%s", head);
+        figures_put(row, "value", w.factor * value, w.factor * o->d->error[DEMAND[i]], NAN);
+        put_limit(o, row, DEMAND[i], value);
+    }
+    figures_html(o->out, table);
+    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa%s. Floors whose contacts never close: ",
+            1e-6 * YIELD_PA, f->core_stress_pa > YIELD_PA ? ", which the core exceeds" : "");
+    int n = 0;
+    for (int j = 0; j < o->d->n_floors; j++)
+        if (r->closings[j] == 0)
+            fprintf(o->out, "%s%d", n++ ? ", " : "", j + 1);
+    fprintf(o->out, "%s.</p>\n<figure>", n ? "" : "none");
+    if (r->forces_known)
+        draw_profiles(o->out, o->d, NAMES, N_OF(panels) - !f->stress_known, panels);
+    fputs(
+        "<figcaption>Largest forces of the contacts by side of the core, largest bending stress by storey.</figcaption>"
+        "</figure>\n",
+        o->out);
+}
+
+static void write_ladder(const Dossier *o)
+{
+    const Ladder *l = o->d->ladder;
+    json_t *table = json_array();
+    heading(o, "Which effects the model needs");
+    for (size_t i = 0; l && i < l->n; i++) {
+        const LadderEffect *e = &l->effect[i];
+        json_t *row = json_put(figures_row(table), "without=%s", e->words);
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            char head[64];
+            snprintf(head, sizeof head, "%s [%%]", words_of_measure(LADDER_MEASURE[k]).title);
+            figures_put(row, head, 100 * e->change[k], NAN, NAN);
+        }
+        put_text(row, " in the study", e->is_set ? "yes" : "no");
+        put_text(row, " verdict", e->is_needed ? "needed" : "not needed");
+    }
+    if (json_array_size(table) > 0)
+        figures_html(o->out, table);
+    else
+        json_decref(table);
+    say(o, l ? "What leaving out each effect changes of a model that has them all; needed: more than 2 % or the "
+               "scatter as "
+               "built. An effect that is needed and not in the study is an open point of this design."
+           : *o->d->no_ladder.text ? o->d->no_ladder.text
+                                   : "Only the engine fast has this.");
+}
+
+/* ---- other earthquakes ----------------------------------------------------------------------------------------- */
+
+static void write_records(const Dossier *o)
+{
+    json_t *table = json_array();
+    char label[200];
+    heading(o, "Records one by one");
+    for (size_t i = 0; i <= o->d->n_elsewhere; i++) {
+        const Elsewhere *e = i ? &o->d->elsewhere[i - 1] : NULL;
+        const char *name = e ? e->record : o->d->record, *slash = strrchr(name, '/');
+        snprintf(label, sizeof label, "%.120s, %.3g g", slash ? slash + 1 : name, e ? e->pga_g : o->d->pga_g);
+        add_response(table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT], NULL);
+        add_response(table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE], NULL);
+    }
+    figures_html(o->out, table);
+    say(o, "Those of the study first. builtin: motions are synthetic: judge by records.");
+}
+
+static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exceeded)
+{
+    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
+    static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_NO_CORE};
+    json_t *row = json_put(figures_row(table), "PGA [g]=%g", e->level[l]);
+    for (size_t k = 0; k < N_OF(SHOWN); k++)
+        for (size_t c = 0; c < N_OF(CASES); c++) {
+            const Words w = words_of_measure(SHOWN[k]);
+            char head[96], cell[3][FIGURE_MAX];
+            snprintf(head, sizeof head, "%s [%s]%s", w.title, w.unit, c ? ", no core" : "");
+            for (int q = 0; q < 3; q++)
+                snprintf(cell[q], sizeof cell[q], q == 1 ? "%.3g" : "%.2g",
+                         w.factor * ida_fractile(e, l, CASES[c], SHOWN[k], (const double[]){0.16, 0.5, 0.84}[q]));
+            json_object_set_new(row, head, json_sprintf("%s (%s to %s)", cell[1], cell[0], cell[2]));
+        }
+    for (size_t r = 0; r < e->n_records; r++)
+        *exceeded += e->record[r].readable == STATUS_OK &&
+                     ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, MEASURE_DRIFT_RATIO) > DRIFT_LIMIT;
+}
+
+static void write_intensities(const Dossier *o, Evaluations *e)
+{
+    json_t *table = json_array();
+    double level[LEVELS];
+    size_t n_at[LEVELS], exceeded[LEVELS] = {0};
+    char text[400], spread[64];
+    for (size_t l = 0; l < LEVELS; l++) {
+        level[l] = e->level[l];
+        n_at[l] = e->n_read;
+        add_level(table, e, l, &exceeded[l]);
+    }
+    figures_html(o->out, table);
+    const Fragility f = fragility_fit(LEVELS, level, n_at, exceeded);
+    snprintf(spread, sizeof spread, isfinite(f.beta) ? "logarithmic deviation %.2f" : "deviation not known", f.beta);
+    snprintf(text, sizeof text,
+             "Median (16 to 84 %%) of %zu records scaled to each peak. A drift ratio of %.0f %% is exceeded with "
+             "probability one half at %.2g g (%s): lognormal, by maximum likelihood%s.",
+             e->n_read, 100 * DRIFT_LIMIT, f.median, spread,
+             isfinite(f.median) ? "" : "; the intensities do not reach it");
+    say(o, text);
+}
+
+static void write_ida(const Dossier *o, size_t n, const char *const records[])
+{
+    double level[LEVELS];
+    Evaluations e = {.n_levels = LEVELS, .level = level};
+    Settings s = *o->s;
+    Err why = {0};
+    Status status = STATUS_OK;
+    for (size_t l = 0; l < LEVELS; l++)
+        level[l] = LEVEL_STEP_G * (double)(l + 1);
+    heading(o, "Against intensity");
+    s.sim.forces = FORCES_AUTO;
+    status = evaluations_add(&e, o->s->motion.record, 1, &why);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        status = evaluations_add(&e, records[i], 1, &why);
+    status = status == STATUS_OK ? evaluations_read(&e, &s, &why) : status;
+    status = status == STATUS_OK ? evaluations_run(&e, o->r->run->schema.n_var, o->x, NULL, &why) : status;
+    if (status == STATUS_OK)
+        write_intensities(o, &e);
+    else
+        say(o, why.text);
+    evaluations_free(&e);
+}
+
+/* ---- what it hangs on ------------------------------------------------------------------------------------------ */
+
+static Status find_as_built(const Dossier *o, Settings *s, ReplicateSummary *out, Err *err)
+{
+    Problem p;
+    SimResult shown;
+    s->sim.replicates = AS_BUILT;
+    if (!(s->sim.gap_tolerance_m > 0))
+        s->sim.gap_tolerance_m = GAP_BUILT_M;
+    TRY(tower_open(&p, s, TOWER_AS_SET, AS_BUILT, err));
+    const Status status = tower_replicate(&p, 1, o->x, &shown, out, err);
+    problem_close(&p);
+    return status;
+}
+
+static void write_as_built(const Dossier *o)
+{
+    Settings s = *o->s;
+    ReplicateSummary summary = {0};
+    Err e = {0};
+    char text[300];
+    json_t *table = json_array(), *row = json_put(figures_row(table), "=%s", "mean and standard deviation");
+    heading(o, "As built, and what the figures hang on");
+    const Status status = find_as_built(o, &s, &summary, &e);
+    if (status == STATUS_OK && !summary.n_failed)
+        for (size_t i = 0; i < N_OF(RESPONSE); i++)
+            put_named(row, RESPONSE[i], summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
+    figures_html(o->out, table);
+    snprintf(text, sizeof text, "%d structures whose gaps differ from the drawing by %g mm (standard deviation)%s.",
+             AS_BUILT, 1e3 * s.sim.gap_tolerance_m,
+             spread_word(0, &s.sim.uncertain)[0] == 'a' ? ", with what sim.uncertain of the study says" : "");
+    say(o, status != STATUS_OK ? e.text : text);
+    if (summary.n_failed)
+        say(o, "Some of these simulations failed: there is no mean.");
+}
+
+/* Gaps that move nothing are left out: they never close. */
+static void write_sensitivities(const Dossier *o)
+{
+    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3, MEASURE_CONTACT_FORCE,
+                                      MEASURE_CORE_STRESS};
+    Sensitivity *list = NULL;
+    size_t n = 0;
+    Err e = {0};
+    json_t *table = json_array();
+    if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) != STATUS_OK)
+        say(o, e.text);
+    for (size_t i = 0; i < n; i++) {
+        if (list[i].slope[MEASURE_J1] == 0 && list[i].slope[MEASURE_J3] == 0)
+            continue;
+        json_t *row =
+            json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
+        for (size_t k = 0; k < N_OF(SHOWN); k++)
+            put_named(row, SHOWN[k], list[i].step * list[i].slope[SHOWN[k]], list[i].step * list[i].error[SHOWN[k]],
+                      NAN);
+    }
+    if (json_array_size(table) > 0)
+        figures_html(o->out, json_incref(table));
+    json_decref(table);
+    say(o, "Change of each result for one step of a parameter, with its error. Gaps that change nothing are left out.");
+    free(list);
+}
+
+/* ---- what it is not, and where it comes from ------------------------------------------------------------------- */
+
+static void write_not_covered(const Dossier *o)
+{
+    const Settings *s = o->s;
+    const SimForces *f = &o->d->result[SCENE_IMPACT].forces;
+    heading(o, "What is not covered");
+    fputs("<ul>\n<li>Torsion, friction and the vertical motion. One contact per floor and side.</li>\n", o->out);
+    fprintf(o->out,
+            "<li>The mass of the core, %.0f t, is that of its bare walls. It has <b>no stiffeners</b>, diaphragms or "
+            "connections%s.</li>\n",
+            1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
+            f->buckling_known && f->core_buckling_ratio > 1
+                ? ", and the bare wall would buckle: stiffeners are needed, "
+                  "and their mass is missing here and in every objective"
+                : "");
+    fprintf(o->out,
+            "<li>Connections: the contacts carry up to <b>%.3g MN</b> in milliseconds. Stops, bearings, floors as "
+            "diaphragms, local stresses and fatigue are not designed.</li>\n",
+            1e-6 * f->contact_force_max_n);
+    if (strcmp(s->core.foundation, "fixed") == 0)
+        fprintf(o->out,
+                "<li>The core is clamped: its foundation bears %.3g MN and %.4g MN m without giving way.</li>\n",
+                1e-6 * f->core_base_shear_n, 1e-6 * f->core_overturning_nm);
+    if (!o->d->result[SCENE_IMPACT].yields)
+        fputs("<li>The tower is linear: nothing yields, whatever its drift.</li>\n", o->out);
+    if (!s->building.p_delta)
+        fputs("<li>P-delta is left out.</li>\n", o->out);
+    fputs(
+        "<li>Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.</li>\n</ul>\n",
+        o->out);
+}
+
+static void put_setting(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    (void)flags;
+    (void)was;
+    add_line(user, key, is);
+}
+
+static void list_provenance(json_t *table, const char *before, json_t *o)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach(o, key, value)
+    {
+        char name[80];
+        snprintf(name, sizeof name, "%s%s", before, key);
+        if (json_is_object(value))
+            list_provenance(table, "", value);
+        else if (json_is_integer(value))
+            put_lines(table, name, "%.0f", json_number_value(value));
+        else if (json_is_string(value) && json_string_length(value) > 0 && strcmp(key, "flags") != 0)
+            add_line(table, name, json_string_value(value));
+    }
+}
+
+static void write_provenance(const Dossier *o)
+{
+    json_t *table = json_array(), *settings = json_array(), *from = json_loads(o->r->run->provenance, 0, NULL);
+    Settings none;
+    heading(o, "Provenance");
+    list_provenance(table, "", from);
+    figures_html(o->out, table);
+    settings_defaults(&none);
+    settings_compare(&none, o->r->run->settings, put_setting, settings);
+    say(o, "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
+    figures_html(o->out, settings);
+    fputs("<p>The same figures again: <code>imtet simulate ", o->out);
+    text_html(o->out, o->r->run->folder);
+    fprintf(o->out, "/settings.ini --design %s:%ld --set sim.accuracy=fine --json</code></p>\n", o->r->run->folder,
+            o->r->run->table.row[o->r->chosen].id);
+    json_decref(from);
+}
+
+/* ---- the page -------------------------------------------------------------------------------------------------- */
+
+static const char STYLE[] =
+    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Design dossier</title>\n<style>\n"
+    "@page{size:A4;margin:16mm 14mm}\n"
+    "body{font:13px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#1b2430;max-width:182mm;margin:2em auto;padding:0 "
+    "1em}\n"
+    "h1{font-size:22px;margin:0}h2{font-size:17px;margin:1.8em 0 .5em;border-bottom:1px solid #9ab;break-after:avoid}\n"
+    ".sub{color:#566}table{border-collapse:collapse;width:100%;font-size:10.5px;margin:.6em 0}\n"
+    "td,th{padding:2px 5px;text-align:right;border-bottom:1px solid #dde3ea;vertical-align:baseline}\n"
+    "th{font-weight:600}tr:first-child th{vertical-align:bottom}td:first-child,th:first-child,.words{text-align:left}\n"
+    "tr{break-inside:avoid}\n"
+    "figure{margin:1em 0;break-inside:avoid}figcaption{color:#566;font-size:12px}svg{max-width:100%;height:auto}\n"
+    ".lines{white-space:pre-line}.wide svg{max-height:92mm}code{font-size:11px;overflow-wrap:anywhere}\n"
+    "@media print{body{margin:0;padding:0;max-width:none}}\n</style></head><body>\n";
+
+static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n, const char *const records[])
+{
+    const Dossier o = {.r = r, .d = &r->detail, .s = s, .x = run_x(r->run, r->chosen), .out = out};
+    fputs(STYLE, out);
+    write_summary(&o);
+    write_building(&o);
+    write_design(&o);
+    write_response(&o);
+    write_demand(&o);
+    write_ladder(&o);
+    write_records(&o);
+    write_ida(&o, n, records);
+    write_as_built(&o);
+    write_sensitivities(&o);
+    write_not_covered(&o);
+    write_provenance(&o);
+    fputs("</body></html>\n", out);
+    return STATUS_OK;
+}
+
+/* ---- the file -------------------------------------------------------------------------------------------------- */
+
+enum { N_PRINTERS = 2 };
+
+static int is_pdf(const char *path)
+{
+    const char *end = strrchr(path, '.');
+    return end && strcmp(end, ".pdf") == 0;
+}
+
+/* page, pdf: paths. */
+static int print_by(int printer, char *page, char *pdf, FILE *faults)
+{
+    char option[PATH_MAX + 32];
+    snprintf(option, sizeof option, "--print-to-pdf=%s", pdf);
+    char *const chromium[] = {
+        "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer", option, page, NULL};
+    char *const weasyprint[] = {"weasyprint", page, pdf, NULL};
+    char *const version[N_PRINTERS][3] = {{"chromium", "--version", NULL}, {"weasyprint", "--version", NULL}};
+    char *const *words = !page ? version[printer] : printer ? weasyprint : chromium;
+    return program_run(words, faults, NULL, faults);
+}
+
+static int first_printer(FILE *faults)
+{
+    int i = 0;
+    while (i < N_PRINTERS && print_by(i, NULL, NULL, faults) != 0)
+        i++;
+    return i;
+}
+
+Status dossier_check(const char *path, Err *err)
+{
+    FILE *faults = is_pdf(path) ? tmpfile() : NULL;
+    const int is_there = !faults || first_printer(faults) < N_PRINTERS;
+    if (faults)
+        fclose(faults);
+    return is_there ? STATUS_OK
+                    : fail(err, STATUS_MISSING,
+                           "%s: neither chromium nor weasyprint, which make a PDF, is installed (Debian: apt install "
+                           "chromium); name a file .html and print it from a browser",
+                           path);
+}
+
+static Status print_pdf(const char *page, const char *path, Err *err)
+{
+    FILE *faults = tmpfile();
+    char from[PATH_MAX], to[PATH_MAX];
+    snprintf(from, sizeof from, "%s", page);
+    snprintf(to, sizeof to, "%s", path);
+    const int status = faults ? print_by(first_printer(faults), from, to, faults) : -1;
+    if (faults)
+        fclose(faults);
+    return status == 0 ? STATUS_OK
+                       : fail(err, STATUS_IO, "%s: the page could not be printed as PDF (status %d); %s holds it", path,
+                              status, page);
+}
+
+Status dossier_write(const Report *r, const Settings *s, size_t n, const char *const records[], const char *path,
+                     Err *err)
+{
+    char page[PATH_MAX];
+    Output o;
+    snprintf(page, sizeof page, is_pdf(path) ? "%.4000s.html" : "%s", path);
+    TRY(output_open(&o, page, err));
+    TRY(output_end(&o, write_page(o.stream, r, s, n, records), err));
+    if (!is_pdf(path))
+        return STATUS_OK;
+    TRY(print_pdf(page, path, err));
+    unlink(page);
+    return STATUS_OK;
+}

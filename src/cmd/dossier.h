@@ -1,0 +1,23 @@
+/* cmd/dossier.h -- the one document about a design for who has to check it: HTML without scripts that prints on some
+ * ten pages of A4, or a PDF of it by chromium or weasyprint.
+ *
+ *   what is there from the report   the design beside its baselines, its ladder, other earthquakes (report/detail.h)
+ *   what is simulated for it        at accuracy fine, by CVODE, on the full model; sensitivities; replicates as
+ *                                   built; all records at six intensities
+ *
+ * A part that cannot be had (a building without a full model, a simulation that failed) says why in its place.
+ *
+ * Errors  those of the file; neither program for a PDF: STATUS_MISSING, before anything is simulated */
+#ifndef IMTET_CMD_DOSSIER_H
+#define IMTET_CMD_DOSSIER_H
+
+#include "report/report.h"
+
+/* Whether the file can be made: "-" is standard output, a name that ends in .pdf needs a program. */
+Status dossier_check(const char *path, Err *err);
+
+/* s: settings of the run, its records where they are now; records (n): those of the study first. */
+Status dossier_write(const Report *r, const Settings *s, size_t n, const char *const records[], const char *path,
+                     Err *err);
+
+#endif
