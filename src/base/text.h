@@ -1,5 +1,5 @@
-/* base/text.h -- words inside HTML, and a stream into memory that says when there was none: glibc's open_memstream loses
- * what it had no room for, and neither ferror nor fclose tells.
+/* base/text.h -- words inside HTML, and a stream into memory that says when there was none: glibc's open_memstream
+ * loses what it had no room for, and neither ferror nor fclose tells.
  *
  * Ownership  *text is malloc'd, ends with a zero byte behind its *length, and is the caller's
  * Errors     text_open: NULL; text_close: not 0. *text is NULL then */
