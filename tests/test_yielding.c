@@ -8,7 +8,6 @@
 
 #include "scene_options.h"
 #include "sim/engine.h"
-#include "sim/linear.h"
 
 /* ---- one storey ------------------------------------------------------------------------------------------------- */
 
@@ -201,27 +200,6 @@ static SimModel damped_storey(double yield)
     return m;
 }
 
-static SimResult run_linear(const SimModel *model, const Motion *motion, double step)
-{
-    static const int like[] = {0};
-    double omega = model->omega[0], gamma = model->gamma[0], psi = model->R[0], P = 1, loss = 2 * 0.03 * omega;
-    const LinearSystem s = {.n = 1,
-                            .m = 1,
-                            .n_loss = 1,
-                            .n_building = 1,
-                            .like = like,
-                            .omega = &omega,
-                            .gamma = &gamma,
-                            .psi = &psi,
-                            .P = &P,
-                            .loss = &loss};
-    SimResult r;
-    Err err = {0};
-    CHECK_OK(linear_run(&s, motion, &(LinearRun){.duration = 3, .step = step, .storeys = model}, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
-    return r;
-}
-
 TEST(the_largest_acceleration_is_known_where_a_storey_begins_to_yield)
 {
     for (int i = 0; i < 6; i++) {
@@ -229,11 +207,8 @@ TEST(the_largest_acceleration_is_known_where_a_storey_begins_to_yield)
         SimModel model = damped_storey(yield);
         const Motion m = cycles(0.9);
         const SimResult exact = run(ENGINE_CVODE, &model, &m, 3), fast = run(ENGINE_FAST, &model, &m, 3);
-        const SimResult coarse = run_linear(&model, &m, 5e-4), linear = run_linear(&model, &m, 5e-5);
         assert_less(1.2, exact.ductility);
         assert_close(fast.j3_g, exact.j3_g, 1e-6);
-        assert_close(coarse.j3_g, exact.j3_g, 1e-6);
-        assert_close(linear.j3_g, exact.j3_g, 1e-6);
         model_free(&model);
     }
 }
@@ -442,7 +417,7 @@ TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
     assert_close(r[0].j3_filtered_g, r[1].j3_filtered_g, 1e-5);
 }
 
-/* Dashpots that hardly resist leave the building alone: matrices' exponentials against modes and located events. */
+/* Dashpots that hardly resist leave the building alone. */
 TEST(links_that_do_nothing_leave_the_yielding_building_alone)
 {
     Tower t;

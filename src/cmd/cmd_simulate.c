@@ -48,9 +48,6 @@ static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
     job->n = 1;
     if (job->kind == SCENE_NO_CORE)
         return STATUS_OK;
-    if (job->kind == SCENE_RIGID && s->sim.engine != ENGINE_FAST)
-        return misused(err,
-                       "--rigid: floors and core without gaps are solved by sim.engine = fast alone; leave it at that");
     TRY(tower_space(s, &space, err));
     TRY((one ? designs_take_one : designs_take)(&job->designs, word, &space, s, !args_gives(args, "sim.accuracy"),
                                                 job->known, err));
@@ -82,7 +79,7 @@ static Status simulate(const Problem *p, Job *job, Err *err)
 
 static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
 {
-    if (s->sim.engine != ENGINE_FAST || job->kind == SCENE_RIGID)
+    if (s->sim.engine != ENGINE_FAST)
         return STATUS_OK;
     const size_t n = job->n * N_MEASURES;
     TRY_ROOM(job->error, 2 * n, "estimated errors", err);

@@ -2,8 +2,8 @@
 
 #include <nlopt.h>
 
-enum { MODES = 8, GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, SIMPLEX_EVALS = 40 };
-static const double STEP = 8e-3, ARIAS = 0.995, PERIODS = 3;
+enum { GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, SIMPLEX_EVALS = 40 };
+static const double ARIAS = 0.995, PERIODS = 3;
 
 /* The box of a device: tuned mass: frequency over that of the building, damping ratio; links: constant over m w_1 of
  * a mean floor. */
@@ -22,8 +22,8 @@ typedef struct {
     SceneKind scene;
     const double *x;
     double no_core[3];
-    LinearSketch sketch[TOWER_RECORDS_MAX];
-    double hz, link; /* of the building; m w_1 of a mean floor */
+    double duration[TOWER_RECORDS_MAX]; /* [s] */
+    double hz, link;                    /* of the building; m w_1 of a mean floor */
     double best;
     LinearDevice device; /* of the best goal so far */
     Status status;
@@ -56,7 +56,7 @@ static double goal_of(Tuning *t, const LinearDevice *device)
     double J[3], goal = 0;
     for (size_t r = 0; r < t->plan->n_records && t->status == STATUS_OK; r++) {
         sim_worker_device(t->at[r].worker, device);
-        t->status = sim_sketch(t->at[r].worker, t->scene, t->x, &t->sketch[r], &result, t->err);
+        t->status = sim_sketch(t->at[r].worker, t->scene, t->x, t->duration[r], &result, t->err);
         of[r] = measured(&result);
     }
     if (t->status != STATUS_OK)
@@ -90,7 +90,7 @@ double device_strong_part(const Motion *m, double period)
     return (double)k * m->dt_s + PERIODS * period;
 }
 
-static void set_sketches(Tuning *t)
+static void set_scales(Tuning *t)
 {
     const Building *b = scene_building(t->at[0].scenario->scene);
     double mass = 0;
@@ -99,7 +99,7 @@ static void set_sketches(Tuning *t)
     t->hz = b->omega[0] / (2 * M_PI);
     t->link = mass / b->n * b->omega[0];
     for (size_t r = 0; r < t->plan->n_records; r++)
-        t->sketch[r] = (LinearSketch){MODES, STEP, device_strong_part(&t->at[r].scenario->motion, 1 / t->hz)};
+        t->duration[r] = device_strong_part(&t->at[r].scenario->motion, 1 / t->hz);
 }
 
 /* The best of it comes back in u. */
@@ -169,7 +169,7 @@ Status device_find(const ReplicatePlan *plan, size_t n, const Shaken at[], Scene
     alone.n_replicates = 1;
     TRY(scene_frequencies(at[0].scenario->scene, x, building, core, both, &mass, err));
     TRY(find_no_core(&t, err));
-    set_sketches(&t);
+    set_scales(&t);
     search_grid(&t, u);
     if (kind == SCENE_TMD)
         try_warburton(&t, mass, u);

@@ -21,6 +21,7 @@ typedef struct {
     int outputs;          /* of the eight */
     /* |output| is at most the sum of these times ForceReach.by */
     v8 reach[N_REACHES];
+    double *room;                        /* of these: */
     double *building, *building_squares; /* (nb, 8) a row per mode, its square over w^2; NULL: none of the building */
     double *core, *core_squares;         /* (n, 8) */
     double *plastic;                     /* (n, 8) of building: of a unit plastic drift of storey j */
@@ -36,7 +37,7 @@ typedef struct {
 struct ForceMonitor {
     int n, nb;
     int at_both, at_slow, at_velocity, n_groups; /* groups: core from 0, building and core, building, velocities */
-    int core_modes, nc, has_residual, with_storeys, yields;
+    int core_modes, nc, own_modes, has_residual, with_storeys, yields;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
@@ -61,16 +62,16 @@ static int eights(int n)
     return (n + LANES8 - 1) / LANES8;
 }
 
-static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_building, int has_core)
+static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_core)
 {
     const size_t row = LANES8 * sizeof(double);
-    double *const building = has_building ? carve(c, 2 * nb + n, row) : NULL;
+    double *const building = carve(c, 2 * nb + n, row);
     double *const core = has_core ? carve(c, 3 * n + 1, row) : NULL;
     if (!c->base)
         return;
-    g->building = building;
-    g->building_squares = building ? building + nb * LANES8 : NULL;
-    g->plastic = building ? building + 2 * nb * LANES8 : NULL;
+    g->room = building;
+    g->building_squares = building + nb * LANES8;
+    g->plastic = building + 2 * nb * LANES8;
     g->core = core;
     g->core_squares = core ? core + n * LANES8 : NULL;
     g->force = core ? core + 2 * n * LANES8 : NULL;
@@ -85,7 +86,7 @@ static void layout(void *object, Carve *c)
     for (int i = 0; i < N_REACHES; i++)
         CARVE(c, m->limit[i], eights(m->n_groups) * LANES8);
     for (int i = 0; i < m->n_groups; i++)
-        layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i >= m->at_both, i < m->at_slow);
+        layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i < m->at_slow);
 }
 
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
@@ -190,17 +191,20 @@ static void set_building_rows(ForceMonitor *m, const Building *b)
     }
 }
 
-static void set_core_rows(ForceMonitor *m, const CoreBeam *core)
+/* Of `modes` modes of shape phi. */
+static void set_core_rows(ForceMonitor *m, const CoreBeam *core, int modes, const double phi[], RowKind of)
 {
     const int n = m->n;
     double outputs[2 * FLOORS_MAX + 1] = {0};
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < modes; i++) {
         if (core) {
-            storey_forces(m, core->K, core->phi + i, n, outputs, outputs + n);
-            outputs[2 * n] = core->phi[(core->top - 1) * n + i];
+            storey_forces(m, core->K, phi + i, modes, outputs, outputs + n);
+            outputs[2 * n] = phi[(core->top - 1) * modes + i];
         }
-        put_row(m, 0, i, 2 * n + 1, outputs, ROW_CORE);
-        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], outputs[n]}, ROW_CORE);
+        put_row(m, 0, i, 2 * n + 1, outputs, of);
+        double *both = (of == ROW_CORE ? m->group[m->at_both].core : m->group[m->at_both].building) + i * LANES8;
+        for (int k = 0; k < 2; k++) /* beside the building's, where these are its modes too */
+            both[k] = outputs[k * n] + (of == ROW_CORE ? 0 : both[k]);
     }
 }
 
@@ -219,18 +223,23 @@ static void set_reaches(ForceMonitor *m, const Building *b, const CoreBeam *core
         Group *g = &m->group[i];
         if (g->building)
             set_squares(m->nb, g->building, g->of_velocities ? NULL : b->model.omega, g->building_squares);
-        if (g->core && core)
+        if (g->core && m->own_modes > 0)
             set_squares(m->n, g->core, core->omega, g->core_squares);
     }
 }
 
-void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core,
+void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core, int joined,
                        const double thickness[2])
 {
     const int n = m->n;
     m->options = *o;
     m->core = core;
     m->nc = core ? n : 0;
+    m->own_modes = joined ? 0 : m->nc;
+    for (int i = 0; i < m->n_groups; i++) {
+        m->group[i].building = joined || i >= m->at_both ? m->group[i].room : NULL;
+        memset(m->group[i].reach, 0, sizeof m->group[i].reach);
+    }
     m->with_storeys = !o->sim.measures_only;
     m->weight_n = 0;
     for (int s = 0; s < n; s++)
@@ -240,10 +249,12 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->thickness[0] = core ? thickness[0] : 0;
     m->thickness[1] = core ? thickness[1] : 0;
     set_building_rows(m, b);
-    set_core_rows(m, core);
+    set_core_rows(m, core, joined ? m->nb : n,
+                  joined ? b->model.phi
+                  : core ? core->phi
+                         : NULL,
+                  joined ? ROW_BUILDING : ROW_CORE);
     m->yields = b->yields;
-    for (int i = 0; i < m->n_groups; i++)
-        memset(&m->group[i].reach[REACH_PLASTIC], 0, sizeof m->group[i].reach[REACH_PLASTIC]);
     if (b->yields)
         set_plastic_rows(m, b);
     set_reaches(m, b, core);
@@ -255,7 +266,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
 static void set_residual(const ForceMonitor *m, Group *g)
 {
     memset(g->force, 0, sizeof(double) * (size_t)((m->n + 1) * LANES8)); /* and the ground */
-    for (int i = m->core_modes; i < m->nc; i++) {
+    for (int i = m->core_modes; i < m->own_modes; i++) {
         const double *row = g->core + i * LANES8, omega = m->core->omega[i], flexibility = 1 / (omega * omega);
         for (int k = 0; k < LANES8; k++) {
             g->ground[k] -= m->core->gamma[i] * flexibility * row[k];
@@ -279,8 +290,8 @@ static int is_followed(const ForceMonitor *m, int group)
 
 void force_monitor_start(ForceMonitor *m, int core_modes)
 {
-    m->core_modes = m->nc ? core_modes : 0;
-    m->has_residual = m->core_modes < m->nc;
+    m->core_modes = m->own_modes ? core_modes : 0;
+    m->has_residual = m->core_modes < m->own_modes;
     m->n_due = m->rising = 0;
     m->looks = 0;
     for (int q = 0; q < N_REACHES; q++)
@@ -448,7 +459,7 @@ void force_monitor_energies(ForceMonitor *m, const double building[], const doub
             continue;
         if (g->building)
             set_reach(m->nb, g->building_squares, building, &g->reach[REACH_BUILDING_1]);
-        if (g->core)
+        if (g->core && m->core_modes > 0)
             set_reach(m->core_modes, g->core_squares, core, &g->reach[REACH_CORE_1]);
         set_limits(m, i);
     }

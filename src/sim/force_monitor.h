@@ -39,9 +39,9 @@ typedef struct ForceMonitor ForceMonitor;
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err);
 void force_monitor_free(ForceMonitor *m); /* NULL is fine */
 
-/* Another scene or design. core NULL: the building alone, else it must outlive the runs. thickness: of
- * the core's wall in the first and in the last storey. */
-void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core,
+/* Another scene or design. core NULL: the building alone, else it must outlive the runs. joined: the core moves in the
+ * modes of the building (sim/joined.h). thickness: of the core's wall in the first and in the last storey. */
+void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core, int joined,
                        const double thickness[2]);
 /* contact is called for every contact that ends or is open where the run ends, and with NULL where a run begins. */
 void force_monitor_on_contact(ForceMonitor *m, SimContactFn contact, void *user);

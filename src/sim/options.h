@@ -76,7 +76,7 @@ typedef struct {
         ground_stiffness, strength;
 } AsBuilt;
 
-/* Linear devices in the place of impacts (sim/linear.h). */
+/* Devices in the place of impacts. */
 typedef struct {
     double tmd_hz, tmd_damping; /* SCENE_TMD: of the tuned mass, whose mass is the core's */
     double link_ns_m;           /* SCENE_LINKS: [N s/m] of every dashpot between a floor and the core */

@@ -90,10 +90,9 @@ typedef struct {
     int bumper_bottoms_out;                     /* the strain exceeds ContactOptions.bumper_strain_max */
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
-    double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one (SCENE_TMD,
-                                              SCENE_LINKS: of its dashpot) */
+    double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one */
     int n_devices;                              /* of SCENE_IMPACT: stops, links, tuned masses */
-    double device_loss_j, ed_devices_pct;       /* dissipated by devices of the design; of input_energy_j */
+    double device_loss_j, ed_devices_pct;       /* dissipated by devices; of input_energy_j */
     long steps, force_evaluations;              /* what the run cost */
     int repeated;   /* times the run was repeated with shorter steps, its energy balance open */
     double seconds; /* wall time */
@@ -131,10 +130,8 @@ typedef struct {
     const double *omega, *q, *v; /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
     const double *force;         /* (n_floors) [N] of the contacts on the floors; NULL: not known */
     const double *plastic;       /* (n_floors) [m] plastic drifts of the storeys; NULL: none yields */
-    const double *u,
-        *u_ddot;            /* (n_floors) displacements and absolute accelerations of a linear scene, which has no q, v
-                                 and force here; else NULL */
-    const double *damped_j; /* (n_modes) */
+    const double *u; /* (n_floors) displacements, of a sample for peaks, which has no q, v and force; else NULL */
+    const double *damped_j;     /* (n_modes) */
     double input_j, contacts_j; /* by the ground; taken by the contacts: lost, stored, clamped; and by storeys
                                     that yield, less what K u has of them too much */
 } SimSample;

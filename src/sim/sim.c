@@ -9,7 +9,7 @@
 #include "sim/as_built.h"
 #include "sim/engine.h"
 #include "sim/floor_filter.h"
-#include "sim/linear.h"
+#include "sim/joined.h"
 #include "sim/model.h"
 #include "sim/tail.h"
 
@@ -34,6 +34,7 @@ struct SimWorker {
     SimModel model;
     CoreBeam core;
     LinearDevice device;
+    int is_joined; /* the last run */
     EngineOptions run;
     FloorFilter *filter; /* NULL: not wanted */
     double filtered_to;  /* [s] */
@@ -293,18 +294,14 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
 void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion *out)
 {
     const SimModel *model = &worker->model;
-    const size_t size = (size_t)model->n * sizeof *s->u;
-    if (s->u) { /* floors and core are one */
-        memcpy(out->u, s->u, size);
-        memcpy(out->u_ddot, s->u_ddot, size);
-        memcpy(out->core, s->u, size);
-        for (int j = 0; j < model->n; j++)
-            out->u_dot[j] = out->core_dot[j] = NAN;
-        return;
-    }
     floors_from_modes(model, 0, model->nb, s->q, out->u);
     floors_from_modes(model, 0, model->nb, s->v, out->u_dot);
     accelerations(model, worker->scene->motion, s, out->u_ddot);
+    if (worker->is_joined) {
+        memcpy(out->core, out->u, sizeof out->u);
+        memcpy(out->core_dot, out->u_dot, sizeof out->u_dot);
+        return;
+    }
     core_nodes(model, s, s->q, out->core);
     core_nodes(model, s, s->v, out->core_dot);
 }
@@ -324,27 +321,6 @@ static void check_result(SimResult *r, double energy_balance_max)
     }
     if (r->outcome != RUN_OK && !r->reason[0])
         snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
-}
-
-static int is_linear(SceneKind kind)
-{
-    return kind == SCENE_RIGID || kind == SCENE_TMD || kind == SCENE_LINKS;
-}
-
-static LinearKind linear_kind(SceneKind kind)
-{
-    return kind == SCENE_RIGID ? LINEAR_RIGID : kind == SCENE_TMD ? LINEAR_TMD : LINEAR_LINKS;
-}
-
-static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
-{
-    const Scene *scene = w->scene;
-    if (w->building->yields)
-        TRY(model_set(&w->model, w->options, w->building, NULL, NULL, err));
-    TRY(engine_linear(linear_kind(kind), w->building, &w->core, &w->device, w->building->yields ? &w->model : NULL,
-                      scene->motion, &w->run, result, err));
-    check_result(result, sim_energy_balance_max(&w->options->sim));
-    return STATUS_OK;
 }
 
 static Status run_engine(SimWorker *w, SimResult *result, Err *err)
@@ -451,25 +427,8 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
     worker->device = *device;
 }
 
-Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
-                  Err *err)
-{
-    const SimModel *storeys = w->building->yields ? &w->model : NULL;
-    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL, storeys};
-    LinearSystem s;
-    Design d;
-    design_of(&w->scene->design, x, &d);
-    TRY(make_core(w, &d, err));
-    if (storeys)
-        TRY(model_set(&w->model, w->options, w->building, NULL, NULL, err));
-    TRY(linear_system_make(&s, linear_kind(kind), w->building, &w->core, &w->device, sketch->n_modes, err));
-    const Status status = linear_run(&s, w->scene->motion, &run, result, err);
-    linear_system_free(&s);
-    return status;
-}
-
 /* The dashpot of the tuned mass: c = 2 zeta m w, its spring m w^2. */
-static void add_devices(SimWorker *w, const Design *d)
+static void add_devices(SimWorker *w, const Design *d, double exponent)
 {
     SimModel *model = &w->model;
     const double omega = 2 * M_PI * d->mass_hz;
@@ -477,8 +436,7 @@ static void add_devices(SimWorker *w, const Design *d)
         model_add_mass(model, d->mass_kg);
     for (int j = 0; j < w->core.top; j++)
         if (d->link[j] > 0)
-            model_add_device(
-                model, &(Device){.floor = j, .damping = d->link[j], .exponent = w->options->design.link_exponent}, 0);
+            model_add_device(model, &(Device){.floor = j, .damping = d->link[j], .exponent = exponent}, 0);
     if (d->mass_kg > 0)
         model_add_device(model,
                          &(Device){.floor = model->n - 1,
@@ -488,10 +446,12 @@ static void add_devices(SimWorker *w, const Design *d)
                          1);
 }
 
-static Status set_impacts(SimWorker *w, const Design *d, Err *err)
+/* core NULL: none. exponent: of links. */
+static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, double exponent, Err *err)
 {
-    TRY(model_set(&w->model, w->options, w->building, &w->core, NULL, err));
-    TRY(model_set_gaps(&w->model, d->gap[0], d->gap[1], err));
+    TRY(model_set(&w->model, w->options, w->building, core, NULL, err));
+    if (core)
+        TRY(model_set_gaps(&w->model, d->gap[0], d->gap[1], err));
     for (int j = w->core.top; j < w->model.n; j++) { /* above a neighbour */
         w->model.gap[j] = 1e300;
         w->model.middle[j] = 0;
@@ -501,8 +461,70 @@ static Status set_impacts(SimWorker *w, const Design *d, Err *err)
     for (int j = 0; j < w->model.n; j++)
         if (d->bumper[j] >= 0)
             w->model.contact[j].bumper = built * d->bumper[j];
-    add_devices(w, d);
+    add_devices(w, d, exponent);
     return STATUS_OK;
+}
+
+/* Nothing to meet, but the worker's device. */
+static void replace_stops(const SimWorker *w, SceneKind kind, Design *d)
+{
+    d->mass_kg = kind == SCENE_TMD ? w->core.mass_kg : 0;
+    d->mass_hz = w->device.tmd_hz;
+    d->mass_damping = w->device.tmd_damping;
+    for (int j = 0; j < w->model.n; j++) {
+        d->gap[0][j] = d->gap[1][j] = INFINITY;
+        d->link[j] = kind == SCENE_LINKS ? w->device.link_ns_m : 0;
+    }
+}
+
+static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *err)
+{
+    Joined joined;
+    const Building *own = w->building;
+    Status status = joined_make(&joined, own, &w->core, err);
+    w->building = &joined.building;
+    if (status == STATUS_OK && w->run.forces)
+        force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
+    if (status == STATUS_OK)
+        status = model_set(&w->model, w->options, w->building, NULL, NULL, err);
+    if (status == STATUS_OK)
+        status = run_engine(w, result, err);
+    if (status == STATUS_OK)
+        joined_book(&joined, result);
+    w->building = own;
+    joined_free(&joined);
+    return status;
+}
+
+/* Any other scene than joined. A design has no work space for what is no variable of it. */
+static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *result, Err *err)
+{
+    const CoreBeam *core = kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core;
+    void *const work = w->run.work;
+    if (kind != SCENE_IMPACT)
+        replace_stops(w, kind, &d);
+    if (kind == SCENE_TMD || kind == SCENE_LINKS)
+        w->run.work = NULL;
+    if (w->run.forces)
+        force_monitor_set(w->run.forces, w->options, w->building, core, 0, (double[]){d.t_base, d.t_top});
+    Status status = set_model(w, core, &d, kind == SCENE_IMPACT ? w->options->design.link_exponent : 1, err);
+    if (status == STATUS_OK)
+        status = run_engine(w, result, err);
+    w->run.work = work;
+    return status;
+}
+
+Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], double duration, SimResult *result, Err *err)
+{
+    const EngineOptions whole = w->run;
+    w->run = (EngineOptions){.duration = fmin(duration, whole.duration), .accuracy = ACCURACY_COARSE};
+    Design d;
+    design_of(&w->scene->design, x, &d);
+    Status status = make_core(w, &d, err);
+    if (status == STATUS_OK)
+        status = run_design(w, kind, d, result, err);
+    w->run = whole;
+    return status;
 }
 
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
@@ -519,17 +541,8 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(make_core(w, d, err));
-    if (w->run.forces)
-        force_monitor_set(w->run.forces, w->options, w->building,
-                          kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core,
-                          (double[]){d->t_base, d->t_top});
-    if (is_linear(kind)) {
-        TRY(run_linear(w, kind, result, err));
-    } else {
-        TRY(kind == SCENE_IMPACT ? set_impacts(w, d, err)
-                                 : model_set(&w->model, w->options, w->building, NULL, NULL, err));
-        TRY(run_engine(w, result, err));
-    }
+    w->is_joined = kind == SCENE_RIGID;
+    TRY(w->is_joined ? run_joined(w, d, result, err) : run_design(w, kind, *d, result, err));
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
         result->forces_known = 1;

@@ -22,9 +22,9 @@
 typedef enum {
     SCENE_IMPACT,  /* building and core with gaps */
     SCENE_NO_CORE, /* the building alone */
-    SCENE_RIGID,   /* floors and core rigidly connected: linear */
-    SCENE_TMD,     /* no core, but a tuned mass damper of its mass at the roof: linear */
-    SCENE_LINKS,   /* floors and core joined by dashpots: linear */
+    SCENE_RIGID,   /* floors and core rigidly connected (sim/joined.h) */
+    SCENE_TMD,     /* no core, but a tuned mass damper of its mass at the roof */
+    SCENE_LINKS,   /* floors and core joined by linear dashpots */
     N_SCENES
 } SceneKind;
 
@@ -68,8 +68,7 @@ void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, vo
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[]);
 
 /* Floors and nodes of the core: relative to the ground [m], [m/s]; accelerations of the floors absolute [m/s2]. The
- * core by the modes that the engine follows, 0 where there is none. Of the linear scenes the velocities are NAN, and
- * the core moves with the floors. */
+ * core by the modes that the engine follows, 0 where there is none. */
 typedef struct {
     double u[FLOORS_MAX], u_dot[FLOORS_MAX], u_ddot[FLOORS_MAX], core[FLOORS_MAX], core_dot[FLOORS_MAX];
 } FloorMotion;
@@ -85,14 +84,9 @@ Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
 /* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 
-/* Parameters of a device are searched for on less of the scene: the lowest modes of building and of core, longer
- * steps [s], the first part of the motion [s]; only SCENE_TMD and SCENE_LINKS. */
-typedef struct {
-    int n_modes;
-    double step, duration;
-} LinearSketch;
-Status sim_sketch(SimWorker *worker, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
-                  Err *err);
+/* Parameters of a device are searched for on the first part of the motion [s], coarsely; only SCENE_TMD and
+ * SCENE_LINKS. */
+Status sim_sketch(SimWorker *worker, SceneKind kind, const double x[], double duration, SimResult *result, Err *err);
 
 /* x as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);
