@@ -51,8 +51,3 @@ void linalg_congruent(int n, int m, const double A[], const double T[], double w
 /* C (n, n) = A B' with A, B (n, m). */
 void linalg_product_of_rows(int n, int m, const double A[], const double B[], double C[]);
 
-/* C (r, c) = A (r, k) B (k, c), all by columns: entry (i, j) of a matrix with r rows is at [j r + i]. */
-void linalg_product(int r, int k, int c, const double A[], const double B[], double C[]);
-
-/* out = exp(A), A (n, n) overwritten: Taylor to full precision where |A| <= 1/2, then squared back up. work (2 n n) */
-void linalg_exponential(int n, double A[], double out[], double work[]);
