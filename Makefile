@@ -9,6 +9,7 @@ REVISION ?= $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 MODE     ?= release
 BUILD    := build/$(MODE)
 PREFIX   ?= /usr/local
+LIBDIR   ?= $(PREFIX)/lib
 JOBS     ?= $(shell nproc)
 TEST_JOBS ?= $(shell expr 2 + $(JOBS))# tests at a time: many wait more than they compute
 V        ?= 0
@@ -26,7 +27,7 @@ CFLAGS.coverage := -O1 -g --coverage -fprofile-update=atomic
 
 CC       ?= cc
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-CPPFLAGS += -Isrc -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
+CPPFLAGS += -Isrc -Iinclude -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
@@ -61,7 +62,10 @@ LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNELS:%=$(BU
 LIB      := $(BUILD)/libprogram.a
 # What stands alone: no SQLite, no server, nothing printed. `make lib-alone` links it so.
 CORE     := $(BUILD)/libimtet.a
-CORE_OBJ := $(foreach d,base settings scene motion sim rbf moga evaluate,$(filter $(BUILD)/src/$(d)/%,$(LIB_OBJ))) $(filter %.csv.o,$(LIB_OBJ))
+CORE_OBJ := $(sort $(foreach d,base settings scene motion sim rbf moga evaluate api,$(filter $(BUILD)/src/$(d)/%,$(LIB_OBJ))) $(filter %.csv.o,$(LIB_OBJ)))
+SONAME   := libimtet.so.0
+SHARED   := $(BUILD)/libimtet.so.$(VERSION)
+EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(wildcard examples/*.c))
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
 TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
@@ -71,7 +75,7 @@ STABILITY.asan    := fast
 
 .PHONY: all help setup run test tests check format install clean lib-alone .FORCE
 .SECONDARY:
-all: $(PROGRAM) ## builds ./imtet
+all: $(PROGRAM) $(SHARED) $(CORE) $(BUILD)/imtet.pc ## builds ./imtet, and libimtet in build/release
 
 help: ## this list
 	@awk -F ' ## ' '/^[a-z-]+:.* ## / { sub(/:.*/, "", $$1); printf "  make %-16s %s\n", $$1, $$2 }' $(filter-out %.d,$(MAKEFILE_LIST))
@@ -93,15 +97,36 @@ $(LIB): $(LIB_OBJ)
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $^
 
+# The library, of which others see the functions of include/ alone: the archive is one object whose other names are local.
 $(CORE): $(CORE_OBJ) Makefile
+	@echo '  AR  $@'
+	$(Q)$(LD) -r -o $(BUILD)/libimtet.o $(CORE_OBJ)
+	$(Q)objcopy -w --keep-global-symbol='imtet_*' $(BUILD)/libimtet.o
 	@rm -f $@
-	$(Q)$(AR) rcs $@ $(CORE_OBJ)
+	$(Q)$(AR) rcs $@ $(BUILD)/libimtet.o
 
-$(BUILD)/alone: $(BUILD)/tests/alone.o $(CORE)
+CORE_LIBS := $(filter-out -lsqlite3 -lmicrohttpd -lz,$(LDLIBS))
+$(SHARED): $(CORE_OBJ) include/imtet.map
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(filter-out -lsqlite3 -lmicrohttpd -lz,$(LDLIBS))
+	$(Q)$(CC) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=include/imtet.map -Wl,--as-needed -Wl,-z,defs \
+	    -o $@ $(CORE_OBJ) $(CORE_LIBS)
+	@ln -sf libimtet.so.$(VERSION) $(BUILD)/$(SONAME)
+	@ln -sf $(SONAME) $(BUILD)/libimtet.so
 
-lib-alone: $(BUILD)/alone ## links libimtet.a without SQLite and libmicrohttpd, and simulates a design with it
+$(BUILD)/imtet.pc: include/imtet.pc.in Makefile
+	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|-fopenmp $(CORE_LIBS)|' $< > $@
+
+# What the examples are is what a user writes: compiled with the headers alone, against the shared library.
+$(BUILD)/examples/%: examples/%.c $(SHARED) include/imtet.h include/imtet_scene.h
+	@mkdir -p $(@D)
+	@echo '  CC  $@'
+	$(Q)$(CC) -std=c17 -O1 -Iinclude $(WARNINGS) $(CFLAGS.$(MODE)) -o $@ $< -L$(BUILD) -limtet -Wl,-rpath,'$$ORIGIN/..' -lm -lpthread
+
+$(BUILD)/alone: examples/ask_tell.c $(CORE)
+	@echo '  LD  $@'
+	$(Q)$(CC) -std=c17 -Iinclude $(LDFLAGS) -o $@ $^ $(CORE_LIBS)
+
+lib-alone: $(BUILD)/alone ## links an example with libimtet.a, without SQLite and libmicrohttpd, and runs it
 	@$(BUILD)/alone
 
 $(BUILD)/%.o: %.c
@@ -116,6 +141,13 @@ $(BUILD)/%.o: %.cpp
 	$(Q)$(if $(findstring clang,$(CC)),clang++,g++) $(CPPFLAGS) -std=c++17 -fvisibility=hidden -fno-exceptions -fno-rtti \
 	    $(CFLAGS.$(MODE)) -Wall -Wextra -Werror -c $< -o $@
 
+# Objects of the library stand in the program and in the shared library alike: with hidden names PIC costs nothing.
+# The stamp has objects that were compiled without it compiled again.
+$(CORE_OBJ): CFLAGS += -fPIC
+$(CORE_OBJ): $(BUILD)/pic
+$(BUILD)/pic:
+	@mkdir -p $(@D)
+	@touch $@
 $(BUILD)/src/sim/%.o: FLAGS = $(FLAGS.sim)
 $(BUILD)/src/rbf/%.o $(BUILD)/src/moga/infill.o: FLAGS = $(FLAGS.rbf)
 

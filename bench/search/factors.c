@@ -12,6 +12,7 @@
 #include "base/dominance.h"
 #include "base/hypervolume.h"
 #include "study/study.h"
+#include "api/search_config.h"
 
 static const double FACTOR_MAX = 20.0;
 enum { BUDGETS_MAX = 4, SEEDS_MAX = 16, PROBLEMS_MAX = 32 };
@@ -58,7 +59,7 @@ Status search_course(const Settings *settings, const Problem *p, SurrogateUse su
     s.search.max_evals = (long)c->n_max;
     s.search.generations = 1000000;
     s.search.surrogate = surrogate;
-    const SearchConfig config = study_search_config(&s);
+    const SearchConfig config = search_config_of(&s);
     return search_run(p, &config, note, c, &reason, err);
 }
 

@@ -40,6 +40,14 @@ const char *linalg_kernel_name(void)
     return openblas_get_corename();
 }
 
+int linalg_threads(int n)
+{
+    const int before = openblas_get_num_threads();
+    if (n != before)
+        openblas_set_num_threads(n);
+    return before;
+}
+
 /* The variable is gone again before another process is started, whose BLAS is its own affair. */
 void linalg_use(LinalgKernels kernels)
 {

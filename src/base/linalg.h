@@ -17,6 +17,9 @@ typedef enum { LINALG_KERNELS_LIST(CHOICE_NAME) } LinalgKernels;
 void linalg_use(LinalgKernels kernels);
 const char *linalg_kernel_name(void); /* "Haswell" */
 
+/* BLAS on n threads, and how many it had: for a library, which gives back what it found. */
+int linalg_threads(int n);
+
 /* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at
  * once, the first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where
  * there is none: STATUS_NO_MEMORY. To be called before memory is taken for other things. */

@@ -1,6 +1,7 @@
 #include <omp.h>
 
 #include "cmd/commands.h"
+#include "api/search_config.h"
 #include "evaluate/textbook.h"
 #include "store/output.h"
 #include "study/study.h"
@@ -55,7 +56,7 @@ static Status search(const Args *args, const Settings *s, const Adapter *adapter
 {
     Output o;
     StopReason reason;
-    const SearchConfig config = study_search_config(s);
+    const SearchConfig config = search_config_of(s);
     TRY(output_open(&o, args_value(args, "--csv"), err));
     Writing w = {.adapter = adapter, .f = o.stream, .noisy = s->problem.noise > 0.0};
     write_header(&w);

@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include "api/search_config.h"
 #include "base/clock.h"
 #include "cmd/show.h"
 #include "settings/settings.h"
@@ -181,7 +182,7 @@ static Status search(const Settings *s, double *igd, Err *err)
 {
     Adapter *adapter;
     StopReason reason;
-    const SearchConfig config = study_search_config(s);
+    const SearchConfig config = search_config_of(s);
     TRY(adapter_open(&adapter, s, err));
     omp_set_num_threads(adapter_threads(adapter));
     const Status status = search_run(adapter_problem(adapter), &config, measure_front, igd, &reason, err);

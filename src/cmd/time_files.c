@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "cmd/designs.h"
-#include "report/history.h"
+#include "sim/sample_energy.h"
 #include "motion/spectrum.h"
 #include "sim/floor_record.h"
 #include "store/output.h"
@@ -99,25 +99,13 @@ static void write_history_header(FILE *out, int n_floors)
 static void write_history_row(const SimSample *s, void *user)
 {
     HistoryRows *rows = user;
-    FloorMotion f;
-    double drift[FLOORS_MAX], energy[N_ENERGIES], unknown[FLOORS_MAX];
-    const size_t n = rows->n_floors;
+    double row[SAMPLE_FIXED + SAMPLE_PARTS * FLOORS_MAX];
     rows->attempt += s->t == 0;
     if (rows->attempt != rows->wanted)
         return;
-    sim_worker_motion(rows->worker, s, &f);
-    history_energies(s, energy);
-    for (size_t j = 0; j < n; j++) {
-        drift[j] = f.u[j] - (j > 0 ? f.u[j - 1] : 0);
-        f.u_ddot[j] /= GRAVITY;
-        unknown[j] = NAN;
-    }
+    sample_row(rows->worker, s, (size_t)rows->n_floors, row);
     fprintf(rows->out, "%ld", rows->design);
-    print_cells(rows->out, 2, (const double[]){s->t, s->ground / GRAVITY});
-    const double *const parts[] = {f.u, f.u_dot, drift, f.u_ddot, f.core, f.core_dot, s->force ? s->force : unknown};
-    for (size_t k = 0; k < N_OF(parts); k++)
-        print_cells(rows->out, n, parts[k]);
-    print_cells(rows->out, N_ENERGIES, energy);
+    print_cells(rows->out, SAMPLE_FIXED + SAMPLE_PARTS * (size_t)rows->n_floors, row);
     fputc('\n', rows->out);
 }
 

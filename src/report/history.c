@@ -18,26 +18,6 @@ static Status make_room(History *h, size_t room, Err *err)
     return STATUS_OK;
 }
 
-static void add_mode(const SimSample *s, int i, double energy[N_ENERGIES])
-{
-    const double wq = s->omega[i] * s->q[i], kinetic = 0.5 * s->v[i] * s->v[i], strain = 0.5 * wq * wq;
-    const double damped = s->damped_j[i];
-    const int in_building = i < s->n_building;
-    energy[in_building ? ENERGY_KINETIC : ENERGY_CORE] += kinetic;
-    energy[in_building ? ENERGY_STRAIN : ENERGY_CORE] += strain;
-    energy[in_building ? ENERGY_DAMPED_BUILDING : ENERGY_DAMPED_CORE] += damped;
-}
-
-void history_energies(const SimSample *s, double energy[N_ENERGIES])
-{
-    for (int k = 0; k < N_ENERGIES; k++)
-        energy[k] = s->damped_j ? 0 : NAN;
-    for (int i = 0; s->damped_j && i < s->n_modes; i++)
-        add_mode(s, i, energy);
-    energy[ENERGY_INPUT] = s->input_j;
-    energy[ENERGY_CONTACTS] = s->contacts_j;
-}
-
 static void note(const SimSample *sample, void *user)
 {
     Track *track = user;
@@ -47,7 +27,7 @@ static void note(const SimSample *sample, void *user)
         h->n = 0;
     if (h->n == track->room)
         return;
-    history_energies(sample, energy);
+    sample_energies(sample, energy);
     sim_worker_floors(track->worker, sample, u);
     h->t[h->n] = sample->t;
     h->u[h->n] = u[track->floor];

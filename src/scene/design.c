@@ -271,7 +271,7 @@ static Status check_names(const Table *t, const char *path, const DesignSpace *s
     return STATUS_OK;
 }
 
-static Status check_values(const Designs *d, const char *path, Err *err)
+Status design_check(const DesignSpace *space, int j, double value, const char *where, Err *err)
 {
     static const char *const MUST[] = {
         [GAP] = "a gap is not negative",
@@ -282,19 +282,26 @@ static Status check_values(const Designs *d, const char *path, Err *err)
         [MASS] = "it must be above 0",
         [DEVICE] = "it is the place, from 0, of a word of design.devices",
     };
+    char name[TABLE_NAME_MAX];
+    design_variable_name(space, j, name);
+    const Group group = group_of(space, &j);
+    if (group == DEVICE                 ? value >= 0 && value < space->n_words && value == floor(value)
+        : group == GAP || group == LINK ? value >= 0
+                                        : value > 0 && (group != BUMPER || value < 15))
+        return STATUS_OK;
+    return bad_data(err, "%s: %s is %g; %s", where, name, value, MUST[group]);
+}
+
+static Status check_values(const Designs *d, const char *path, Err *err)
+{
     const size_t n_var = d->space.n_var;
+    char where[320];
     for (size_t i = 0; i < d->n * n_var; i++) {
-        char name[TABLE_NAME_MAX];
-        const double value = d->x[i];
-        int j = (int)(i % n_var);
-        if (isnan(value))
-            return bad_data(err, "%s:%d: column %d of %zu is missing", path, d->line[i / n_var], j + 1, n_var);
-        design_variable_name(&d->space, j, name);
-        const Group group = group_of(&d->space, &j);
-        if (group == DEVICE                 ? !(value >= 0 && value < d->space.n_words && value == floor(value))
-            : group == GAP || group == LINK ? value < 0
-                                            : !(value > 0 && (group != BUMPER || value < 15)))
-            return bad_data(err, "%s:%d: %s is %g; %s", path, d->line[i / n_var], name, value, MUST[group]);
+        const int line = d->line[i / n_var], j = (int)(i % n_var);
+        if (isnan(d->x[i]))
+            return bad_data(err, "%s:%d: column %d of %zu is missing", path, line, j + 1, n_var);
+        snprintf(where, sizeof where, "%s:%d", path, line);
+        TRY(design_check(&d->space, j, d->x[i], where, err));
     }
     return STATUS_OK;
 }

@@ -57,6 +57,9 @@ int design_space_floors(const DesignOptions *o, CoreSection section, int n_var);
 /* Name of variable j = 0..n_var-1. */
 void design_variable_name(const DesignSpace *space, int j, char name[TABLE_NAME_MAX]);
 
+/* May variable j have that value? STATUS_BAD_DATA: "WHERE: NAME is -1; a gap is not negative". */
+Status design_check(const DesignSpace *space, int j, double value, const char *where, Err *err);
+
 /* Is it a choice, of 0..n_words-1? */
 int design_is_choice(const DesignSpace *space, int j);
 

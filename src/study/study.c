@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include "api/search_config.h"
 #include "base/clock.h"
 #include "base/json.h"
 #include "evaluate/cluster.h"
@@ -183,30 +184,9 @@ static int observe(const SearchView *view, void *user)
 
 /* -- beginning ----------------------------------------------------------------------------------------------------- */
 
-SearchConfig study_search_config(const Settings *s)
-{
-    const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
-    return (SearchConfig){
-        .seed = (uint32_t)s->search.seed,
-        .population = s->search.population,
-        .initial = initial,
-        .generations = s->search.generations,
-        .max_evals = s->search.max_evals,
-        .surrogate_max = SEARCH_CENTRES,
-        .surrogate = s->search.surrogate,
-        .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
-        .asynchronous = s->search.asynchronous == SWITCH_ON,
-        .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
-        .stop_after = s->search.stop_after,
-        .nondominated_share = s->search.nondominated_share,
-        .replicate_share = s->search.replicate_share,
-        .replicates_max = s->search.replicates_max,
-    };
-}
-
 static Status search_config(Study *study, SearchConfig *config, Err *err)
 {
-    *config = study_search_config(&study->used);
+    *config = search_config_of(&study->used);
     config->max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (!study->given)
         TRY(initial_designs_read("search.start", study->used.search.start, adapter_schema(study->adapter),

@@ -59,7 +59,4 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
  * filled, without the baselines. */
 int study_finished(RunStore *store, StudySummary *summary, Run *run);
 
-/* What the search reads from the settings. */
-SearchConfig study_search_config(const Settings *s);
-
 #endif

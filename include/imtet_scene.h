@@ -1,0 +1,89 @@
+/* imtet_scene.h -- the simulator of the library: a tower, the core inside it and the gaps between them under a ground
+ * motion; what a design of gaps and thicknesses does, in some 10 ms.
+ *
+ *     const char *settings[] = {"motion.record=builtin:kobe-like", NULL};
+ *     imtet_scene *scene;
+ *     imtet_result *result;
+ *     const double *j1;
+ *     double x[22] = {...};             gap_01_m..gap_20_m, t_base_m, t_top_m
+ *     imtet_scene_open("configs/quick.ini", settings, &scene, &error);
+ *     imtet_scene_simulate(scene, IMTET_IMPACTS, x, 22, &result, &error);
+ *     imtet_result_numbers(result, "j1_m", &j1, NULL, NULL, &error);     *j1 in m
+ *     imtet_result_free(&result);
+ *     imtet_scene_free(&scene);
+ *
+ * Equations, scaling of records and settings are those of the program: `imtet settings` lists every setting, and
+ * `imtet simulate` gives the same numbers.
+ *
+ * Results    named numbers, tables (rows, columns) row-major, and texts. Units stand at the ends of the names: j1_m
+ *            [m], j3_g [g], peak_drift_m. results/README.md of the program explains each
+ * Ownership  a result belongs to the caller, who frees it; its numbers and texts hold until then. A scene may be
+ *            freed before its results
+ * Threads    any: one scene may simulate in several threads at once (each has an integrator of its own), one result may
+ *            be read by several
+ * Errors     as in imtet.h. A simulation that fails (its energy balance does not close, say) is a result whose text
+ *            `outcome` is not "ok" and whose numbers are not to be used */
+#ifndef IMTET_SCENE_H
+#define IMTET_SCENE_H
+
+#include "imtet.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct imtet_scene imtet_scene;
+typedef struct imtet_result imtet_result;
+
+/* The scene of a settings file (NULL: the defaults) and of "section.key=value" each, NULL behind the last (settings
+ * NULL: none). Paths in the file begin at its folder. Of motion.records and sim.replicates the first is simulated
+ * alone, as designed. */
+IMTET_API imtet_status imtet_scene_open(const char *path, const char *const settings[], imtet_scene **out,
+                                        imtet_error *error);
+IMTET_API void imtet_scene_free(imtet_scene **scene); /* makes it NULL; no simulation may be under way */
+
+/* floors (1, 1); lower, upper (variables, 1): the box of a search; building_hz (floors, 1): natural frequencies of the
+ * building; texts: variables, objectives: comma lists of names; senses: min or max of each objective; record. */
+IMTET_API imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error);
+
+typedef enum {
+    IMTET_IMPACTS, /* building and core with gaps */
+    IMTET_ALONE,   /* the building without a core; x may be NULL */
+    IMTET_RIGID    /* floors and core rigidly connected; of x the thicknesses count */
+} imtet_scene_kind;
+
+/* The response to the record of a design x (n), n the scene's variables in their order. Numbers (1, 1): j1_m, j2_m,
+ * j3_g, ed1_pct, ed5_10_pct, edcs_pct, mcore_kg and whatever else `imtet simulate --csv` has, those of forces with
+ * "sim.forces=yes" alone; not numbers where the scene has none. Of every floor or storey from the bottom (floors, 1):
+ * peak_displacement_m, peak_drift_m, peak_acceleration_g, floor_drift_ratio, mode_share_pct (of mode 1, 2, ...).
+ * Texts: outcome, reason. */
+IMTET_API imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
+                                            imtet_result **out, imtet_error *error);
+
+/* The same over time, by the same simulation once more: every_s [s] between rows at most, reached by halving the step
+ * of the motion; 0: that step. Tables (times, 1): t_s, ground_g, and energies kinetic_j, strain_j, damped_building_j,
+ * core_j, damped_core_j, contacts_j, input_j; (times, floors): floor_m, floor_m_s, drift_m, accel_g (absolute), core_m,
+ * core_m_s, contact_n. Displacements are relative to the ground. Only with sim.engine=fast. */
+IMTET_API imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
+                                           double every_s, imtet_result **out, imtet_error *error);
+
+/* A record as the program reads it, of any of its formats, or builtin:NAME: acceleration (samples, 1) [m/s2], dt_s
+ * (1, 1) [s]; texts: name, format, channel, processed, warning. settings as above: "motion.unit=g", "motion.channel=2",
+ * "motion.pga_g=0.3"; without them it is as recorded. */
+IMTET_API imtet_status imtet_motion_read(const char *path, const char *const settings[], imtet_result **out,
+                                         imtet_error *error);
+
+/* The name of number or text i = 0, 1, ...; NULL behind the last, or where result is NULL. */
+IMTET_API const char *imtet_result_name(const imtet_result *result, size_t i);
+
+/* (rows, columns) of that name; rows and columns NULL: not wanted. */
+IMTET_API imtet_status imtet_result_numbers(const imtet_result *result, const char *name, const double **numbers,
+                                            size_t *rows, size_t *columns, imtet_error *error);
+IMTET_API const char *imtet_result_text(const imtet_result *result, const char *name); /* NULL: there is none */
+IMTET_API void imtet_result_free(imtet_result **result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

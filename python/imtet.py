@@ -1,0 +1,502 @@
+"""imtet: Pareto fronts by few evaluations, and the simulation of towers that collide with a core, from Python.
+
+One file over libimtet.so by ctypes; needs numpy alone. Arrays are float64; rows of X are designs, rows of F what they are
+worth, in natural signs and units. Errors of the library are ImtetError with a sentence that says what to do. Calls give
+up the lock of the interpreter, so that threads may simulate side by side, and Ctrl-C ends what is under way as soon as
+the call returns (milliseconds; a generation of a search takes some 10 ms to seconds).
+
+    import imtet
+    search = imtet.Search(lower=[0] * 6, upper=[1] * 6, objectives=2, evaluations=200)
+    while not search.done:
+        X = search.ask(8)
+        search.tell(X, search.evaluate(f, X))     # f(x) -> two numbers; an exception or None: the design failed
+    F, X = search.front()
+"""
+import concurrent.futures
+import ctypes
+import ctypes.util
+import os
+import sqlite3
+
+import numpy as np
+
+__all__ = ["Search", "Scene", "Result", "Run", "open_run", "read_motion", "version", "ImtetError"]
+
+
+class ImtetError(Exception):
+    """What the library says. `status`: MISUSED 1, BAD_DATA 2, MISSING 3, INTERNAL 5, NO_MEMORY 6, IO 7 (imtet.h)."""
+
+    def __init__(self, status, text):
+        super().__init__(text)
+        self.status = status
+
+
+# -- the library -------------------------------------------------------------------------------------------------------
+
+class _Error(ctypes.Structure):
+    _fields_ = [("status", ctypes.c_int), ("text", ctypes.c_char * 480)]
+
+
+_doubles = ctypes.POINTER(ctypes.c_double)
+_words = ctypes.POINTER(ctypes.c_char_p)
+_size, _handle = ctypes.c_size_t, ctypes.c_void_p
+
+
+class _Options(ctypes.Structure):
+    _fields_ = [("size", _size), ("variables", _size), ("objectives", _size), ("constraints", _size),
+                ("lower", _doubles), ("upper", _doubles), ("kinds", ctypes.c_char_p), ("senses", ctypes.c_char_p),
+                ("starts", _size), ("start", _doubles), ("settings", _words)]
+
+
+class _State(ctypes.Structure):
+    _fields_ = [("size", _size), ("variables", _size), ("objectives", _size), ("constraints", _size), ("told", _size),
+                ("failed", _size), ("under_way", _size), ("left", _size), ("done", ctypes.c_int),
+                ("why", ctypes.c_char_p)]
+
+
+def _library():
+    """IMTET_LIBRARY, what was built beside this file, or what is installed."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    names = [os.environ.get("IMTET_LIBRARY"), os.path.join(here, "..", "build", "release", "libimtet.so"),
+             "libimtet.so.0", "/usr/local/lib/libimtet.so.0", ctypes.util.find_library("imtet")]
+    faults = []
+    for name in filter(None, names):
+        if os.path.sep in name and not os.path.exists(name) and name != names[0]:
+            continue
+        try:
+            return ctypes.CDLL(name)
+        except OSError as fault:
+            faults.append(str(fault))
+            if name == names[0]:
+                break
+    raise ImportError("libimtet.so is not to be found (make && sudo make install, or its path in IMTET_LIBRARY): "
+                      + "; ".join(faults))
+
+
+_lib = _library()
+_lib.imtet_version.restype = ctypes.c_char_p
+_lib.imtet_result_name.restype = _lib.imtet_result_text.restype = ctypes.c_char_p
+_lib.imtet_result_name.argtypes = [_handle, _size]
+_lib.imtet_result_text.argtypes = [_handle, ctypes.c_char_p]
+_lib.imtet_search_free.restype = _lib.imtet_scene_free.restype = _lib.imtet_result_free.restype = None
+
+version = _lib.imtet_version().decode()
+
+
+def _call(name, *arguments):
+    error = _Error()
+    if getattr(_lib, name)(*arguments, ctypes.byref(error)):
+        raise ImtetError(error.status, error.text.decode(errors="replace"))
+
+
+def _pointer(array):
+    return None if array is None else array.ctypes.data_as(_doubles)
+
+
+def _list(words):
+    words = [os.fsencode(w) for w in words]
+    return (ctypes.c_char_p * (len(words) + 1))(*words, None)
+
+
+def _text(words):
+    """One word for all, or a list of them."""
+    return None if words is None else (words if isinstance(words, str) else ",".join(words)).encode()
+
+
+def _assignments(section, settings):
+    """{"population": 40, "sim.forces": "yes"} as "section.key=value"."""
+    words = {True: "on", False: "off"}
+    return [f"{key if '.' in key else section + '.' + key}={words.get(value, value) if isinstance(value, bool) else value}"
+            for key, value in settings.items()]
+
+
+def _matrix(what, values, columns):
+    """(n, columns) of float64, or ValueError with the shape that is wanted."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as fault:
+        raise ValueError(f"{what}: {fault}; wanted numbers of shape (n, {columns})") from None
+    if array.ndim == 1 and array.size == columns:
+        array = array.reshape(1, columns)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ValueError(f"{what} has shape {array.shape}, wanted (n, {columns})")
+    return array
+
+
+# -- the search --------------------------------------------------------------------------------------------------------
+
+class Search:
+    """The Pareto front of `objectives` functions of len(lower) variables, by `evaluations` designs at most.
+
+    lower, upper  (variables,) bounds
+    constraints   how many G of a design must be at most 0
+    kinds         "real", "log", "int" or "choice:steel|oak", one for all variables or a list; a choice is 0, 1, ... in X
+    senses        "min" or "max", one for all objectives or a list
+    start         (n, variables) designs to begin with
+    settings      of [search] as `imtet settings` lists them: population=40, stop_after=300, "search.surrogate"="off" ...
+
+    Same arguments and answers: the same designs to the last bit, however many are asked for at a time, in whatever order
+    they are told, saved and loaded in between or not.
+    """
+
+    def __init__(self, lower, upper, objectives, kinds=None, seed=1, evaluations=500, constraints=0, senses=None,
+                 start=None, **settings):
+        self._search = _handle()
+        lower = np.ascontiguousarray(lower, dtype=np.float64).ravel()
+        upper = np.ascontiguousarray(upper, dtype=np.float64).ravel()
+        if lower.size != upper.size:
+            raise ValueError(f"lower has {lower.size} numbers, upper {upper.size}")
+        start = None if start is None else _matrix("start", start, lower.size)
+        settings = _list(_assignments("search", {"seed": seed, "max_evals": evaluations, **settings}))
+        options = _Options(ctypes.sizeof(_Options), lower.size, objectives, constraints, _pointer(lower),
+                           _pointer(upper), _text(kinds), _text(senses), 0 if start is None else len(start),
+                           _pointer(start), settings)
+        _call("imtet_search_create", ctypes.byref(options), ctypes.byref(self._search))
+        self._open()
+
+    def _open(self):
+        state = self._look()
+        self.variables, self.objectives, self.constraints = state.variables, state.objectives, state.constraints
+        self._ids = {}
+
+    @classmethod
+    def load(cls, path):
+        """A search that `save` wrote, as it was then; designs that were asked for and not told are asked for again."""
+        self = cls.__new__(cls)
+        self._search = _handle()
+        _call("imtet_search_load", os.fsencode(path), ctypes.byref(self._search))
+        self._open()
+        return self
+
+    def save(self, path):
+        """Everything into a file, which is replaced when the new one is whole on the disk: a kill loses nothing."""
+        _call("imtet_search_save", self._search, os.fsencode(path))
+
+    def __del__(self):
+        if getattr(self, "_search", None):
+            _lib.imtet_search_free(ctypes.byref(self._search))
+
+    def _look(self):
+        state = _State(ctypes.sizeof(_State))
+        _call("imtet_search_look", self._search, ctypes.byref(state))
+        return state
+
+    @property
+    def done(self):
+        """True: nothing more will be asked for."""
+        return bool(self._look().done)
+
+    @property
+    def state(self):
+        """Counts: told, failed, under_way (asked for and not told), left (of evaluations), done, and why."""
+        s = self._look()
+        return {"told": s.told, "failed": s.failed, "under_way": s.under_way, "left": s.left, "done": bool(s.done),
+                "why": s.why.decode()}
+
+    def ask(self, n=1):
+        """X (m, variables), m <= n: designs nobody has asked for. m = 0 where the search is done, or waits for answers:
+        it goes on when all of a generation are told."""
+        if n < 0:
+            raise ValueError(f"ask for {n} designs")
+        n = min(int(n), 1 << 20)
+        X, ids, found = np.empty((n, self.variables)), (ctypes.c_long * max(n, 1))(), _size()
+        _call("imtet_search_ask", self._search, n, ids, _pointer(X), ctypes.byref(found))
+        X = X[:found.value]
+        self._ids.update((x.tobytes(), ids[i]) for i, x in enumerate(X))
+        return X.copy()
+
+    def tell(self, X, Y, G=None):
+        """What designs are worth. X (n, variables) as asked for, in any order; Y: n rows of `objectives` numbers, where
+        a row is None or an exception the design failed; with constraints a row is a pair (f, g), or G (n, constraints)
+        has their values. Refused as a whole where a shape is wrong or a number is not finite."""
+        X = _matrix("X", X, self.variables)
+        Y = list(Y)
+        if len(Y) != len(X) or (G is not None and len(G) != len(X)):
+            raise ValueError(f"X has {len(X)} rows, Y {len(Y)}" + ("" if G is None else f", G {len(G)}"))
+        keys = [x.tobytes() for x in X]
+        for i, key in enumerate(keys):
+            if key not in self._ids:
+                raise ValueError(f"row {i} of X was not asked for, or is told already")
+        F, H = np.zeros((len(X), self.objectives)), np.zeros((len(X), self.constraints))
+        failed = (ctypes.c_char_p * max(len(X), 1))()
+        for i, y in enumerate(Y):
+            if y is None or isinstance(y, BaseException):
+                failed[i] = _reason(y).encode(errors="replace")
+                continue
+            f, g = (y, G[i] if G is not None else ()) if not self._is_pair(y) else y
+            F[i] = self._row("Y", i, f, self.objectives)
+            H[i] = self._row("G", i, g, self.constraints)
+        ids = (ctypes.c_long * max(len(X), 1))(*(self._ids[k] for k in keys))
+        _call("imtet_search_tell", self._search, len(X), ids, _pointer(F), _pointer(H), failed)
+        for key in keys:
+            del self._ids[key]
+
+    def _is_pair(self, y):
+        return self.constraints > 0 and isinstance(y, tuple) and len(y) == 2 and np.ndim(y[0]) == 1
+
+    @staticmethod
+    def _row(what, i, values, n):
+        values = np.asarray(values, dtype=np.float64)
+        if values.shape != (n,) and not (n == 1 and values.shape == ()):
+            raise ValueError(f"row {i} of {what} has shape {values.shape}, wanted ({n},)")
+        return values
+
+    def evaluate(self, f, X, threads=1):
+        """[f(x) for x of X], for tell. Where f raises, returns None, or numbers that are not finite, the design failed;
+        the others go on. threads: so many calls at a time, which helps where f gives up the lock of the interpreter."""
+        def answer(x):
+            try:
+                y = f(x)
+                if y is None:
+                    return None
+                parts = y if self._is_pair(y) else (y,)
+                finite = all(np.all(np.isfinite(np.asarray(part, dtype=np.float64))) for part in parts)
+                return y if finite else ArithmeticError("the answer is not finite")
+            except Exception as fault:  # of this design alone
+                return fault
+        if threads < 2:
+            return [answer(x) for x in X]
+        with concurrent.futures.ThreadPoolExecutor(threads) as pool:
+            return list(pool.map(answer, X))
+
+    def _designs(self, which):
+        found = _size()
+        _call("imtet_search_designs", self._search, which, 0, None, None, None, None, ctypes.byref(found))
+        n = found.value
+        ids, X = (ctypes.c_long * max(n, 1))(), np.empty((n, self.variables))
+        F, G = np.empty((n, self.objectives)), np.empty((n, self.constraints))
+        _call("imtet_search_designs", self._search, which, n, ids, _pointer(X), _pointer(F), _pointer(G),
+              ctypes.byref(found))
+        return F, X, G
+
+    def front(self):
+        """F (n, objectives), X (n, variables): the designs that keep all constraints and are dominated by no other."""
+        return self._designs(0)[:2]
+
+    def told(self):
+        """F, X, G of all designs told, in the order of asking; F and G are NaN where a design failed."""
+        return self._designs(1)
+
+
+def _reason(fault):
+    return "None was answered" if fault is None else f"{type(fault).__name__}: {fault}"
+
+
+# -- the simulator -----------------------------------------------------------------------------------------------------
+
+class Result:
+    """Named numbers, arrays and texts of the library, as attributes: r.j1_m, r.peak_drift_m, r.outcome. `names` lists
+    them; units stand at the ends of the names. One number is a float, a column an array (n,), a table (rows, columns)."""
+
+    def __init__(self, handle, scene=None, question=None):
+        self.names, self._scene, self._question = [], scene, question
+        numbers, rows, columns = _doubles(), _size(), _size()
+        try:
+            for name in iter(lambda: _lib.imtet_result_name(handle, len(self.names)), None):
+                text = _lib.imtet_result_text(handle, name)
+                self.names.append(name.decode())
+                if text is not None:
+                    setattr(self, self.names[-1], text.decode(errors="replace"))
+                    continue
+                _call("imtet_result_numbers", handle, name, ctypes.byref(numbers), ctypes.byref(rows),
+                      ctypes.byref(columns))
+                n, m = rows.value, columns.value
+                array = np.ctypeslib.as_array(numbers, (n, m)).copy() if n * m > 0 else np.empty((n, m))
+                setattr(self, self.names[-1], array if m > 1 else float(array[0, 0]) if n == 1 else array[:, 0])
+        finally:
+            _lib.imtet_result_free(ctypes.byref(handle))
+
+    def __getitem__(self, name):
+        return getattr(self, name)
+
+    def __repr__(self):
+        return "Result(" + ", ".join(f"{n}={getattr(self, n):.6g}" for n in self.names
+                                     if isinstance(getattr(self, n), float) and not np.isnan(getattr(self, n))) + ")"
+
+    def history(self, every=0.0):
+        """The same response over time, simulated once more: a Result of t_s (n,), floor_m, accel_g, core_m, contact_n
+        (n, floors) and energies. every: seconds between rows at most; 0: the step of the motion."""
+        if self._scene is None:
+            raise ValueError("this result is no response")
+        kind, x = self._question
+        return self._scene._ask("imtet_scene_history", kind, _pointer(x), 0 if x is None else x.size,
+                                ctypes.c_double(every))
+
+
+class Scene:
+    """A tower, the core inside it and a ground motion, of a settings file (None: the defaults) and settings by name:
+
+        Scene("configs/kobe.ini", record="KOBE.AT2", **{"sim.forces": "yes"})
+
+    record and keys without a section are those of [motion]: record, unit, pga_g, stretch ... `imtet settings` has all.
+    variables, lower, upper (n,): what a design x is and the box of a search; objectives, senses; floors. Threads may
+    simulate on one scene at once.
+    """
+
+    def __init__(self, path=None, settings=(), **changes):
+        self._scene = _handle()
+        changes = {k: os.path.abspath(v) if k in ("record", "motion.record") and os.path.exists(v) else v
+                   for k, v in changes.items()}
+        _call("imtet_scene_open", None if path is None else os.fsencode(path),
+              _list([*settings, *_assignments("motion", changes)]), ctypes.byref(self._scene))
+        about = self._ask("imtet_scene_describe")
+        self.variables, self.objectives = about.variables.split(","), about.objectives.split(",")
+        self.senses, self.floors, self.record = about.senses.split(","), int(about.floors), about.record
+        self.lower, self.upper = np.atleast_1d(about.lower), np.atleast_1d(about.upper)
+        self.building_hz = np.atleast_1d(about.building_hz)
+
+    def __del__(self):
+        if getattr(self, "_scene", None):
+            _lib.imtet_scene_free(ctypes.byref(self._scene))
+
+    def _ask(self, function, *arguments, question=None):
+        handle = _handle()
+        _call(function, self._scene, *arguments, ctypes.byref(handle))
+        return Result(handle, self if question else None, question)
+
+    def design(self, gaps=None, thickness=None, **others):
+        """x (n,) of gaps [m] (one number for all, or one of each), thickness [m] (one number, or that at the foot and at
+        the top), and further variables by their names: side_m=9."""
+        given = {name: float(value) for name, value in others.items()}
+        for what, values, start in (("gaps", gaps, "gap_"), ("thickness", thickness, "t_")):
+            names = [n for n in self.variables if n.startswith(start)]
+            if values is not None:
+                try:
+                    given.update(zip(names, np.broadcast_to(np.asarray(values, dtype=np.float64), (len(names),))))
+                except ValueError:
+                    raise ValueError(f"{what}: {np.size(values)} numbers, wanted 1 or {len(names)}") from None
+        missing = [n for n in self.variables if n not in given]
+        unknown = [n for n in given if n not in self.variables]
+        if missing or unknown:
+            raise ValueError(f"{'missing' if missing else 'no variable of this scene'}: "
+                             f"{', '.join((missing or unknown)[:5])}; it has {', '.join(self.variables)}")
+        return np.array([given[n] for n in self.variables])
+
+    def simulate(self, x=None, *, gaps=None, thickness=None, kind="impacts", **others):
+        """The Result of a design x (n,), or of gaps=, thickness= as `design` has them: j1_m, j2_m, j3_g, ..., per floor
+        peak_displacement_m, peak_drift_m, peak_acceleration_g; outcome is "ok", or the numbers are not to be used.
+        kind: "impacts", "alone" (the building without a core) or "rigid" (floors and core rigidly connected)."""
+        kinds = {"impacts": 0, "alone": 1, "rigid": 2}
+        if kind not in kinds:
+            raise ValueError(f"kind {kind!r} is none of {', '.join(kinds)}")
+        if x is None and kind != "alone":
+            x = self.design(gaps, thickness, **others)
+        x = None if x is None else np.ascontiguousarray(x, dtype=np.float64).ravel()
+        return self._ask("imtet_scene_simulate", kinds[kind], _pointer(x), 0 if x is None else x.size,
+                         question=(kinds[kind], x))
+
+    def evaluate(self, x):
+        """The objectives of the scene (len(objectives),), for Search.evaluate; raises where the simulation fails."""
+        r = self.simulate(x)
+        if r.outcome != "ok":
+            raise ArithmeticError(r.reason)
+        return [r[name] for name in self.objectives]
+
+
+def read_motion(path, **settings):
+    """dt [s], acceleration (n,) [m/s2] and a dict of name, format, channel, processed, warning of a record in any format
+    that the program reads, or builtin:NAME. settings of [motion]: unit="g", channel=2, pga_g=0.3; as recorded without."""
+    handle = _handle()
+    _call("imtet_motion_read", os.fsencode(path), _list(_assignments("motion", settings)), ctypes.byref(handle))
+    r = Result(handle)
+    meta = {name: r[name] for name in r.names if isinstance(r[name], str)}
+    return r.dt_s, np.atleast_1d(r.acceleration), meta
+
+
+# -- runs --------------------------------------------------------------------------------------------------------------
+
+_MORE_IS_BETTER = {"ed5_10_pct", "edcs_pct", "ed_devices_pct"}  # of a tower's measures
+
+
+class Run:
+    """A run of `imtet optimize`, read from its run.sqlite; it may be under way.
+
+    designs  record array of every evaluated design: id, generation, kind, outcome, variables, objectives, what else was
+             measured; of designs that the study has named the values at finer steps, as everywhere in the program
+    front    those on the front, as in front.csv
+    settings dict of "section.key" to its text
+    """
+
+    def __init__(self, path):
+        name = os.path.join(path, "run.sqlite")
+        if not os.path.exists(name):
+            raise FileNotFoundError(f"{path}: no run is there (run.sqlite)")
+        db = sqlite3.connect(f"file:{os.path.abspath(name)}?mode=ro", uri=True)
+        try:
+            self._read(db)
+        finally:
+            db.close()
+        self._scene = None
+
+    def _read(self, db):
+        text, n_var = db.execute("SELECT settings, n_var FROM run").fetchone()
+        self.settings = _read_settings(text)
+        columns = [row[1] for row in db.execute("PRAGMA table_info(evaluation)")]
+        finer = [row[1] for row in db.execute("PRAGMA table_info(finer)")]
+        numbers = columns[columns.index("digest") + 1:]
+        self.variables = numbers[:n_var]
+        self.objectives = [n for n in numbers[n_var:] if n + "_sd" in finer]
+        better = {n: f'COALESCE(f."{n}", e."{n}")' for n in numbers if n in finer and n not in self.variables}
+        chosen = ", ".join([better.get(n, f'e."{n}"') for n in numbers])
+        rows = db.execute(f"SELECT e.id, e.generation, e.kind, e.outcome, COALESCE(f.violation, e.violation), {chosen} "
+                          "FROM evaluation e LEFT JOIN finer f ON f.id = e.id WHERE e.kind IS NOT NULL "
+                          "ORDER BY e.kind = 'polished', e.id").fetchall()
+        named = db.execute("SELECT COUNT(*) FROM finer").fetchone()[0] > 0
+        marks = {row[0] for row in db.execute("SELECT evaluation FROM front" + ("" if named else " WHERE left IS NULL"))}
+        kinds = [("id", np.int64), ("generation", np.int64), ("kind", "U12"), ("outcome", "U16"),
+                 ("violation", np.float64)] + [(n, np.float64) for n in numbers]
+        table = np.array([tuple(np.nan if v is None else v for v in row) for row in rows], dtype=kinds)
+        self.designs = table.view(np.recarray)
+        self._marks = marks
+
+    def _sense(self, k, name):
+        if self.settings["problem.kind"] == "tower":
+            return -1.0 if name in _MORE_IS_BETTER else 1.0
+        words = [w.strip() for w in self.settings["problem.senses"].split(",")]
+        return -1.0 if words[k if len(words) > 1 else 0] == "max" else 1.0
+
+    @property
+    def front(self):
+        """Record array of the designs on the front, by ascending ids."""
+        d = self.designs
+        if self.settings["problem.noisy"] == "yes" or float(self.settings.get("problem.noise", 0)) > 0:
+            raise NotImplementedError("of a noisy problem the front has means of evaluations: read front.csv")
+        with np.errstate(invalid="ignore"):
+            wanted = (d.outcome == "ok") & ~(d.violation > 0)
+        wanted &= np.array([i in self._marks for i in d.id], dtype=bool) | (d.kind == "polished")
+        d = d[wanted]
+        F = np.column_stack([self._sense(k, n) * d[n] for k, n in enumerate(self.objectives)]) if len(d) else None
+        keep = [not np.any(np.all(F <= f, axis=1) & np.any(F < f, axis=1)) for f in F] if len(d) else []
+        return d[np.array(keep, dtype=bool)]
+
+    def design(self, number):
+        """Row of the design of that id."""
+        rows = self.designs[self.designs.id == number]
+        if len(rows) == 0:
+            raise KeyError(f"no design has the id {number}")
+        return rows[0]
+
+    def simulate(self, number):
+        """The Result of a design of a tower by its id, simulated again as the run simulates."""
+        if self._scene is None:
+            if self.settings["problem.kind"] != "tower":
+                raise ValueError("the problem of this run is no tower: `imtet simulate` asks its worker")
+            self._scene = Scene(None, [f"{k}={v}" for k, v in self.settings.items()])
+        row = self.design(number)
+        return self._scene.simulate(np.array([row[n] for n in self.variables]))
+
+
+def _read_settings(text):
+    found, section = {}, ""
+    for line in text.splitlines():
+        if line.startswith("["):
+            section = line[1:line.index("]")]
+        elif "=" in line and not line.startswith(";"):
+            key, value = line.split("=", 1)
+            found[f"{section}.{key.strip()}"] = value.strip()
+    return found
+
+
+def open_run(path):
+    """The Run of a folder that `imtet optimize` made."""
+    return Run(path)

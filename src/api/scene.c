@@ -1,0 +1,375 @@
+#include <pthread.h>
+
+#include "api/named_values.h"
+#include "base/linalg.h"
+#include "base/units.h"
+#include "evaluate/tower.h"
+#include "motion/motion_scale.h"
+#include "settings/settings.h"
+#include "sim/sample_energy.h"
+
+/* A tower of one worker for every simulation that is under way at once; they are opened when they are needed. */
+struct imtet_scene {
+    pthread_mutex_t lock;
+    Settings settings;
+    size_t n_idle, room;
+    Problem *idle; /* (n_idle) */
+};
+
+/* -- towers -------------------------------------------------------------------------------------------------------- */
+
+static Status open_tower(const imtet_scene *s, Problem *p, Err *err)
+{
+    const int threads = linalg_threads(1);
+    const Status status = tower_open(p, &s->settings, TOWER_SINGLE, 1, err);
+    linalg_threads(threads);
+    return status;
+}
+
+static Status take_tower(imtet_scene *s, Problem *p, Err *err)
+{
+    Status status = STATUS_OK;
+    pthread_mutex_lock(&s->lock);
+    if (s->n_idle > 0)
+        *p = s->idle[--s->n_idle];
+    else
+        status = open_tower(s, p, err);
+    pthread_mutex_unlock(&s->lock);
+    return status;
+}
+
+/* Kept for the next one; closed where there is no memory for it. */
+static void give_back(imtet_scene *s, Problem *p)
+{
+    pthread_mutex_lock(&s->lock);
+    if (s->n_idle == s->room) {
+        Problem *wider = realloc(s->idle, (s->room + 8) * sizeof *wider);
+        s->idle = wider ? wider : s->idle;
+        s->room += wider ? 8 : 0;
+    }
+    if (s->n_idle < s->room)
+        s->idle[s->n_idle++] = *p;
+    else
+        problem_close(p);
+    pthread_mutex_unlock(&s->lock);
+}
+
+static Status read_settings(Settings *s, const char *path, const char *const list[], Err *err)
+{
+    int n_faults;
+    settings_defaults(s);
+    if (path)
+        TRY(settings_read(s, path, NULL, &n_faults, err));
+    TRY(api_settings(s, list, err));
+    return settings_check(s, err);
+}
+
+static Status open_scene(const char *path, const char *const list[], imtet_scene **out, Err *err)
+{
+    imtet_scene *s;
+    Problem first;
+    if (!out)
+        return misused(err, "imtet_scene_open: out is NULL");
+    *out = NULL;
+    TRY_ROOM(s, 1, "a scene", err);
+    pthread_mutex_init(&s->lock, NULL);
+    Status status = read_settings(&s->settings, path, list, err);
+    if (status == STATUS_OK)
+        status = take_tower(s, &first, err);
+    if (status == STATUS_OK) {
+        give_back(s, &first);
+        *out = s;
+    } else {
+        imtet_scene_free(&s);
+    }
+    return status;
+}
+
+imtet_status imtet_scene_open(const char *path, const char *const settings[], imtet_scene **out, imtet_error *error)
+{
+    Err err = {0};
+    return api_status(open_scene(path, settings, out, &err), &err, error);
+}
+
+void imtet_scene_free(imtet_scene **scene)
+{
+    imtet_scene *s = scene ? *scene : NULL;
+    if (!s)
+        return;
+    for (size_t i = 0; i < s->n_idle; i++)
+        problem_close(&s->idle[i]);
+    pthread_mutex_destroy(&s->lock);
+    free(s->idle);
+    free(s);
+    *scene = NULL;
+}
+
+/* -- what is asked of one tower, into a result --------------------------------------------------------------------- */
+
+typedef struct {
+    imtet_scene_kind asked;
+    const double *x;
+    size_t n;
+    double every_s;
+    SceneKind kind;
+    imtet_result *result;
+} Question;
+
+typedef Status (*AnswerFn)(const Problem *p, const Question *q, Err *err);
+
+static Status check_kind(Question *q, const SimOptions *o, Err *err)
+{
+    static const SceneKind KINDS[] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID};
+    if ((unsigned)q->asked >= N_OF(KINDS))
+        return misused(err, "kind: %d is none of IMTET_IMPACTS, IMTET_ALONE, IMTET_RIGID", (int)q->asked);
+    q->kind = KINDS[q->asked];
+    if (o->engine != ENGINE_FAST && (q->kind == SCENE_RIGID || q->every_s >= 0))
+        return misused(err, "IMTET_RIGID and histories are of sim.engine = fast alone");
+    return q->every_s <= 0 || (q->every_s >= 1e-5 && q->every_s <= 1e6)
+               ? STATUS_OK
+               : misused(err, "every_s: %g is not between 1e-5 and 1e6 s, and not 0", q->every_s);
+}
+
+static Status check_design(const DesignSpace *space, const Question *q, Err *err)
+{
+    const size_t n_var = (size_t)space->n_var;
+    if (q->kind == SCENE_NO_CORE)
+        return STATUS_OK;
+    if (!q->x || q->n != n_var)
+        return misused(err, "x: has %zu numbers; a design of this scene has %zu", q->x ? q->n : 0, n_var);
+    TRY(api_check_finite("x", n_var, q->x, "give finite ones", err));
+    for (size_t j = 0; j < n_var; j++)
+        TRY(design_check(space, (int)j, q->x[j], "x", err));
+    return STATUS_OK;
+}
+
+static Status answer(imtet_scene *s, AnswerFn fn, Question *q, imtet_result **out, Err *err)
+{
+    Problem p;
+    if (!s || !out)
+        return misused(err, s ? "out is NULL" : "the scene is NULL: not opened, or freed");
+    TRY(check_kind(q, &s->settings.sim, err));
+    TRY(take_tower(s, &p, err));
+    Status status = check_design(tower_design(tower_of(&p)), q, err);
+    if (status == STATUS_OK)
+        status = result_create(out, err);
+    if (status == STATUS_OK) {
+        q->result = *out;
+        status = result_finish(out, fn(&p, q, err), err);
+    }
+    give_back(s, &p);
+    return status;
+}
+
+static imtet_status ask(imtet_scene *s, AnswerFn fn, Question q, imtet_result **out, imtet_error *error)
+{
+    Err err = {0};
+    if (out)
+        *out = NULL;
+    return api_status(answer(s, fn, &q, out, &err), &err, error);
+}
+
+/* -- the scene ----------------------------------------------------------------------------------------------------- */
+
+typedef void (*NameFn)(const Tower *t, int k, char name[TABLE_NAME_MAX]);
+
+static void variable(const Tower *t, int j, char name[TABLE_NAME_MAX])
+{
+    design_variable_name(tower_design(t), j, name);
+}
+
+static void objective(const Tower *t, int k, char name[TABLE_NAME_MAX])
+{
+    snprintf(name, TABLE_NAME_MAX, "%s", measures_name(tower_measures(t), tower_measures(t)->of[k]));
+}
+
+static void sense(const Tower *t, int k, char name[TABLE_NAME_MAX])
+{
+    snprintf(name, TABLE_NAME_MAX, "%s", measure(tower_measures(t)->of[k])->sense > 0 ? "min" : "max");
+}
+
+/* A comma list. */
+static Status add_names(imtet_result *r, const char *what, const Tower *t, int n, NameFn name_of, Err *err)
+{
+    char name[TABLE_NAME_MAX], *names, *end;
+    TRY_ROOM(names, (size_t)n * TABLE_NAME_MAX + 1, "names", err);
+    end = names;
+    for (int k = 0; k < n; k++) {
+        name_of(t, k, name);
+        end += sprintf(end, k ? ",%s" : "%s", name);
+    }
+    result_text(r, what, names);
+    free(names);
+    return STATUS_OK;
+}
+
+static Status describe(const Problem *p, const Question *q, Err *err)
+{
+    const Tower *t = tower_of(p);
+    const int n_floors = tower_n_floors(t), n_obj = (int)p->n_obj;
+    double building[FLOORS_MAX], core[FLOORS_MAX], joined[FLOORS_MAX], mass;
+    TRY(scene_frequencies(tower_record(t, 0)->scene, p->upper, building, core, joined, &mass, err));
+    result_numbers(q->result, "floors", 1, (double[]){n_floors});
+    result_numbers(q->result, "lower", p->n_var, p->lower);
+    result_numbers(q->result, "upper", p->n_var, p->upper);
+    result_numbers(q->result, "building_hz", (size_t)n_floors, building);
+    result_text(q->result, "record", tower_record(t, 0)->motion.name);
+    TRY(add_names(q->result, "variables", t, (int)p->n_var, variable, err));
+    TRY(add_names(q->result, "objectives", t, n_obj, objective, err));
+    return add_names(q->result, "senses", t, n_obj, sense, err);
+}
+
+imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error)
+{
+    return ask(scene, describe, (Question){.asked = IMTET_ALONE, .every_s = -1}, out, error);
+}
+
+/* -- one response -------------------------------------------------------------------------------------------------- */
+
+static Status simulate(const Problem *p, const Question *q, Err *err)
+{
+    SimResult s;
+    imtet_result *r = q->result;
+    TRY(tower_simulate(p, 1, &(SimTask){.kind = q->kind, .x = q->x}, &s, err));
+    const size_t n = (size_t)s.n_floors;
+    for (int k = 0; k < MEASURES_LISTED; k++)
+        result_numbers(r, measure(k)->name, 1, (double[]){measure_value(&s, k)});
+    result_numbers(r, "peak_displacement_m", n, s.peak_displacement_m);
+    result_numbers(r, "peak_drift_m", n, s.peak_drift_m);
+    result_numbers(r, "peak_acceleration_g", n, s.peak_acceleration_g);
+    result_numbers(r, "floor_drift_ratio", n, s.drift_ratio);
+    result_numbers(r, "mode_share_pct", (size_t)s.n_modes, s.mode_share_pct);
+    result_text(r, "outcome", outcome_word(measure_outcome(s.outcome)));
+    result_text(r, "reason", s.reason);
+    return STATUS_OK;
+}
+
+imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
+                                  imtet_result **out, imtet_error *error)
+{
+    return ask(scene, simulate, (Question){.asked = kind, .x = x, .n = n, .every_s = -1}, out, error);
+}
+
+/* -- over time ----------------------------------------------------------------------------------------------------- */
+
+/* Rows of sample_row as they come. */
+typedef struct {
+    const SimWorker *worker;
+    size_t n, room, n_floors, width;
+    double *rows; /* (n, width) */
+    int lacks_memory;
+} Track;
+
+static void note(const SimSample *s, void *user)
+{
+    Track *t = user;
+    if (s->t == 0)
+        t->n = 0; /* a run is repeated with shorter steps */
+    if (t->n == t->room) {
+        const size_t room = 2 * t->room + 1024;
+        double *wider = realloc(t->rows, room * t->width * sizeof *wider);
+        t->lacks_memory |= !wider;
+        if (!wider)
+            return;
+        t->rows = wider;
+        t->room = room;
+    }
+    sample_row(t->worker, s, t->n_floors, t->rows + t->n++ * t->width);
+}
+
+/* The next n columns of the rows. */
+static size_t add_columns(imtet_result *r, const Track *t, const char *name, size_t first, size_t n)
+{
+    double *own = result_table(r, name, t->n, n);
+    for (size_t i = 0; own && i < t->n; i++)
+        memcpy(own + i * n, t->rows + i * t->width + first, n * sizeof *own);
+    return first + n;
+}
+
+static void add_history(imtet_result *r, const Track *t)
+{
+    static const char *const FLOORS[SAMPLE_PARTS] = {"floor_m", "floor_m_s", "drift_m",  "accel_g",
+                                                     "core_m",  "core_m_s",  "contact_n"};
+    static const char *const ENERGIES[N_ENERGIES] = {
+        "kinetic_j", "strain_j", "damped_building_j", "core_j", "damped_core_j", "contacts_j", "input_j"};
+    size_t at = add_columns(r, t, "ground_g", add_columns(r, t, "t_s", 0, 1), 1);
+    for (size_t k = 0; k < SAMPLE_PARTS; k++)
+        at = add_columns(r, t, FLOORS[k], at, t->n_floors);
+    for (size_t k = 0; k < N_ENERGIES; k++)
+        at = add_columns(r, t, ENERGIES[k], at, 1);
+}
+
+static Status follow(const Scene *scene, const Question *q, Track *t, Err *err)
+{
+    SimWorker *worker;
+    SimResult s;
+    TRY(sim_worker_create(&worker, scene, err));
+    t->worker = worker;
+    sim_worker_sample(worker, q->every_s, note, t);
+    const Status status = sim_run(worker, q->kind, q->x, &s, err);
+    sim_worker_free(worker);
+    if (status != STATUS_OK || t->lacks_memory)
+        return status == STATUS_OK ? fail_memory(err, t->n, "rows of a history") : status;
+    add_history(q->result, t);
+    result_text(q->result, "outcome", outcome_word(measure_outcome(s.outcome)));
+    return STATUS_OK;
+}
+
+static Status history(const Problem *p, const Question *q, Err *err)
+{
+    Track t = {.n_floors = (size_t)tower_n_floors(tower_of(p))};
+    t.width = SAMPLE_FIXED + SAMPLE_PARTS * t.n_floors;
+    const Status status = follow(tower_record(tower_of(p), 0)->scene, q, &t, err);
+    free(t.rows);
+    return status;
+}
+
+imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n, double every_s,
+                                 imtet_result **out, imtet_error *error)
+{
+    const double every = every_s >= 0 ? every_s : NAN;
+    return ask(scene, history, (Question){.asked = kind, .x = x, .n = n, .every_s = every}, out, error);
+}
+
+/* -- a record ------------------------------------------------------------------------------------------------------ */
+
+static void add_motion(imtet_result *r, const Motion *m)
+{
+    result_numbers(r, "acceleration", m->n, m->accel);
+    result_numbers(r, "dt_s", 1, &m->dt_s);
+    result_text(r, "name", m->name);
+    result_text(r, "format", m->format);
+    result_text(r, "channel", m->channel);
+    result_text(r, "processed", m->processed);
+    result_text(r, "warning", m->warning);
+}
+
+static Status read_motion(const char *path, const char *const list[], imtet_result **out, Err *err)
+{
+    Settings s;
+    Motion m;
+    if (!path || !out)
+        return misused(err, "imtet_motion_read: %s is NULL", out ? "path" : "out");
+    settings_defaults(&s);
+    TRY(option_put_path(s.motion.record, path, err));
+    TRY(api_settings(&s, list, err));
+    TRY(settings_check(&s, err));
+    TRY(motion_open(&m, &s.motion, err));
+    Status status = motion_scale(&m, &s.motion, err);
+    if (status == STATUS_OK)
+        status = result_create(out, err);
+    if (status == STATUS_OK) {
+        add_motion(*out, &m);
+        status = result_finish(out, STATUS_OK, err);
+    }
+    motion_free(&m);
+    return status;
+}
+
+imtet_status imtet_motion_read(const char *path, const char *const settings[], imtet_result **out, imtet_error *error)
+{
+    Err err = {0};
+    if (out)
+        *out = NULL;
+    return api_status(read_motion(path, settings, out, &err), &err, error);
+}

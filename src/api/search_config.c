@@ -1,0 +1,24 @@
+#include "api/search_config.h"
+
+#include "settings/settings.h"
+
+SearchConfig search_config_of(const Settings *s)
+{
+    const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
+    return (SearchConfig){
+        .seed = (uint32_t)s->search.seed,
+        .population = s->search.population,
+        .initial = initial,
+        .generations = s->search.generations,
+        .max_evals = s->search.max_evals,
+        .surrogate_max = SEARCH_CENTRES,
+        .surrogate = s->search.surrogate,
+        .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
+        .asynchronous = s->search.asynchronous == SWITCH_ON,
+        .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
+        .stop_after = s->search.stop_after,
+        .nondominated_share = s->search.nondominated_share,
+        .replicate_share = s->search.replicate_share,
+        .replicates_max = s->search.replicates_max,
+    };
+}
