@@ -73,9 +73,9 @@ TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
 STABILITY.release := fast cvode
 STABILITY.asan    := fast
 
-.PHONY: all help setup run test tests check format install clean lib-alone .FORCE
+.PHONY: all help setup run test tests check format install install-library uninstall uninstall-library clean lib-alone .FORCE
 .SECONDARY:
-all: $(PROGRAM) $(SHARED) $(CORE) $(BUILD)/imtet.pc ## builds ./imtet, and libimtet in build/release
+all: $(PROGRAM) $(SHARED) $(CORE) ## builds ./imtet, and libimtet in build/release
 
 help: ## this list
 	@awk -F ' ## ' '/^[a-z-]+:.* ## / { sub(/:.*/, "", $$1); printf "  make %-16s %s\n", $$1, $$2 }' $(filter-out %.d,$(MAKEFILE_LIST))
@@ -112,9 +112,6 @@ $(SHARED): $(CORE_OBJ) include/imtet.map
 	    -o $@ $(CORE_OBJ) $(CORE_LIBS)
 	@ln -sf libimtet.so.$(VERSION) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libimtet.so
-
-$(BUILD)/imtet.pc: include/imtet.pc.in Makefile
-	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|-fopenmp $(CORE_LIBS)|' $< > $@
 
 # What the examples are is what a user writes: compiled with the headers alone, against the shared library.
 $(BUILD)/examples/%: examples/%.c $(SHARED) include/imtet.h include/imtet_scene.h
@@ -189,6 +186,10 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(BENCH_LIB) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
 
+ifeq ($(MODE),release)
+$(BUILD)/tests/test_library: | $(SHARED) $(CORE) $(EXAMPLES)
+endif
+
 $(BUILD)/tests/test_faults: $(BUILD)/tests/fault/nomem.so
 
 $(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
@@ -205,7 +206,7 @@ $(BUILD)/tests/test_shared: LDFLAGS += -Wl,--wrap=statfs
 # The tests that take more than some seconds, longest first; they are started first, and `make check` leaves them out.
 LONG := serve report faults store_faults objectives designs search cli histories building bumper forces damage variables \
         torture async study store stability reference linear engines window tail moved sensitivity bench replicates ida \
-        disk estimate number resume workers start shared verify problem manual
+        disk estimate number resume workers start shared verify problem manual library asking
 NAMES := $(filter $(TEST_SRC:tests/test_%.c=%) stability,$(LONG)) $(filter-out $(LONG),$(TEST_SRC:tests/test_%.c=%))
 
 # One line per job: mode, name, command.
@@ -236,11 +237,11 @@ include mk/checks.mk mk/figures.mk
 # ---- install ---------------------------------------------------------------------------------------------------------
 
 format: ## clang-format over the sources
-	clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] bench/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
+	clang-format -i $(wildcard include/*.h examples/*.c src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] bench/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
 # Manual pages are written by the program itself; completion asks it.
 SHARE := $(DESTDIR)$(PREFIX)/share
-install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/local DESTDIR=
+install: all install-library ## program, library, manual pages, bash completion, examples; PREFIX=/usr/local DESTDIR=
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
 	@if [ -e imtet_mpi ]; then install -m 755 imtet_mpi scripts/imtet-mpirun $(DESTDIR)$(PREFIX)/bin; fi
 	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(SHARE)/imtet/configs/$$f; done
@@ -250,6 +251,28 @@ install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/lo
 	@install -m 644 scripts/completion.bash $(SHARE)/bash-completion/completions/imtet
 	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/*; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
+
+# The library alone: libimtet, headers, imtet.pc and, where Python is, its module.
+INCLUDED := imtet.h imtet_scene.h
+PYTHON_DIR ?= $(PREFIX)/lib/python3/dist-packages
+install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, python/imtet.py
+	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 644 $(SHARED) $(CORE) $(DESTDIR)$(LIBDIR)
+	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libimtet.so
+	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|-fopenmp $(CORE_LIBS)|' include/imtet.pc.in \
+	    > $(DESTDIR)$(LIBDIR)/pkgconfig/imtet.pc
+	@for f in $(INCLUDED); do install -D -m 644 include/$$f $(DESTDIR)$(PREFIX)/include/$$f; done
+	@install -D -m 644 python/imtet.py $(DESTDIR)$(PYTHON_DIR)/imtet.py
+
+uninstall-library:
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,$(notdir $(SHARED)) $(SONAME) libimtet.so libimtet.a pkgconfig/imtet.pc) \
+	    $(addprefix $(DESTDIR)$(PREFIX)/include/,$(INCLUDED)) $(DESTDIR)$(PYTHON_DIR)/imtet.py
+
+uninstall: uninstall-library ## removes what install has put under PREFIX
+	rm -f $(addprefix $(DESTDIR)$(PREFIX)/bin/,imtet imtet_mpi imtet-mpirun) $(SHARE)/man/man1/imtet.1 $(SHARE)/man/man1/imtet-*.1 \
+	    $(SHARE)/bash-completion/completions/imtet
+	rm -rf $(SHARE)/imtet $(SHARE)/doc/imtet
 
 clean: ## removes build/ and ./imtet
 	rm -rf build imtet imtet_mpi

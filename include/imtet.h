@@ -90,7 +90,8 @@ typedef struct {
 IMTET_API imtet_status imtet_search_create(const imtet_search_options *options, imtet_search **out, imtet_error *error);
 
 /* Up to n designs that nobody has asked for: their ids (n), X (n, variables), and how many. *found is 0 where the
- * search is done, or waits for answers. Takes the time of a generation (some 10 ms to seconds) where one is to be made. */
+ * search is done, or waits for answers. Where one is to be made it takes the time of a
+ * generation, some 10 ms to seconds. */
 IMTET_API imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids[], double X[], size_t *found,
                                         imtet_error *error);
 

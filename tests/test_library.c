@@ -1,0 +1,339 @@
+/* The library as others see it: its simulator, its symbols, what is installed, the examples and Python. */
+#include "runs.h"
+
+#include <pthread.h>
+
+#include "base/linalg.h"
+#include "imtet_scene.h"
+
+#define LIBRARY "build/release/libimtet.so"
+
+static const char *const SIX[] = {"building.model=configs/neighbours/tower",
+                                  "core.width_m=5",
+                                  "design.gap_m=0.001,0.05",
+                                  "motion.pga_g=0.3",
+                                  "motion.stretch=1",
+                                  NULL};
+static const double DESIGN[8] = {0.003, 0.004, 0.005, 0.006, 0.007, 0.008, 0.02, 0.01};
+
+static void must(imtet_status status, const imtet_error *error)
+{
+    if (status != IMTET_OK)
+        fail_msg("%s", error->text);
+}
+
+static imtet_scene *six_floors(void)
+{
+    imtet_scene *scene;
+    imtet_error error;
+    must(imtet_scene_open("configs/quick.ini", SIX, &scene, &error), &error);
+    return scene;
+}
+
+static imtet_result *response(imtet_scene *scene, imtet_scene_kind kind)
+{
+    imtet_result *r;
+    imtet_error error;
+    must(imtet_scene_simulate(scene, kind, DESIGN, 8, &r, &error), &error);
+    return r;
+}
+
+static const double *numbers(const imtet_result *r, const char *name, size_t *rows, size_t *columns)
+{
+    const double *at;
+    imtet_error error;
+    must(imtet_result_numbers(r, name, &at, rows, columns, &error), &error);
+    return at;
+}
+
+/* -- the simulator ------------------------------------------------------------------------------------------------- */
+
+TEST(a_design_has_the_numbers_of_imtet_simulate)
+{
+    static const struct {
+        imtet_scene_kind kind;
+        const char *options;
+    } KINDS[] = {
+        {IMTET_IMPACTS, "--design @/d.csv"}, {IMTET_ALONE, "--design none"}, {IMTET_RIGID, "--design @/d.csv --rigid"}};
+    imtet_scene *scene = six_floors();
+    write_in_place("d.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
+                            "0.003,0.004,0.005,0.006,0.007,0.008,0.02,0.01\n");
+    for (size_t k = 0; k < N_OF(KINDS); k++) {
+        char command[512];
+        imtet_result *r = response(scene, KINDS[k].kind);
+        snprintf(command, sizeof command, "simulate configs/quick.ini %s " SIX_FLOORS "--csv @/table.csv",
+                 KINDS[k].options);
+        free(output_of(command));
+        char *table = read_in_place("table.csv"), *names = table, *cells = strchr(table, '\n') + 1, *name;
+        size_t known = 0;
+        cells[-1] = 0;
+        while ((name = strsep(&names, ","))) {
+            const char *cell = strsep(&cells, ",");
+            const double *own;
+            if (imtet_result_numbers(r, name, &own, NULL, NULL, NULL) != IMTET_OK || isnan(*own))
+                continue;
+            assert_close(*own, strtod(cell, NULL), 1e-12);
+            known++;
+        }
+        free(table);
+        assert_less(8, known);
+        assert_string_equal(imtet_result_text(r, "outcome"), "ok");
+        imtet_result_free(&r);
+    }
+    imtet_scene_free(&scene);
+}
+
+TEST(a_history_has_the_peaks_of_the_result_and_keeps_the_energy)
+{
+    imtet_scene *scene = six_floors();
+    imtet_result *r = response(scene, IMTET_IMPACTS), *h;
+    imtet_error error;
+    size_t n, floors;
+    must(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, 0.001, &h, &error), &error);
+    const double *t = numbers(h, "t_s", &n, NULL), *u = numbers(h, "floor_m", NULL, &floors);
+    const double *peak = numbers(r, "peak_displacement_m", NULL, NULL), *drift = numbers(h, "drift_m", NULL, NULL);
+    const double input = *numbers(r, "input_energy_j", NULL, NULL), *sum = numbers(h, "input_j", NULL, NULL);
+    static const char *const PARTS[] = {"kinetic_j", "strain_j",      "damped_building_j",
+                                        "core_j",    "damped_core_j", "contacts_j"};
+    assert_true(n > 10000 && floors == 6 && t[0] == 0);
+    for (size_t j = 0; j < floors; j++) {
+        double most = 0;
+        for (size_t i = 0; i < n; i++)
+            most = fmax(most, fabs(u[i * floors + j]));
+        assert_at_most(most, peak[j] * (1 + 1e-9));
+        assert_close(most, peak[j], 1e-3);
+    }
+    for (size_t i = 0; i < n; i += 97) {
+        double parts = 0;
+        for (size_t k = 0; k < N_OF(PARTS); k++)
+            parts += numbers(h, PARTS[k], NULL, NULL)[i];
+        assert_at_most(fabs(parts - sum[i]), 1e-6 * input);
+        assert_close(drift[i * floors + 3], u[i * floors + 3] - u[i * floors + 2], 1e-12);
+    }
+    imtet_result_free(&h);
+    imtet_result_free(&r);
+    imtet_scene_free(&scene);
+}
+
+typedef struct {
+    imtet_scene *scene;
+    double j3_g;
+} Together;
+
+static void *simulate_often(void *user)
+{
+    Together *t = user;
+    for (int i = 0; i < (SANITIZED ? 2 : 8); i++) {
+        imtet_result *r = response(t->scene, IMTET_IMPACTS);
+        t->j3_g = *numbers(r, "j3_g", NULL, NULL);
+        imtet_result_free(&r);
+    }
+    return NULL;
+}
+
+TEST(threads_simulate_on_one_scene_at_once)
+{
+    pthread_t thread[4];
+    Together t[4];
+    imtet_scene *scene = six_floors();
+    imtet_result *r = response(scene, IMTET_IMPACTS);
+    for (int i = 0; i < 4; i++) {
+        t[i] = (Together){scene, 0};
+        assert_int_equal(pthread_create(&thread[i], NULL, simulate_often, &t[i]), 0);
+    }
+    for (int i = 0; i < 4; i++) {
+        pthread_join(thread[i], NULL);
+        assert_same_number(t[i].j3_g, *numbers(r, "j3_g", NULL, NULL));
+    }
+    imtet_result_free(&r);
+    imtet_scene_free(&scene);
+}
+
+TEST(a_scene_says_what_its_designs_are)
+{
+    imtet_scene *scene = six_floors();
+    imtet_result *about;
+    imtet_error error;
+    size_t n;
+    must(imtet_scene_describe(scene, &about, &error), &error);
+    assert_string_equal(imtet_result_text(about, "variables"),
+                        "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m");
+    assert_memory_equal(imtet_result_text(about, "objectives"), "j1_m,j2_m,j3_g", 14);
+    assert_memory_equal(imtet_result_text(about, "senses"), "min,min,min", 11);
+    assert_same_number(*numbers(about, "floors", NULL, NULL), 6);
+    assert_same_number(numbers(about, "upper", &n, NULL)[0], 0.05);
+    assert_int_equal(n, 8);
+    imtet_result_free(&about);
+    imtet_scene_free(&scene);
+}
+
+TEST(a_record_is_read_as_it_is_and_scaled_on_request)
+{
+    imtet_result *r;
+    imtet_error error;
+    size_t n;
+    double peak = 0;
+    must(imtet_motion_read("builtin:sylmar-like", (const char *const[]){"motion.pga_g=0.2", NULL}, &r, &error), &error);
+    const double *a = numbers(r, "acceleration", &n, NULL);
+    for (size_t i = 0; i < n; i++)
+        peak = fmax(peak, fabs(a[i]));
+    assert_close(peak, 0.2 * 9.81, 1e-12);
+    assert_string_equal(imtet_result_text(r, "format"), "builtin");
+    imtet_result_free(&r);
+    assert_int_equal(imtet_motion_read("configs/beam.py", NULL, &r, &error), IMTET_BAD_DATA);
+    assert_null(r);
+}
+
+static void says(imtet_status status, const imtet_error *error, const char *words)
+{
+    if (status == IMTET_OK || !strstr(error->text, words))
+        fail_msg("status %d, said: %s; wanted: %s", (int)status, error->text, words);
+}
+
+TEST(what_makes_no_sense_is_named)
+{
+    imtet_scene *scene = six_floors(), *none = (imtet_scene *)(uintptr_t)1;
+    imtet_result *r, *gone = NULL;
+    imtet_error error;
+    const double *at;
+    double x[8];
+    says(imtet_scene_open("no.ini", NULL, &none, &error), &error, "no.ini");
+    assert_null(none);
+    says(imtet_scene_open(NULL, (const char *const[]){"motion.pga=1", NULL}, &none, &error), &error, "motion.pga_g?");
+    says(imtet_scene_open(NULL, (const char *const[]){"problem.kind=dtlz2", NULL}, &none, &error), &error,
+         "is no tower");
+    says(imtet_scene_simulate(scene, IMTET_IMPACTS, DESIGN, 7, &r, &error), &error,
+         "x: has 7 numbers; a design of this scene has 8");
+    says(imtet_scene_simulate(scene, IMTET_IMPACTS, NULL, 8, &r, &error), &error, "x: has 0 numbers");
+    says(imtet_scene_simulate(scene, (imtet_scene_kind)9, DESIGN, 8, &r, &error), &error, "kind: 9 is none");
+    memcpy(x, DESIGN, sizeof x);
+    x[2] = -0.01;
+    says(imtet_scene_simulate(scene, IMTET_IMPACTS, x, 8, &r, &error), &error,
+         "gap_03_m is -0.01; a gap is not negative");
+    x[2] = NAN;
+    says(imtet_scene_simulate(scene, IMTET_IMPACTS, x, 8, &r, &error), &error, "x: number 3 is nan");
+    assert_null(r);
+    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, 1e-9, &r, &error), &error, "every_s: 1e-09");
+    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, -1, &r, &error), &error, "every_s");
+    says(imtet_scene_simulate(none, IMTET_IMPACTS, x, 8, &r, &error), &error, "the scene is NULL");
+    r = response(scene, IMTET_ALONE);
+    says(imtet_result_numbers(r, "j3g", &at, NULL, NULL, &error), &error, "did you mean j3_g?");
+    says(imtet_result_numbers(r, "outcome", &at, NULL, NULL, &error), &error, "outcome is a text");
+    says(imtet_result_numbers(gone, "j3_g", &at, NULL, NULL, &error), &error, "the result is NULL");
+    assert_null(imtet_result_name(gone, 0));
+    assert_null(imtet_result_text(r, "j3_g"));
+    imtet_result_free(&r);
+    imtet_result_free(&r);
+    imtet_scene_free(&scene);
+    imtet_scene_free(&scene);
+}
+
+/* -- the files ----------------------------------------------------------------------------------------------------- */
+
+static char *shell(const char *command)
+{
+    char line[2 * PATH_MAX], out[PATH_MAX];
+    snprintf(line, sizeof line, "(%s) >%s 2>&1", command, path_of("shell", out));
+    const int status = system(line);
+    char *said = text_of(out);
+    if (status != 0)
+        fail_msg("%s\n%s", command, said);
+    return said;
+}
+
+static int is_built(void)
+{
+    return !SANITIZED && access(LIBRARY, R_OK) == 0;
+}
+
+TEST(the_shared_library_shows_the_functions_of_its_headers_and_nothing_else)
+{
+    if (!is_built())
+        skip();
+    char *shown = shell("nm -D --defined-only " LIBRARY " | awk '$2 == \"T\" { sub(/@.*/, \"\", $3); print $3 } "
+                        "$2 != \"T\" && $2 != \"A\" { print \"other:\", $3 }' | sort");
+    char *wanted =
+        shell("sed -n 's/^IMTET_API .*[ *]\\(imtet_[a-z_]*\\)(.*/\\1/p' include/imtet.h include/imtet_scene.h | sort");
+    assert_string_equal(shown, wanted);
+    size_t n = 0;
+    for (const char *c = wanted; *c; c++)
+        n += *c == '\n';
+    assert_at_most(n, 25);
+    free(shown);
+    free(wanted);
+    shown = shell("nm --defined-only build/release/libimtet.a | awk '$2 ~ /[ABDRTVW]/ && $3 !~ /^imtet_/ { print }'");
+    assert_string_equal(shown, "");
+    free(shown);
+}
+
+TEST(the_headers_stand_alone_in_c_and_in_cpp)
+{
+    if (!is_built())
+        skip();
+    free(shell("for h in imtet imtet_scene; do echo \"#include <$h.h>\" | cc -std=c99 -Wall -Wextra -Werror -pedantic "
+               "-Iinclude "
+               "-fsyntax-only -x c - && echo \"#include <$h.h>\" | c++ -Wall -Wextra -Werror -Iinclude -fsyntax-only "
+               "-x c++ - || exit 1; done"));
+}
+
+TEST(the_examples_run)
+{
+    if (!is_built())
+        skip();
+    char *said = shell("build/release/examples/ask_tell");
+    assert_non_null(strstr(said, "designs on the front"));
+    free(said);
+    said = shell("build/release/examples/simulate");
+    assert_non_null(strstr(said, "2001 times of 20 floors"));
+    free(said);
+    said = shell("build/release/examples/executor");
+    assert_non_null(strstr(said, "120 evaluations by 4 threads"));
+    free(said);
+}
+
+TEST(what_is_installed_compiles_and_links_by_pkg_config_and_is_gone_again)
+{
+    char command[2048];
+    if (!is_built())
+        skip();
+    snprintf(command, sizeof command,
+             "P=%s/root && make -s install-library DESTDIR=$P PREFIX=/opt && export PKG_CONFIG_SYSROOT_DIR=$P "
+             "PKG_CONFIG_LIBDIR=$P/opt/lib/pkgconfig && cc examples/ask_tell.c $(pkg-config --cflags --libs imtet) -lm "
+             "-o $P/a "
+             "&& LD_LIBRARY_PATH=$P/opt/lib $P/a && rm $P/a && make -s uninstall-library DESTDIR=$P PREFIX=/opt && "
+             "find $P -type f -o -type l",
+             place.folder);
+    char *said = shell(command);
+    assert_non_null(strstr(said, "designs on the front"));
+    assert_null(strstr(said, "root/"));
+    free(said);
+}
+
+TEST(python_does_what_its_tests_say)
+{
+    static const char *const PYTHONS[] = {"python3", "/usr/bin/python3"}; /* that of Debian has Debian's numpy */
+    char command[1024] = "";
+    size_t k = 0;
+    for (; k < N_OF(PYTHONS); k++) {
+        snprintf(command, sizeof command, "%s -c 'import numpy' 2>/dev/null", PYTHONS[k]);
+        if (system(command) == 0)
+            break;
+    }
+    if (!is_built() || k == N_OF(PYTHONS)) {
+        print_message("python3 with numpy (python3-numpy) is not here: python/imtet.py is not tested\n");
+        skip();
+    }
+    snprintf(command, sizeof command, "IMTET=$PWD/imtet %s tests/python/test_imtet.py %s", PYTHONS[k], place.folder);
+    free(shell(command));
+}
+
+static int begin(void **state)
+{
+    linalg_use(KERNELS_PINNED);
+    return prepare(state);
+}
+
+int main(void)
+{
+    return RUN_TESTS(begin, clear_place);
+}
