@@ -254,7 +254,8 @@ install: all install-library ## program, library, manual pages, bash completion,
 
 # The library alone: libimtet, headers, imtet.pc and, where Python is, its module.
 INCLUDED := imtet.h imtet_scene.h
-PYTHON_DIR ?= $(PREFIX)/lib/python3/dist-packages
+# Where the Python of Debian looks.
+PYTHON_DIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell /usr/bin/python3 -c 'import sys; print("python3.%d" % sys.version_info[1])' 2>/dev/null || echo python3))/dist-packages
 install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, python/imtet.py
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 644 $(SHARED) $(CORE) $(DESTDIR)$(LIBDIR)

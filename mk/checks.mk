@@ -1,6 +1,6 @@
 # Checks beyond the tests.
 
-.PHONY: lint deb fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+.PHONY: lint deb api-fuzz fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
         laws fresh-debian
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
@@ -78,6 +78,11 @@ laws: $(BENCH) ## rebound of the contact laws
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
 
-deb: ## build/deb/imtet_VERSION_ARCH.deb, by debhelper
+CALLS ?= 100000
+api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
+	@$(MAKE) --no-print-directory MODE=asan build/asan/tests/test_asking build/asan/imtet
+	@IMTET=$(CURDIR)/build/asan/imtet API_CALLS=$(CALLS) build/asan/tests/test_asking
+
+deb: ## packages imtet, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt
 	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)
