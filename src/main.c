@@ -53,6 +53,11 @@ static Status run_command(int argc, char *argv[], Err *err)
     return status;
 }
 
+static int is_version(const char *word)
+{
+    return strcmp(word, "--version") == 0 || strcmp(word, "-v") == 0 || strcmp(word, "version") == 0;
+}
+
 static int is_help(const char *word)
 {
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
@@ -108,7 +113,7 @@ static Status run(int argc, char *argv[], Err *err)
         return help(argc, argv, err);
     if (strcmp(argv[1], "--json") == 0 && argc == 3 && strcmp(argv[2], "--version") == 0)
         return show_json(program_description(), err);
-    if (strcmp(argv[1], "--version") == 0)
+    if (is_version(argv[1]))
         return version(argc, argv, err);
     if (strcmp(argv[1], "--man") == 0)
         return manual(argc, argv, err);

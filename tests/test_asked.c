@@ -80,8 +80,8 @@ TEST(simulate_takes_one_design_of_a_run_or_a_file_and_refuses_what_only_a_tower_
     assert_true(number(one, "f2") == 20 - 2 + 1 + 3);
     assert_string_equal(json_string_value(json_object_get(one, "x3")), "b");
     json_decref(all);
-    expect(2, "--rigid: problem.kind is no tower", "simulate @/kinds.ini --design @/mine.csv --rigid");
-    expect(65, "problem.kind: is no tower", "simulate @/kinds.ini --design none");
+    expect(2, "--rigid needs problem.kind = tower", "simulate @/kinds.ini --design @/mine.csv --rigid");
+    expect(65, "problem.kind = tower", "simulate @/kinds.ini --design none");
     write_in_place("short.csv", "x1,x2\n1,1\n");
     expect(65, "short.csv: has no column x3", "simulate @/kinds.ini --design @/short.csv");
     write_in_place("words.csv", "x1,x2,x3\n1,1,c\n");

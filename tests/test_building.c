@@ -857,7 +857,7 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
     svg = read_in_place("stick.svg");
     assert_int_equal(count(svg, "<circle class=\"n\""), 20);
     free(svg);
-    expect(66, "nowhere: No such file", "building nowhere");
+    expect(66, "nowhere: there is no such file", "building nowhere");
 }
 
 TEST(modes_have_shapes_that_are_listed)

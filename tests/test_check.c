@@ -300,6 +300,26 @@ TEST(a_squat_core_without_shear_is_noticed)
     expect_warnings("", "--set core.width_m=7");
 }
 
+TEST(every_message_about_a_setting_names_its_place_in_the_file)
+{
+    write_in_place("places.ini", "[building]\nmodel = nofolder\n[motion]\nrecord = foo.csv\n[search]\n"
+                                 "objectives = j1, j2_m\nlimits = j3<=5\n");
+    static const char *const SAID[] = {"places.ini:2:9: building.model: nofolder/K.csv: there is no folder nofolder",
+                                       "places.ini:4:10: motion.record: foo.csv: there is no such file or folder",
+                                       "places.ini:6:14: search.objectives: j1 is no result; did you mean j1_m?",
+                                       "places.ini:7:10: search.limits: j3 is no result; did you mean j3_g?",
+                                       "4 faults"};
+    for (size_t i = 0; i < N_OF(SAID); i++)
+        expect(65, SAID[i], "check @/places.ini");
+    expect(65, "places.ini:6:14: search.objectives: j1", "simulate @/places.ini --design none");
+    expect(65, "/places.ini: 3 faults", "check @/places.ini --record builtin:kobe-like");
+    expect(66, "/places.ini:2:9: building.model: nofolder",
+           "optimize @/places.ini --set search.objectives=auto "
+           "--set search.limits=none --record builtin:kobe-like");
+    expect(66, "imtet: foo.csv: there is no such file",
+           "spectrum foo.csv"); /* of no settings file: nothing is put before it */
+}
+
 TEST(faults_come_as_json_too)
 {
     Said s;

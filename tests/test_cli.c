@@ -52,6 +52,11 @@ TEST(every_command_explains_itself_with_an_example_first)
     }
     char *version = output_of("--version");
     assert_int_equal(strncmp(version, "imtet ", 6), 0);
+    char *same[] = {output_of("version"), output_of("-v")};
+    for (size_t i = 0; i < N_OF(same); i++) {
+        assert_string_equal(same[i], version);
+        free(same[i]);
+    }
     free(version);
 }
 
@@ -168,7 +173,7 @@ TEST(a_file_of_a_run_is_not_replaced_and_one_design_is_one)
     write_in_place("keeps/run.sqlite", "");
     expect(2, "which a run needs", "spectrum builtin:kobe-like --csv @/keeps/settings.ini");
     expect(2, "which a run needs", "report @/keeps --out @/keeps/front.csv");
-    expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");
+    expect(65, "problem.kind = tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");
     const double gap[2] = {0.01, 0.02}, wall[2] = {0.02, 0.02};
     write_designs("two.csv", 2, gap, wall, wall);
     expect(2, "two.csv: holds 2 designs, and one is wanted", "building configs/quick.ini --design @/two.csv");
@@ -192,6 +197,29 @@ TEST(standard_output_and_every_setting_belong_to_one)
         if (line > text && strncmp(line, "1,", 2) != 0)
             fail_msg("%.60s", line);
     free(text);
+}
+
+TEST(optimize_and_polish_answer_as_json)
+{
+    json_t *study = json_of("optimize configs/quick.ini " SIX_FLOORS
+                            "--max-evals 60 --set sim.duration_s=4 --set search.initial=30 "
+                            "--set search.population=16 --out @/spoken --json");
+    json_t *knee = json_object_get(study, "knee");
+    char design[64];
+    assert_int_equal(json_integer_value(json_object_get(study, "simulated")), 60);
+    snprintf(design, sizeof design, "simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
+             json_integer_value(json_object_get(knee, "design")));
+    json_t *alone = json_of(design);
+    assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
+    assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
+    assert_true(json_object_get(json_object_get(study, "baselines"), "links") != NULL);
+    json_t *polished = json_of("polish @/spoken --design knee --improve j2_m --evals 24 --json");
+    json_t *row = json_array_get(json_object_get(polished, "polished"), 0);
+    assert_close(number(row, "j1_m_before"), number(knee, "j1_m"), 1e-2);
+    assert_non_null(json_string_value(json_object_get(polished, "verdict")));
+    json_decref(polished);
+    json_decref(alone);
+    json_decref(study);
 }
 
 TEST(missing_inputs_end_with_66)

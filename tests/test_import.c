@@ -258,7 +258,7 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     write_in_place("model.tcl", PORTAL);
     expect(65, "building.units: an OpenSees model says none; set it to N_m_kg", "building @/model.tcl");
     expect(65, "set it to N_m_kg", "building @/model.tcl --set building.units=kN_m_kg");
-    expect(66, "nowhere.tcl: No such file", "building nowhere.tcl"); /* before it asks for units */
+    expect(66, "nowhere.tcl: there is no such file", "building nowhere.tcl"); /* before it asks for units */
     write_in_place("other.ini", "[problem]\nkind = external\ncommand = true\n");
     expect(65, "is no tower: ", "building @/other.ini");
 }

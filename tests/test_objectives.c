@@ -124,7 +124,7 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     table_free(&polished);
     free(output_of("optimize @/other"));
     char *said = output_of("optimize @/other --max-evals 34 --force-settings");
-    assert_non_null(strstr(said, "largest bending stress of the core [Pa], the less the better"));
+    assert_non_null(strstr(said, "largest bending stress of the core [Pa], lower is better"));
     free(said);
     expect(65, "search.objectives is core_stress_pa, impacts , j1_m there, now auto",
            "optimize @/tower.ini --out @/other");

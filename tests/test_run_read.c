@@ -176,7 +176,7 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
     Run run;
     Err err = {0};
     assert_int_equal(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "nothing: holds no run: run.sqlite is not there"));
+    assert_non_null(strstr(err.text, "nothing: there is no such file or folder"));
     memset(name, 'a', sizeof name);
     name[sizeof name - 1] = 0;
     assert_int_equal(run_read(&run, name, &err), STATUS_MISSING);

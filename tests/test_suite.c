@@ -160,7 +160,7 @@ TEST(what_is_wrong_in_a_suite_is_said_with_its_file_and_line)
     expect(65, "'twice' is neither channel=NAME nor factor=NUMBER", "spectrum @/odd_list.txt");
     write_in_place("empty_list.txt", "# nothing\n");
     expect(65, "empty_list.txt: names no record", "spectrum @/empty_list.txt");
-    expect(66, "list.txt: No such file", "spectrum @/none/list.txt");
+    expect(66, "list.txt: there is no folder", "spectrum @/none/list.txt");
     expect(65, "builtin:suite is a suite of motion.records",
            "simulate configs/quick.ini --design none --set motion.record=builtin:suite");
     snprintf(out, sizeof out, "spectrum builtin:suite --csv @/suite.csv");

@@ -86,7 +86,7 @@ TEST(what_has_no_full_model_is_refused)
 {
     write_design("d.csv");
     expect(2, "--design is missing", "evaluate --full-model configs/quick.ini");
-    expect(65, "building.model: appendix has nothing fuller than its floors to verify with",
+    expect(65, "building.model: appendix has no degrees of freedom besides its floors to compare with",
            "evaluate --full-model configs/quick.ini --design none --set building.model=appendix");
     expect(66, "nowhere", "evaluate --full-model nowhere --design none");
 }

@@ -39,7 +39,7 @@ Status file_read(const char *path, size_t largest, char **text, size_t *length, 
         return fail(err, STATUS_MISSING, "%s: is a named pipe, not a file; to read from a pipe name /dev/stdin", path);
     FILE *f = fopen(path, "rb");
     if (!f)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
+        return fail_missing(err, path);
     const Status status = read_stream(f, path, largest, text, length, err);
     fclose(f);
     if (status != STATUS_OK) {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdarg.h>
+#include <unistd.h>
 
 #include "base/visible.h"
 
@@ -56,6 +57,18 @@ Status status_of_errno(int why, Status otherwise)
     return why == ENOMEM ? STATUS_NO_MEMORY : otherwise;
 }
 
+Status fail_missing(Err *err, const char *path)
+{
+    const int why = errno;
+    const char *slash = strrchr(path, '/');
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 0, path);
+    if (why == ENOENT && folder[0] && access(folder, F_OK) != 0)
+        return fail(err, STATUS_MISSING, "%s: there is no folder %s", path, folder);
+    return fail(err, status_of_errno(why, STATUS_MISSING), "%s: %s", path,
+                why == ENOENT ? "there is no such file or folder" : strerror(why));
+}
+
 Status fail_errno(Err *err, const char *path, const char *what)
 {
     return fail(err, status_of_errno(errno, STATUS_IO), "%s: %s: %s", path, what, strerror(errno));
@@ -105,6 +118,8 @@ static int edit_distance(const char *a, const char *b)
     return row[n];
 }
 
+enum { BEGINNING_MIN = 2 }; /* characters that a beginning has to have */
+
 const char *nearest_word(const char *word, const char *const list[], int n)
 {
     const char *nearest = NULL;
@@ -116,8 +131,13 @@ const char *nearest_word(const char *word, const char *const list[], int n)
             nearest = list[i];
         }
     }
-    const int longest = 1 + (int)strlen(word) / 3;
-    return least <= longest ? nearest : NULL;
+    const size_t length = strlen(word);
+    if (least <= 1 + (int)length / 3)
+        return nearest;
+    for (int i = 0; i < n && length >= BEGINNING_MIN; i++)
+        if (strncmp(word, list[i], length) == 0)
+            return list[i];
+    return NULL;
 }
 
 Status fail_no_word(Err *err, Status code, const char *where, const char *word, const char *noun,

@@ -66,13 +66,18 @@ Status fail_memory(Err *err, size_t n, const char *what);
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */
 Status status_of_errno(int why, Status otherwise);
 
+/* Of an input that could not be opened, by errno: "PATH: there is no folder FOLDER", "PATH: there is no such file or
+ * folder", or the cause; STATUS_MISSING, or where memory was refused STATUS_NO_MEMORY. */
+Status fail_missing(Err *err, const char *path);
+
 /* "PATH: WHAT: CAUSE", by errno: STATUS_IO, or where memory was refused STATUS_NO_MEMORY. */
 Status fail_errno(Err *err, const char *path, const char *what);
 
 const char *status_words(Status code);
 int status_exit_code(Status code);
 
-/* The word of list[0..n) nearest to `word` by edit distance, or NULL if none is near enough to be meant. */
+/* The word of list[0..n) nearest to `word` by edit distance, else the first that begins with it; NULL: none is near
+ * enough to be meant. */
 const char *nearest_word(const char *word, const char *const list[], int n);
 
 /* "WHERE: WORD is no NOUN; did you mean ...?", or all of the list where none is near. */

@@ -149,11 +149,24 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     return outputs_check(args, err);
 }
 
+static int is_given(const void *args, const char *key)
+{
+    return args_gives(args, key);
+}
+
+void args_place(const Args *args, Err *err)
+{
+    if (args->operand)
+        settings_place(args->operand, is_given, args, err);
+}
+
 Status command_run(const Args *args, Err *err)
 {
     Run run;
-    if (args->command->run)
-        TRY(args->command->run(args, err));
+    const Status own = args->command->run ? args->command->run(args, err) : STATUS_OK;
+    if (own == STATUS_BAD_DATA || own == STATUS_MISSING)
+        args_place(args, err);
+    TRY(own);
     if (!args->command->run_of)
         return STATUS_OK;
     TRY(run_read(&run, args->operand, err));

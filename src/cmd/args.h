@@ -44,6 +44,9 @@ Status args_unknown(const char *what, const char *word, const char *const known[
  * every fault is written there and counted, else the first one ends it. */
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
+/* settings_place by the operand, but for what options have set. */
+void args_place(const Args *args, Err *err);
+
 /* Only the options, over what s holds. */
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 

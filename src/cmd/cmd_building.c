@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <sys/stat.h>
 
 #include "base/units.h"
@@ -67,8 +68,10 @@ static Status open_model(const Args *args, Model *m, Err *err)
     const int is_there = stat(name, &st) == 0;
     m->has_core = strcmp(end, ".ini") == 0 || (strcmp(end, ".tcl") != 0 && is_there && S_ISREG(st.st_mode));
     settings_defaults(&m->s);
-    if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0)
-        return fail(err, STATUS_MISSING, "%s: No such file or folder", name);
+    if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0) {
+        errno = ENOENT;
+        return fail_missing(err, name);
+    }
     if (!m->has_core)
         TRY(option_put_path(m->s.building.model, name, err));
     TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
@@ -93,10 +96,10 @@ static void print_building(const Model *m)
     double between = mass;
     for (int j = 0; j < m->b.n; j++)
         between -= building_floor_mass(&m->b, j);
-    printf("%s: %d floor%s, %.0f kg, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", mass,
+    printf("%s: %d floor%s, %.6g t, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", 1e-3 * mass,
            1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
-        printf("of it %.0f kg are between the floors\n", between);
+        printf("of it %.6g t are between the floors\n", 1e-3 * between);
     if (m->frame.n[FRAME_NODES])
         printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n[FRAME_NODES],
                m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
@@ -106,11 +109,11 @@ static void print_core(const Model *m)
 {
     const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
     if (neighbour_is_given(&m->s.core)) {
-        printf("neighbour of %.0f kg, %d floors, %s; first mode: %.4g Hz\n", m->core.mass_kg, m->core.top,
+        printf("neighbour of %.6g t, %d floors, %s; first mode: %.4g Hz\n", 1e-3 * m->core.mass_kg, m->core.top,
                m->s.core.model, m->core.omega[0] / (2 * M_PI));
         return;
     }
-    printf("core of %.0f kg", m->core.mass_kg);
+    printf("core of %.6g t", 1e-3 * m->core.mass_kg);
     if (core_section(&m->s.core) == CORE_EFFECTIVE)
         printf(" (effective section)");
     else

@@ -19,10 +19,12 @@
 #include "store/tables.h"
 #include "evaluate/adapter.h"
 #include "evaluate/device.h"
+#include "evaluate/limits.h"
 #include "evaluate/tower.h"
 #include "scene/neighbour.h"
 
 typedef struct {
+    const Args *args;
     int as_json;
     json_t *out, *faults, *warnings;
     Status fatal; /* no fault of the configuration: nothing more can be said about it */
@@ -73,12 +75,13 @@ static int names_setting(const char *text)
 /* key: of a message that names no setting. */
 static int note(Check *c, Status status, const char *key, const Err *e)
 {
-    char text[sizeof e->text + 64];
+    Err placed = *e;
     if (status == STATUS_OK)
         return 1;
-    const int is_named = names_setting(e->text);
-    snprintf(text, sizeof text, "%s%s%s", is_named ? "" : key, is_named ? "" : ": ", e->text);
-    fault(c, text);
+    if (!names_setting(e->text))
+        fail(&placed, status, "%s: %s", key, e->text);
+    args_place(c->args, &placed);
+    fault(c, placed.text);
     c->fatal = status == STATUS_NO_MEMORY ? status : c->fatal;
     return 0;
 }
@@ -400,9 +403,25 @@ static void climb(Check *c, const CheckedScene *p)
     free(ladder);
 }
 
+/* Objectives and limits by their names: a wrong one hides neither another nor what is wrong with the scene. */
+static void check_names(Check *c, const Settings *s)
+{
+    Err e = {0};
+    Schema schema = {0};
+    Limits limits;
+    MeasureOrder order;
+    Settings any = *s;
+    note(c, measures_order(&order, s->search.objectives, "none", 0, &e), "search.objectives", &e);
+    snprintf(any.search.objectives, sizeof any.search.objectives, "auto");
+    if (schema_of(&schema, &any, 0, &(Err){0}) == STATUS_OK)
+        note(c, limits_read(&limits, &schema, s->search.limits, &e), "search.limits", &e);
+    schema_free(&schema);
+}
+
 static void check_tower(const Args *args, Check *c, const Settings *s)
 {
     CheckedScene p = {.s = s};
+    check_names(c, s);
     const int building = open_building(c, &p), motion = open_motion(c, &p);
     if (building && motion && choose_design(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
         scene_json(c, &p);
@@ -454,7 +473,7 @@ static Status run(const Args *args, Err *err)
         return selftest(args_has(args, "--json"), err);
     if (!args->operand)
         return misused(err, "imtet check needs a CONFIG, or --self; for example: %s", CMD_CHECK.example);
-    Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
+    Check c = {.args = args, .as_json = args_has(args, "--json"), .out = json_object()};
     Settings s;
     c.faults = json_array();
     c.warnings = json_array();

@@ -17,7 +17,10 @@
 
 typedef struct {
     int terminal, has_line, has_warned;
+    double told_s; /* of this session, where no terminal is */
 } Telling;
+
+static const double TELL_EVERY_S = 60;
 
 /* Of standard error's terminal, less one: a line that fills the last column would wrap. */
 static int line_width(void)
@@ -26,14 +29,15 @@ static int line_width(void)
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 1 ? w.ws_col - 1 : 79;
 }
 
-/* One line, on a terminal only. */
+/* One line that changes on a terminal, else a further one every minute. */
 static void tell(const StudyProgress *p, void *user)
 {
     Telling *t = user;
     const SearchView *v = p->view;
     char left[32], hypervolume[32], line[256];
-    if (!t->terminal)
+    if (!t->terminal && p->progress.session_s < t->told_s + TELL_EVERY_S)
         return;
+    t->told_s = p->progress.session_s;
     duration_words(progress_left(&p->progress, &p->settings->search), left);
     number_words(p->hypervolume, 4, hypervolume);
     if (!v)
@@ -44,8 +48,11 @@ static void tell(const StudyProgress *p, void *user)
                  "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
                  v->generation_now, p->progress.simulated, p->settings->search.max_evals, v->n_failed, v->n_front,
                  hypervolume, left);
-    fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
-    t->has_line = 1;
+    if (t->terminal)
+        fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
+    else
+        fprintf(stderr, "%s\n", line);
+    t->has_line = t->terminal;
 }
 
 static void tell_start(const char *folder, size_t n_simulated, void *user)
@@ -70,8 +77,8 @@ static void explain_objectives(const Schema *schema, const char *objectives)
     putchar('\n');
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Measure *m = measure(schema->order.of[k]);
-        printf("%-12s %s [%s], the %s the better\n", schema_objective(schema, k)->name, m->what, m->unit,
-               m->sense > 0 ? "less" : "more");
+        printf("%-12s %s [%s], %s is better\n", schema_objective(schema, k)->name, m->what, m->unit,
+               m->sense > 0 ? "lower" : "higher");
     }
     if (missing)
         puts(missing);
@@ -195,6 +202,37 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     return STATUS_OK;
 }
 
+static json_t *json_of_design(const Run *run, size_t row)
+{
+    json_t *o = json_of("design=%ld", run->table.row[row].id);
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        json_object_set_new(o, schema_objective(&run->schema, k)->name, json_number(run_f(run, row)[k]));
+    return o;
+}
+
+static Status report_json(const Run *run, const StudySummary *summary, Err *err)
+{
+    json_t *best = json_object(), *baselines = json_object();
+    const Schema *schema = &run->schema;
+    if (summary->n_front == 0)
+        return run_why_empty(run, err);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        json_object_set_new(best, schema_objective(schema, k)->name, json_of_design(run, run_best(run, k)));
+    for (int b = 0; b < N_BASELINES && summary->has_baselines; b++) {
+        json_t *o = json_object();
+        for (size_t k = 0; k < schema->n_obj; k++)
+            json_object_set_new(o, schema_objective(schema, k)->name,
+                                json_number(summary->baseline[b].value[schema->order.of[k]]));
+        json_object_set_new(baselines, baseline_key(b), o);
+    }
+    return show_json(json_of("run=%s stopped=%s simulated=%zu failed=%zu front=%zu seconds=%g knee=%p best=%p "
+                             "baselines=%p review=%p",
+                             summary->folder, stop_reason_words(summary->stopped), summary->n_simulated,
+                             summary->n_failed, run->n_front, summary->seconds, json_of_design(run, run_knee(run)),
+                             best, baselines, json_review(&summary->review)),
+                     err);
+}
+
 static void tell_how_to_resume(const StudySummary *summary)
 {
     const char *quote = strpbrk(summary->folder, " '\"$&;()*?<>|") ? "'" : "";
@@ -232,6 +270,11 @@ static Status take_settings(const Args *args, Settings *s, RunStore **store, Err
     return args_gives(args, "run.out") ? STATUS_OK : output_place_check(s->run.out, args->operand, err);
 }
 
+static Status show(const Args *args, const Run *run, const StudySummary *summary, Err *err)
+{
+    return args_has(args, "--json") ? report_json(run, summary, err) : report(run, summary, err);
+}
+
 /* Of a run whose records have gone: once it is finished they are not needed. */
 static Status show_finished(const Args *args, RunStore *store, Run *finished, Err *err)
 {
@@ -239,7 +282,7 @@ static Status show_finished(const Args *args, RunStore *store, Run *finished, Er
     if (!store || args->n_given > 0 || !study_finished(store, &summary, finished))
         return STATUS_MISSING;
     fprintf(stderr, "%s\n", err->text);
-    return report(finished, &summary, err);
+    return show(args, finished, &summary, err);
 }
 
 static Status optimize(const Args *args, Run *finished, Err *err)
@@ -270,7 +313,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     if (status == STATUS_STOPPED && summary.n_simulated > 0)
         tell_how_to_resume(&summary);
     TRY(status);
-    return report(finished, &summary, err);
+    return show(args, finished, &summary, err);
 }
 
 static Status run(const Args *args, Err *err)
@@ -291,6 +334,7 @@ static const ArgOption OPTIONS[] = {
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),
     SETTING("--max-hours", "H", "search.max_hours",
             "stop after so long; it can be resumed later; auto: before the Slurm job ends"),
+    OPTION_JSON,
     OPTION_SET,
     OPTION_END,
 };

@@ -69,7 +69,7 @@ static void put_objectives(json_t *row, const Schema *schema, const char *end, c
 
 /* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of
  * every objective how it was before, and where they are known the standard deviations of both and the likely error. */
-static Status write_csv(const Work *w, const char *path, Err *err)
+static json_t *table_of(const Work *w)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
@@ -86,7 +86,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     for (size_t i = 0; i < N_OF(more); i++)
         if (isfinite(more[i].values[0]))
             put_objectives(row, schema, more[i].end, more[i].values);
-    return figures_csv(table, path, err);
+    return table;
 }
 
 static void show_gain(const Work *w, size_t k)
@@ -155,8 +155,13 @@ static Status polish(const Args *args, Work *w, Err *err)
     TRY(refine_design(w->run, w->from.row, &w->config, &w->result, err));
     if (refined_counts(&w->result))
         TRY(improve_store(&w->from, &w->result.designs.row[1], err));
+    if (args_has(args, "--json"))
+        return show_json(json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
+                                 w->from.id, verdict_of(&w->result), w->result.n_evaluated, w->result.n_simulated,
+                                 w->result.n_failed, w->result.seconds, table_of(w)),
+                         err);
     show(w);
-    return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
+    return args_has(args, "--csv") ? figures_csv(table_of(w), args_value(args, "--csv"), err) : STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
@@ -178,6 +183,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--csv", "FILE",
           "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard "
           "output"),
+    OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,
 };

@@ -166,7 +166,7 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
     if (n < 0 && errno == ENOTDIR)
         return bad_data(err, "%s: is a file, no run and no folder of runs", folder);
     if (n < 0)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
+        return fail_missing(err, folder);
     json_t *list = json_array();
     for (int i = 0; i < n; i++) {
         snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);

@@ -147,10 +147,11 @@ static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *e
     const char *pga = args_value(args, "--pga");
     TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
     if (!frame_is(s->building.model))
-        return bad_data(err,
-                        "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
-                        "(nodes.csv) and guyan have",
-                        s->building.model);
+        return bad_data(
+            err,
+            "building.model: %s has no degrees of freedom besides its floors to compare with; only a plane frame "
+            "(nodes.csv) and guyan have",
+            s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));
     return !run || args_has(args, "--record") ? STATUS_OK : record_paths_check(s, run, err);

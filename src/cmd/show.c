@@ -580,11 +580,10 @@ void show_verdicts(FILE *out, const Schema *schema, const double natural[], cons
 void show_expected_gain(double gain)
 {
     if (isfinite(gain) && gain < hypervolume_error(0.5))
-        puts("as many simulations again: no more hypervolume expected than its noise");
+        puts("Doubling the simulations would raise the hypervolume by no more than its noise.");
     else if (isfinite(gain))
-        printf(
-            "as many simulations again: some %.2g more hypervolume expected, as a share of the box about the front\n",
-            fmax(gain, 0.0));
+        printf("Doubling the simulations would raise the hypervolume by about %.2g (of the box about the front).\n",
+               fmax(gain, 0.0));
 }
 
 /* ---- warnings ---------------------------------------------------------------------------------------------------- */

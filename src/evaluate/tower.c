@@ -480,7 +480,7 @@ static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes,
 {
     Recipe *r = s->problem.kind == PROBLEM_TOWER ? calloc(1, recipe_size(n_records, n_scenes)) : NULL;
     if (!r && s->problem.kind != PROBLEM_TOWER)
-        bad_data(err, "problem.kind: is no tower, which alone has a building, a core and a motion");
+        bad_data(err, "problem.kind: this needs problem.kind = tower, which alone has a building, a core and a motion");
     else if (!r)
         fail_memory(err, n_scenes, "scenes");
     else

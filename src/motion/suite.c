@@ -63,13 +63,6 @@ static int is_folder(const char *path)
     return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
 }
 
-static int is_there(const char *source)
-{
-    char path[OPTION_TEXT_MAX];
-    snprintf(path, sizeof path, "%.*s", (int)source_path_length(source), source);
-    return builtin_name(path) || access(path, F_OK) == 0;
-}
-
 /* name in the folder of the first n characters of `path`, unless it leads from the root. */
 static Status put_inside(char out[OPTION_TEXT_MAX], const char *path, size_t n, const char *name, Err *err)
 {
@@ -88,7 +81,7 @@ static Status each_of_folder(const char *folder, SourceFn take, void *user, Err 
     Status status = STATUS_OK;
     const int n = scandir(folder, &names, is_visible, by_name);
     if (n < 0)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", folder, strerror(errno));
+        return fail_missing(err, folder);
     while (length > 1 && folder[length - 1] == '/')
         length--;
     for (int i = 0; i < n; i++) {
@@ -112,7 +105,7 @@ static Status each_of_list(const char *path, SourceFn take, void *user, Err *err
     size_t n = 0;
     Status status = STATUS_OK;
     if (!f)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
+        return fail_missing(err, path);
     for (int at = 1; status == STATUS_OK && fgets(line, sizeof line, f); at++) {
         Source s;
         Err why = {0};
@@ -164,8 +157,7 @@ Status suite_each(const char *item, SourceFn take, void *user, Err *err)
         return each_of_program(take, user, err);
     if (is_list(item) || is_folder(item))
         return (is_list(item) ? each_of_list : each_of_folder)(item, take, user, err);
-    return is_there(item) ? take(item, user, err)
-                          : fail(err, STATUS_MISSING, "%s: there is no such file or folder", item);
+    return take(item, user, err); /* who reads it says what is not there */
 }
 
 /* -- a study ------------------------------------------------------------------------------------------------------- */

@@ -190,8 +190,7 @@ static Status find_runs(Watch *w, const char *folder, Err *err)
 static Status start(Watch *w, const char *folder, Err *err)
 {
     pthread_mutex_init(&w->mutex, NULL);
-    return realpath(folder, w->folder) ? find_runs(w, folder, err)
-                                       : fail(err, STATUS_MISSING, "%s: %s", folder, strerror(errno));
+    return realpath(folder, w->folder) ? find_runs(w, folder, err) : fail_missing(err, folder);
 }
 
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)

@@ -23,6 +23,11 @@ void settings_defaults(Settings *s);
  * directory. A file has 1 MiB at most. faults may be NULL. */
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
 
+/* Before a message that begins with a key which that file sets, or with a file or folder that a key of it names:
+ * "FILE:LINE:COLUMN: KEY: ". is_given: keys that something else has set since. */
+typedef int (*SettingGivenFn)(const void *user, const char *key);
+void settings_place(const char *path, SettingGivenFn is_given, const void *user, Err *err);
+
 /* The same from text in memory, of a run that was saved. `path` names it in messages and is
  * where relative paths begin. */
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);

@@ -7,6 +7,8 @@
 #include "settings/rules.h"
 #include "settings/table.h"
 
+enum { LARGEST = 1 << 20 }; /* [bytes] a hundred times the file with every setting and its description */
+
 typedef struct {
     int line, column; /* from 1 */
 } Place;
@@ -246,7 +248,6 @@ static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
 {
-    enum { LARGEST = 1 << 20 }; /* [bytes] a hundred times the file with every setting and its description */
     char *text;
     size_t length;
     TRY(file_read(path, LARGEST, &text, &length, err));
@@ -265,4 +266,49 @@ Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
     const Status status = read_text(&r, copy, strlen(copy), NULL);
     free(copy);
     return status;
+}
+
+/* ---- where a message belongs -------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const char *message;
+    char key[64]; /* empty: not found */
+} Named;
+
+static int begins(const char *message, const char *with, const char *ends)
+{
+    const size_t n = strlen(with);
+    return n > 0 && strncmp(message, with, n) == 0 && message[n] && strchr(ends, message[n]);
+}
+
+static void find_path(const char *key, const char *path, void *user)
+{
+    Named *n = user;
+    if (!n->key[0] && begins(n->message, path, ":/"))
+        snprintf(n->key, sizeof n->key, "%s", key);
+}
+
+void settings_place(const char *path, SettingGivenFn is_given, const void *user, Err *err)
+{
+    Settings s;
+    Err ignored = {0}, was = *err;
+    char *text;
+    size_t length;
+    Named named = {.message = was.text};
+    Reading r = {.s = &s, .path = path, .first = &ignored};
+    const char *key;
+    settings_defaults(&s);
+    if (file_read(path, LARGEST, &text, &length, &ignored) != STATUS_OK)
+        return;
+    read_text(&r, text, length, NULL);
+    free(text);
+    settings_each_path(&s, find_path, &named);
+    for (int i = 0; (key = settings_key(i)); i++) {
+        const int by_key = begins(was.text, key, ":");
+        if (!r.seen[i].line || !(by_key || strcmp(named.key, key) == 0) || is_given(user, key))
+            continue;
+        fail_sub(err, was.code, was.sub, "%s:%d:%d: %s%s%s", path, r.seen[i].line, r.seen[i].column, by_key ? "" : key,
+                 by_key ? "" : ": ", was.text);
+        return;
+    }
 }

@@ -309,6 +309,8 @@ static Status check(Database *d, Err *err)
                     d->path, format, DATABASE_FORMAT, format > DATABASE_FORMAT ? "a newer" : "an older");
     TRY(check_tables(d, err));
     TRY(database_each(d, "PRAGMA quick_check(1)", take_word, word, err));
+    for (char *end; (end = strchr(word, '\n'));) /* of several lines */
+        *end = ' ';
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
 }
 

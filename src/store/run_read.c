@@ -289,6 +289,8 @@ int run_is_there(const char *folder)
 
 Status run_wanted(const char *folder, Err *err)
 {
+    if (access(folder, F_OK) != 0)
+        return fail_missing(err, folder);
     return run_is_there(folder) ? STATUS_OK
                                 : fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
 }

@@ -168,7 +168,7 @@ function columnSelect(id, label, key) {
 
 function pairPlot(host) {
   const margin = { top: 8, right: 10, bottom: 46, left: 66 };
-  scatterPlot(host, "Two columns against each other", (width) => {
+  scatterPlot(host, "Scatter plot of two columns", (width) => {
     const w = width - margin.left - margin.right, h = Math.min(320, 0.75 * w);
     return { height: h + margin.top + margin.bottom, panels: [{ cx: state.x, cy: state.y, left: margin.left, top: margin.top, w, h, hasX: true, hasY: true }] };
   }, (svg, width, [p]) => {
@@ -221,7 +221,7 @@ function scatterMatrix(host) {
         const box = g.append("rect").attr("x", left).attr("y", top).attr("width", s.w).attr("height", s.h);
         cells.push({ a: objectives[row], b: objectives[col], box, text: g.append("text").attr("text-anchor", "middle").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 5) });
       }
-  }, () => { // sign and strength: blue together, vermillion against each other
+  }, () => { // sign and strength: blue together, orange against each other
     for (const { a, b, box, text } of cells) {
       const r = rankCorrelation(a, b);
       box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", Number.isFinite(r) ? 0.55 * Math.abs(r) : 0);

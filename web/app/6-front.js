@@ -114,7 +114,7 @@ function frontPart() {
   host.append(rangeInputs());
   const grid = host.appendChild(element("div", { class: "grid2" }));
   if (columns.length > 1) {
-    const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Two columns against each other"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
+    const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Scatter plot of two columns"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
     pairPlot(pair);
   }
   const maps = grid.appendChild(element("div"));
@@ -122,7 +122,7 @@ function frontPart() {
   if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or wishes"));
   if (objectives.length > 1) {
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
-    matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; vermillion, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
+    matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);

@@ -116,7 +116,7 @@ function warnings(d) {
 // this scene has not.
 function loadTable({ columns, rows }) {
   const kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k] !== null)), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
-  return table("loads", ["has to bear", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words, ...cells(r.values)])),
+  return table("loads", ["demand", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words, ...cells(r.values)])),
     ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id})`, ...cells(values)]))]);
 }
 

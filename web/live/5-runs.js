@@ -24,7 +24,7 @@ async function against(body, other) {
       figure(grid, "Hypervolume over the number of designs", "In one box for both: from a fifth of their range below the best of both fronts to the worst.", (width) => growthChart(width, 260, rows));
       const points = runs.flatMap((r, i) => r.f.map((f) => ({ x: f[objectives.indexOf(state.x)] * state.x.factor, y: f[objectives.indexOf(state.y)] * state.y.factor, colour: colours[i] })));
       if (objectives.includes(state.x) && objectives.includes(state.y))
-        figure(grid, `${state.x.title} and ${state.y.title}`, "The axes are those of the two columns against each other.", (width) => chart({
+        figure(grid, `${state.x.title} and ${state.y.title}`, "The axes are those of the scatter plot of two columns.", (width) => chart({
           width, height: 300, ariaLabel: "Both fronts", x: { label: titleUnit(state.x), grid: true }, y: { label: titleUnit(state.y), grid: true }, color: { type: "identity" },
           marks: [charts.dot(points, { x: "x", y: "y", stroke: "colour", r: 2.5 })] }));
     });
