@@ -268,7 +268,7 @@ Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
     return status;
 }
 
-/* ---- where a message belongs -------------------------------------------------------------------------------------- */
+/* ---- where a message belongs ------------------------------------------------------------------------------------ */
 
 typedef struct {
     const char *message;
