@@ -180,7 +180,7 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
     memset(name, 'a', sizeof name);
     name[sizeof name - 1] = 0;
     assert_int_equal(run_read(&run, name, &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "too long"));
+    assert_non_null(strstr(err.text, "holds no run"));
     assert_false(run_is_there(name));
 }
 

@@ -1,5 +1,6 @@
 #include "store/run_read.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <unistd.h>
 
@@ -289,7 +290,7 @@ int run_is_there(const char *folder)
 
 Status run_wanted(const char *folder, Err *err)
 {
-    if (access(folder, F_OK) != 0)
+    if (access(folder, F_OK) != 0 && errno == ENOENT)
         return fail_missing(err, folder);
     return run_is_there(folder) ? STATUS_OK
                                 : fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
