@@ -6,7 +6,7 @@
  *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
  *
  * under the records of the study and by its rule (sim.robust): worst or mean, without replicates. Devices are found
- * on a sketch (evaluate/device.h); the results are those of all modes and the whole motion.
+ * by evaluate/device.h.
  *
  * Threads  tasks of the queue; the numbers do not depend on how many workers there are */
 #ifndef IMTET_ANALYSIS_BASELINES_H

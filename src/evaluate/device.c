@@ -22,8 +22,7 @@ typedef struct {
     SceneKind scene;
     const double *x;
     double no_core[3];
-    double duration[TOWER_RECORDS_MAX]; /* [s] */
-    double hz, link;                    /* of the building; m w_1 of a mean floor */
+    double hz, link; /* of the building; m w_1 of a mean floor */
     double best;
     LinearDevice device; /* of the best goal so far */
     Status status;
@@ -56,7 +55,7 @@ static double goal_of(Tuning *t, const LinearDevice *device)
     double J[3], goal = 0;
     for (size_t r = 0; r < t->plan->n_records && t->status == STATUS_OK; r++) {
         sim_worker_device(t->at[r].worker, device);
-        t->status = sim_sketch(t->at[r].worker, t->scene, t->x, t->duration[r], &result, t->err);
+        t->status = sim_run(t->at[r].worker, t->scene, t->x, &result, t->err);
         of[r] = measured(&result);
     }
     if (t->status != STATUS_OK)
@@ -98,8 +97,6 @@ static void set_scales(Tuning *t)
         mass += b->M[i];
     t->hz = b->omega[0] / (2 * M_PI);
     t->link = mass / b->n * b->omega[0];
-    for (size_t r = 0; r < t->plan->n_records; r++)
-        t->duration[r] = device_strong_part(&t->at[r].scenario->motion, 1 / t->hz);
 }
 
 /* The best of it comes back in u. */

@@ -2,8 +2,8 @@
  *
  *   goal = J1 / J1_0 + J2 / J2_0 + J3 / J3_0          _0: the building alone, every J over the records by the same rule
  *
- * is minimised on a sketch (sim_sketch): coarse, the motion until ARIAS of its intensity and three periods more. First
- * a grid, for the tuned mass with Warburton's optimum for white noise in it, then Nelder and Mead from its best point.
+ * is minimised: first a grid, for the tuned mass with Warburton's optimum for white noise in it, then Nelder and Mead
+ * from its best point.
  *
  * Source   G. B. Warburton, Earthquake Eng. Struct. Dyn. 10 (1982) 381-401
  * Threads  those of the integrators */

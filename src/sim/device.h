@@ -1,11 +1,11 @@
-/* sim/device.h -- a device between two points of a scene: a dashpot, a spring with one, a brake.
+/* sim/device.h -- a device between two points of a scene: a dashpot, a spring with one.
  *
- *   d = B . q [m] how far the points are apart,  F = k (d - p) + c d' (d'^2 + v_r^2)^((a - 1) / 2)
+ *   d = B . q [m] how far the points are apart,  F = k d + c d' (d'^2 + v_r^2)^((a - 1) / 2)
  *
  * F pulls them together. a = 1: a linear dashpot; else F = c |d'|^a but for rates below v_r = 1 mm/s, where that has no
- * slope. p [m]: how far a brake has slipped, the play operator of sim/storey.h with y = slip / k; 0 without one.
+ * slope.
  *
- * Energy  int F d' dt = k (d - p)^2 / 2 (held) + lost
+ * Energy  int F d' dt = k d^2 / 2 (held) + lost
  *
  * Threads  pure functions
  * Source   power law: T. T. Soong, M. C. Constantinou (eds), Passive and Active Structural Vibration Control in Civil
@@ -19,7 +19,6 @@ typedef struct {
     int floor;                /* from 0, on which it acts */
     double stiffness;         /* [N/m] k; 0: none */
     double damping, exponent; /* [N (s/m)^a] c, [-] a */
-    double slip;              /* [N] at which it slips; 0: never */
 } Device;
 
 /* The part of the rate v [m/s]; *slope: dF/dv. */

@@ -514,19 +514,6 @@ static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *resu
     return status;
 }
 
-Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], double duration, SimResult *result, Err *err)
-{
-    const EngineOptions whole = w->run;
-    w->run = (EngineOptions){.duration = fmin(duration, whole.duration), .accuracy = ACCURACY_COARSE};
-    Design d;
-    design_of(&w->scene->design, x, &d);
-    Status status = make_core(w, &d, err);
-    if (status == STATUS_OK)
-        status = run_design(w, kind, d, result, err);
-    w->run = whole;
-    return status;
-}
-
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
     Design d = {0};

@@ -84,10 +84,6 @@ Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
 /* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 
-/* Parameters of a device are searched for on the first part of the motion [s], coarsely; only SCENE_TMD and
- * SCENE_LINKS. */
-Status sim_sketch(SimWorker *worker, SceneKind kind, const double x[], double duration, SimResult *result, Err *err);
-
 /* x as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);
 

@@ -33,23 +33,4 @@ static inline double storey_slope(const StoreyLaw *law, double z_over_y, double 
     return (1 - bends) / (1 + law->stiffness * e);
 }
 
-/* The plastic drift after the drift went from d0 to d1 without turning, from p; *e of bouc_wen follows. A step of Runge
- * and Kutta's method where the law has a rate. */
-static inline double storey_advance(const StoreyLaw *law, double y, double d0, double d1, double p, double *e)
-{
-    const double h = d1 - d0, at[4] = {0, 0.5, 0.5, 1}, weight[4] = {h / 6, h / 3, h / 3, h / 6};
-    double flow = 0, gain = 0, p_end = p, e_end = *e;
-    if (law->kind == HYSTERESIS_BILINEAR)
-        return fmin(fmax(p, d1 - y), d1 + y);
-    for (int i = 0; i < 4; i++) {
-        const double p_i = p + at[i] * h * flow, z = (d0 + at[i] * h - p_i) / y;
-        flow = 1 - storey_slope(law, z, *e + at[i] * h * gain, h);
-        gain = z / y;
-        p_end += weight[i] * flow;
-        e_end += weight[i] * gain;
-    }
-    *e = e_end;
-    return p_end;
-}
-
 #endif
