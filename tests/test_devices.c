@@ -227,6 +227,37 @@ TEST(a_floor_has_the_device_that_is_chosen_alone)
     assert_true(none.closings[FLOORS - 1] == 0 && links.closings[FLOORS - 1] == 0 && stops.closings[FLOORS - 1] > 0);
 }
 
+/* Floors 1 to 10 have a bumper, 11 to 20 what the word says. */
+TEST(the_cost_is_that_of_the_table_of_prices)
+{
+    static const double BY_WORD[] = {10 * (3 + 0.5), 10 * 7, 0};
+    for (int word = 0; word < 3; word++)
+        for (int has_mass = 0; has_mass < 2; has_mass++) {
+            Tower t;
+            tower_set(&t, "gaps, thickness, bumper, links, tuned_mass", ENGINE_FAST, 0.006);
+            snprintf(t.settings.design.devices, OPTION_TEXT_MAX, "bumper, link, none");
+            t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13};
+            t.settings.design.device_zones = 2;
+            t.settings.design.link_zones = 1;
+            t.settings.sim.duration_s = 3;
+            const double others[] = {9, 1e6, 2e5, 0.3, 0.1, 0, word, 1 - has_mass};
+            memcpy(t.x + LINKS_AT, others, sizeof others);
+            const SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
+            assert_int_equal(r.n_devices, 10 + (word < 2 ? 10 : 0) + has_mass);
+            assert_close(r.cost, 10 * (3 + 0.5) + BY_WORD[word] + (has_mass ? 200 * 11 : 0) + 13e-3 * r.mcore_kg,
+                         1e-12);
+        }
+    Tower t;
+    tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
+    t.settings.sim.duration_s = 3;
+    t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13};
+    const SimResult links = tower_run(&t, SCENE_LINKS, (LinearDevice){.link_ns_m = 1e6});
+    const SimResult mass = tower_run(&t, SCENE_TMD, (LinearDevice){.tmd_hz = 0.25, .tmd_damping = 0.1});
+    assert_true(links.n_devices == FLOORS && mass.n_devices == 1);
+    assert_close(links.cost, FLOORS * 7 + 13e-3 * links.mcore_kg, 1e-12);
+    assert_close(mass.cost, 11e-3 * mass.mcore_kg, 1e-12);
+}
+
 TEST(devices_are_refused_by_name)
 {
     static const struct {
@@ -260,18 +291,21 @@ TEST(kinds_of_the_variables_of_devices)
     CHECK_OK(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), &err);
     static const char *const NAMES[] = {"gap_zone_1_m",       "gap_zone_2_m",      "t_base_m",      "t_top_m",
                                         "link_zone_1_n_s_m",  "link_zone_2_n_s_m", "tuned_mass_kg", "tuned_mass_hz",
-                                        "tuned_mass_damping", "device_zone_1",     "device_zone_2"};
-    assert_int_equal(s.n_var, 11);
+                                        "tuned_mass_damping", "device_zone_1",     "device_zone_2", "device_roof"};
+    assert_int_equal(s.n_var, 12);
     design_bounds(&s, &o, lower, upper);
     for (int j = 0; j < s.n_var; j++) {
         design_variable_name(&s, j, name);
         assert_string_equal(name, NAMES[j]);
-        assert_int_equal(design_is_choice(&s, j), j >= 9);
+        assert_int_equal(design_word(&s, j, 0) != NULL, j >= 9);
         assert_int_equal(design_is_log(&s, j), j >= 4 && j < 9);
         assert_less(lower[j], upper[j]);
         if (j >= 9)
-            assert_true(lower[j] == 0 && upper[j] == 2);
+            assert_true(lower[j] == 0 && upper[j] == (j < 11 ? 2 : 1));
     }
+    assert_string_equal(design_word(&s, 10, 1), "link");
+    assert_string_equal(design_word(&s, 11, 0), "tuned_mass");
+    assert_true(!design_word(&s, 10, 3) && !design_word(&s, 11, 2));
 }
 
 int main(void)

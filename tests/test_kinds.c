@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "analysis/baselines.h"
 #include "evaluate/kinds.h"
 #include "evaluate/textbook.h"
 #include "moga/variation.h"
@@ -167,6 +168,90 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
            "optimize @/steps.ini --out @/no --set design.step_gap_m=0.9");
     expect(65, "design.step_thickness_m: 0.01 stands behind 0.02; give them in ascending order",
            "optimize @/steps.ini --out @/no --set 'design.step_thickness_m=0.02, 0.01'");
+}
+
+/* Stops, links or nothing in two zones, a tuned mass or none at the roof. */
+#define DEVICES                                                                                                        \
+    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[design]\nvariables = gaps, thickness, links, tuned_mass\n"    \
+    "devices = gap, link, none\ngap_zones = 2\nlink_zones = 2\ndevice_zones = 2\n[search]\npolish = 0\n"               \
+    "objectives = j1_m, j2_m, j3_g\ninitial = 12\npopulation = 12\nmax_evals = 36\n[sim]\nduration_s = 8\n"
+
+TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends_below_them)
+{
+    static const BaselineKind KIND[] = {BASELINE_LINKS, BASELINE_TMD};
+    Settings s = settings_of(DEVICES "accuracy = fine\n", "unused");
+    Problem p;
+    Err err = {0};
+    write_in_place("devices.ini", DEVICES "accuracy = fine\n");
+    free(output_of("optimize @/devices.ini --out @/devices"));
+    Run run = run_of("devices");
+    CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
+    for (size_t i = 0; i < 2; i++) {
+        Baseline b[N_BASELINES];
+        const double *f = run_f(&run, i);
+        CHECK_OK(baselines_find(&p, run_x(&run, i), KIND[i], b, &err), &err);
+        for (int k = 0; k < 3; k++)
+            assert_close(f[k], b[KIND[i]].value[k], 1e-6);
+        for (size_t j = 0; j < run.n_front; j++) {
+            const double *of = run_f(&run, run.front[j]);
+            assert_false(run.front[j] != i && f[0] <= of[0] && f[1] <= of[1] && f[2] <= of[2]);
+        }
+    }
+    problem_close(&p);
+    run_free(&run);
+}
+
+TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill_and_the_words_in_files)
+{
+    write_in_place("devices.ini", DEVICES);
+    free(output_of("optimize @/devices.ini --out @/whole"));
+    free(output_of("optimize @/devices.ini --out @/two --threads 2"));
+    for (size_t least = 12; least < 24; least += 6) {
+        const pid_t pid = start("devices.ini", "cut");
+        while (finished_in("cut") < least)
+            rest(0.02);
+        kill(pid, SIGKILL);
+        wait_end(pid);
+    }
+    free(output_of("optimize @/devices.ini --out @/cut"));
+    char *all = all_of("whole"), *two = all_of("two"), *cut = all_of("cut"), *front = read_in_place("whole/front.csv");
+    char words[2][256];
+    for (int i = 0; i < 2; i++)
+        snprintf(words[i], sizeof words[i], "simulate @/devices.ini --design @/whole%s:%d --csv -",
+                 i > 0 ? "/front.csv" : "", atoi(strchr(front, '\n') + 1));
+    char *one = output_of(words[0]), *same = output_of(words[1]);
+    assert_string_equal(all, two);
+    assert_string_equal(all, cut);
+    assert_non_null(strstr(all, ",link,link,none,"));
+    assert_non_null(strstr(all, ",none,none,tuned_mass,"));
+    assert_string_equal(one, same);
+    write_in_place("wrong.csv",
+                   "gap_zone_1_m,gap_zone_2_m,t_base_m,t_top_m,link_zone_1_n_s_m,link_zone_2_n_s_m,"
+                   "tuned_mass_kg,tuned_mass_hz,tuned_mass_damping,device_zone_1,device_zone_2,device_roof\n"
+                   "0.1,0.1,0.01,0.01,1e5,1e5,1e5,1,0.1,gap,lnk,none\n");
+    expect(65, "wrong.csv:2: device_zone_2: lnk is no device; did you mean link?",
+           "simulate @/devices.ini --design @/wrong.csv");
+    free(all);
+    free(two);
+    free(cut);
+    free(front);
+    free(one);
+    free(same);
+}
+
+TEST(a_start_is_refused_by_file_line_and_what_would_fit)
+{
+    write_in_place("fit.ini",
+                   "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nkinds = int, choice:oak|steel\n");
+    write_in_place("half.csv", "x1,x2\n1,oak\n3.5,oak\n");
+    write_in_place("elm.csv", "x1,x2\n1,elm\n");
+    write_in_place("two.csv", "x1,x2\n1,2\n");
+    expect(65, "half.csv:3: x1 is 3.5; it is a whole number (problem.kinds)",
+           "optimize @/fit.ini --out @/no --set search.start=@/half.csv");
+    expect(65, "elm.csv:2: x2 is 'elm'; it is one of oak, steel",
+           "optimize @/fit.ini --out @/no --set search.start=@/elm.csv");
+    expect(65, "two.csv:2: x2 is '2'; it is one of oak, steel",
+           "optimize @/fit.ini --out @/no --set search.start=@/two.csv");
 }
 
 TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)

@@ -79,7 +79,7 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
 {
     Table t;
     long *ids = NULL;
-    const Status there = table_read(&t, path, TABLE_HEADED, err);
+    const Status there = design_table_read(&t, path, space, err);
     if (there == STATUS_MISSING && !strchr(path, '/') && !choice)
         return fail(err, there, "--design %s: there is no such file; a design is " DESIGN_WORDS, path);
     TRY(there);

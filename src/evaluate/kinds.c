@@ -52,6 +52,12 @@ int kinds_number(const char *list, size_t j, const char *word, double *number)
     return 0;
 }
 
+int kinds_are_whole(const char *list, size_t j)
+{
+    char item[LIST_MAX];
+    return item_of(list, j, item) && strcmp(item, "int") == 0;
+}
+
 /* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
 static int is_plain(const char *word)
 {

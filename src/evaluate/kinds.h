@@ -15,6 +15,8 @@ enum { KIND_WORD_MAX = 64 }; /* bytes of a word */
 
 int kinds_are_real(const char *list); /* every variable is; also where the list is empty */
 
+int kinds_are_whole(const char *list, size_t j); /* variable j is an int */
+
 /* kind (n_var), and checks its bounds; a choice gets its own. */
 Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err);
 

@@ -7,7 +7,7 @@
  * limited); elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas:
  * docs/theory.md.
  *
- * A new one goes to the end, so that runs from before it can be read.
+ * A new one goes to the end, and raises DATABASE_FORMAT (store/database.h): each is a column of a run.
  *
  * Threads  pure functions */
 #pragma once
@@ -83,7 +83,8 @@ enum {
     X(DEVICE_STROKE, "device_stroke_max_m", "m", 1, NEEDS_NOTHING, r->stroke_m,                                        \
       "largest stroke of a link or tuned mass")                                                                        \
     X(DEVICE_SHARE, "ed_devices_pct", "%", -1, NEEDS_NOTHING, r->ed_devices_pct,                                       \
-      "share of the input dissipated by links and the tuned mass")
+      "share of the input dissipated by links and the tuned mass")                                                     \
+    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "of devices and core by design.prices")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,

@@ -133,7 +133,41 @@ const Column *schema_extra(const Schema *schema, size_t k)
 
 int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MAX])
 {
-    return schema->kinds[0] && kinds_word(schema->kinds, j, x, word);
+    const char *device = schema->design.n_var > 0 ? design_word(&schema->design, (int)j, x) : NULL;
+    if (device)
+        snprintf(word, KIND_WORD_MAX, "%s", device);
+    return device || (schema->kinds[0] && kinds_word(schema->kinds, j, x, word));
+}
+
+static Status fail_word(const Schema *schema, size_t j, const char *where, const char *text, Err *err)
+{
+    char words[200] = "", word[KIND_WORD_MAX];
+    size_t n = 0;
+    for (int i = 0; n < sizeof words && schema_word(schema, j, i, word); i++)
+        n += (size_t)snprintf(words + n, sizeof words - n, i > 0 ? ", %s" : "%s", word);
+    return bad_data(err, "%s is '%.60s'; it is one of %s%s", where, text, words, n < sizeof words ? "" : "...");
+}
+
+Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, double *x, Err *err)
+{
+    const char *name = schema_variable(schema, j)->name, *text = sheet_text(t, row, name);
+    char where[sizeof t->path + TABLE_NAME_MAX + 16], word[KIND_WORD_MAX];
+    Err why = {0};
+    if (schema->design.n_var > 0)
+        return design_cell(&schema->design, (int)j, t, row, x, err);
+    if (schema->kinds[0] && kinds_number(schema->kinds, j, text, x))
+        return STATUS_OK;
+    snprintf(where, sizeof where, "%s:%d: %s", t->path, t->line[row], name);
+    const Status status = sheet_number(t, row, name, NAN, x, &why);
+    if (schema_word(schema, j, 0, word))
+        return status == STATUS_OK && *x == floor(*x) && schema_word(schema, j, *x, word)
+                   ? STATUS_OK
+                   : fail_word(schema, j, where, text, err);
+    if (status != STATUS_OK)
+        *err = why;
+    else if (schema->kinds[0] && kinds_are_whole(schema->kinds, j) && *x != floor(*x))
+        return bad_data(err, "%s is %g; it is a whole number (problem.kinds)", where, *x);
+    return status;
 }
 
 size_t schema_find_objective(const Schema *schema, const char *name)

@@ -48,6 +48,9 @@ const Column *schema_extra(const Schema *schema, size_t k);
 /* The word that stands for x where variable j is a choice; else 0. */
 int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MAX]);
 
+/* Variable j of a row of a table of words and numbers; STATUS_BAD_DATA: no word of its choice, no whole number. */
+Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, double *x, Err *err);
+
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);
 

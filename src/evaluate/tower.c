@@ -423,7 +423,7 @@ static Status prepare(Tower *t, Err *err)
     t->judged |= t->order.judged;
     design_bounds(&t->design, &s->design, t->lower, t->upper);
     for (int j = 0; j < t->design.n_var; j++)
-        if (design_is_log(&t->design, j) || design_is_choice(&t->design, j)) {
+        if (design_is_log(&t->design, j) || design_word(&t->design, j, 0)) {
             t->has_kinds = 1;
             t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
         }

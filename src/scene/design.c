@@ -34,11 +34,14 @@ static Status take_words(const char *list, unsigned *set, Err *err)
                : bad_data(err, "design.variables: gaps and thickness are always there; add to them");
 }
 
+static const char *const FLOOR_WORDS[] = {
+    [FLOOR_GAP] = "gap", [FLOOR_BUMPER] = "bumper", [FLOOR_LINK] = "link", [FLOOR_NONE] = "none"};
+enum { ROOF_MASS, ROOF_NONE, N_ROOF_DEVICES };
+static const char *const ROOF_WORDS[] = {[ROOF_MASS] = "tuned_mass", [ROOF_NONE] = "none"};
+
 /* The words of design.devices, in their order. */
 static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set, Err *err)
 {
-    static const char *const WORDS[] = {
-        [FLOOR_GAP] = "gap", [FLOOR_BUMPER] = "bumper", [FLOOR_LINK] = "link", [FLOOR_NONE] = "none"};
     static const unsigned NEEDS[] = {
         [FLOOR_GAP] = 0, [FLOOR_BUMPER] = HAS_BUMPER, [FLOOR_LINK] = HAS_LINKS, [FLOOR_NONE] = 0};
     char word[64] = "";
@@ -47,10 +50,10 @@ static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set,
     for (size_t i = 0; o->devices[0] && strcmp(o->devices, "all") != 0 && i < list_count(o->devices); i++) {
         int k = 0;
         const int is_word = list_item(o->devices, i, word, sizeof word);
-        while (k < N_FLOOR_DEVICES && strcmp(WORDS[k], word) != 0)
+        while (k < N_FLOOR_DEVICES && strcmp(FLOOR_WORDS[k], word) != 0)
             k++;
         if (!is_word || k == N_FLOOR_DEVICES)
-            return fail_no_word(err, STATUS_BAD_DATA, "design.devices", word, "device", WORDS, N_FLOOR_DEVICES);
+            return fail_no_word(err, STATUS_BAD_DATA, "design.devices", word, "device", FLOOR_WORDS, N_FLOOR_DEVICES);
         if (seen >> k & 1)
             return bad_data(err, "design.devices: %s stands there twice", word);
         if ((set & NEEDS[k]) != NEEDS[k])
@@ -95,12 +98,13 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection
     TRY(take_devices(space, o, set, err));
     if (space->n_words > 0)
         TRY(check_zones("design.device_zones", o->device_zones, n_floors, err));
+    space->has_roof = space->n_words > 0 && space->n_mass > 0;
     space->n_choices = space->n_words == 0 ? 0 : space->device_zones ? space->device_zones : n_floors;
     space->n_gaps = (space->gap_sides == GAPS_EACH ? SIDES : 1) * (space->gap_zones ? space->gap_zones : n_floors);
     space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
     space->n_links = !has_links ? 0 : space->link_zones ? space->link_zones : n_floors;
     space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side + space->n_links +
-                   space->n_mass + space->n_choices;
+                   space->n_mass + space->n_choices + space->has_roof;
     return STATUS_OK;
 }
 
@@ -138,14 +142,14 @@ static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *
 }
 
 /* The variables in their order. */
-typedef enum { GAP, WALL, BUMPER, SIDE, LINK, MASS, DEVICE } Group;
+typedef enum { GAP, WALL, BUMPER, SIDE, LINK, MASS, DEVICE, ROOF } Group;
 
 /* Of variable j, which becomes its number in the group. */
 static Group group_of(const DesignSpace *s, int *j)
 {
-    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers, s->has_side, s->n_links, s->n_mass};
+    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers, s->has_side, s->n_links, s->n_mass, s->n_choices};
     Group group = GAP;
-    for (; group < DEVICE && *j >= n[group]; group++)
+    for (; group < ROOF && *j >= n[group]; group++)
         *j -= n[group];
     return group;
 }
@@ -163,6 +167,8 @@ void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX]
         zoned_name(name, "link", "n_s_m", s->link_zones, j);
     } else if (group == DEVICE) {
         snprintf(name, TABLE_NAME_MAX, s->device_zones ? "device_zone_%d" : "device_%02d", j + 1);
+    } else if (group == ROOF) {
+        snprintf(name, TABLE_NAME_MAX, "device_roof");
     } else if (group == MASS) {
         snprintf(name, TABLE_NAME_MAX, "tuned_mass_%s", (const char *const[]){"kg", "hz", "damping"}[j]);
     } else {
@@ -170,9 +176,12 @@ void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX]
     }
 }
 
-int design_is_choice(const DesignSpace *s, int j)
+const char *design_word(const DesignSpace *s, int j, double x)
 {
-    return group_of(s, &j) == DEVICE;
+    const Group group = group_of(s, &j);
+    if (group == DEVICE)
+        return x >= 0 && x < s->n_words ? FLOOR_WORDS[s->word[(int)x]] : NULL;
+    return group == ROOF && x >= 0 && x < N_ROOF_DEVICES ? ROOF_WORDS[(int)x] : NULL;
 }
 
 int design_is_log(const DesignSpace *s, int j)
@@ -188,8 +197,8 @@ void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[],
     for (int j = 0; j < s->n_var; j++) {
         int i = j;
         const Group group = group_of(s, &i);
-        const double words[] = {0, s->n_words - 1.0};
-        const double *l = group == DEVICE ? words : lists[group == MASS ? (int)group + i : (int)group]->at;
+        const double words[] = {0, (group == DEVICE ? s->n_words : N_ROOF_DEVICES) - 1.0};
+        const double *l = group >= DEVICE ? words : lists[group == MASS ? (int)group + i : (int)group]->at;
         lower[j] = group == BUMPER ? log10(l[0]) : l[0];
         upper[j] = group == BUMPER ? log10(l[1]) : l[1];
     }
@@ -217,7 +226,7 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
     const int per_side = s->gap_sides == GAPS_EACH ? s->n_gaps / SIDES : s->n_gaps;
     const double *bumper = x + s->n_gaps + s->n_walls, *link = bumper + s->n_bumpers + s->has_side;
     const double *mass = link + s->n_links, *choice = mass + s->n_mass;
-    d->n_devices = s->n_mass > 0;
+    const int has_mass = s->n_mass > 0 && (!s->has_roof || choice[s->n_choices] == ROOF_MASS);
     for (int j = 0; j < s->n_floors; j++) {
         const double gap = x[zone_of(per_side, s->n_floors, j)];
         d->gap[0][j] = s->gap_sides == GAPS_EACH   ? x[per_side + zone_of(per_side, s->n_floors, j)]
@@ -228,14 +237,41 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
         d->link[j] = s->n_links ? link[zone_of(s->n_links, s->n_floors, j)] : 0;
         if (s->n_choices)
             leave_out(s->word[(int)choice[zone_of(s->n_choices, s->n_floors, j)]], j, d);
-        d->n_devices += !isinf(design_gap(d, j)) + (d->link[j] > 0);
     }
     d->t_base = s->n_walls ? x[s->n_gaps] : 0;
     d->t_top = s->n_walls ? x[s->n_gaps + 1] : 0;
     d->side = s->has_side ? bumper[s->n_bumpers] : 0;
-    d->mass_kg = s->n_mass ? mass[0] : 0;
-    d->mass_hz = s->n_mass ? mass[1] : 0;
-    d->mass_damping = s->n_mass ? mass[2] : 0;
+    d->mass_kg = has_mass ? mass[0] : 0;
+    d->mass_hz = has_mass ? mass[1] : 0;
+    d->mass_damping = has_mass ? mass[2] : 0;
+}
+
+/* Every floor gets that word of design.devices, the roof its own; 0: there is no choice of it. */
+static int put_words(const DesignSpace *s, FloorDevice floors, int roof, double x[])
+{
+    int w = 0;
+    while (w < s->n_words && s->word[w] != floors)
+        w++;
+    for (int j = s->n_var - s->n_choices - s->has_roof; j < s->n_var; j++)
+        x[j] = w;
+    if (s->has_roof)
+        x[s->n_var - 1] = roof;
+    return w < s->n_words;
+}
+
+int design_put_links(const DesignSpace *s, double n_s_m, double x[])
+{
+    const int first = s->n_gaps + s->n_walls + s->n_bumpers + s->has_side;
+    for (int j = first; j < first + s->n_links; j++)
+        x[j] = n_s_m;
+    return s->n_links > 0 && put_words(s, FLOOR_LINK, ROOF_NONE, x);
+}
+
+int design_put_mass(const DesignSpace *s, double kg, double hz, double damping, double x[])
+{
+    const double mass[] = {kg, hz, damping};
+    memcpy(x + s->n_gaps + s->n_walls + s->n_bumpers + s->has_side + s->n_links, mass, s->n_mass * sizeof *mass);
+    return s->n_mass > 0 && put_words(s, FLOOR_NONE, ROOF_MASS, x);
 }
 
 double design_gap(const Design *d, int j)
@@ -281,11 +317,13 @@ Status design_check(const DesignSpace *space, int j, double value, const char *w
         [LINK] = "a dashpot is not negative; 0: there is none",
         [MASS] = "it must be above 0",
         [DEVICE] = "it is the place, from 0, of a word of design.devices",
+        [ROOF] = "it is 0 for a tuned mass, 1 for none",
     };
     char name[TABLE_NAME_MAX];
     design_variable_name(space, j, name);
+    const int is_word = design_word(space, j, value) && value == floor(value);
     const Group group = group_of(space, &j);
-    if (group == DEVICE                 ? value >= 0 && value < space->n_words && value == floor(value)
+    if (group >= DEVICE                 ? is_word
         : group == GAP || group == LINK ? value >= 0
                                         : value > 0 && (group != BUMPER || value < 15))
         return STATUS_OK;
@@ -304,6 +342,50 @@ static Status check_values(const Designs *d, const char *path, Err *err)
         TRY(design_check(&d->space, j, d->x[i], where, err));
     }
     return STATUS_OK;
+}
+
+Status design_cell(const DesignSpace *s, int j, const Table *t, size_t row, double *x, Err *err)
+{
+    char name[TABLE_NAME_MAX], where[sizeof t->path + TABLE_NAME_MAX + 16], *end;
+    const char *words[N_FLOOR_DEVICES];
+    int n = 0;
+    design_variable_name(s, j, name);
+    const char *text = sheet_text(t, row, name);
+    const double number = strtod(text, &end);
+    for (; (words[n] = design_word(s, j, n)); n++)
+        if (strcmp(text, words[n]) == 0 || (end > text && !*end && number == n)) {
+            *x = n;
+            return STATUS_OK;
+        }
+    if (n == 0)
+        return sheet_number(t, row, name, NAN, x, err);
+    snprintf(where, sizeof where, "%s:%d: %s", t->path, t->line[row], name);
+    return fail_no_word(err, STATUS_BAD_DATA, where, text, "device", words, n);
+}
+
+/* Numbers in the place of words; other columns keep those that they have. */
+static Status take_words_of_table(Table *t, const DesignSpace *s, Err *err)
+{
+    char name[TABLE_NAME_MAX];
+    TRY_ROOM(t->values, t->n_rows * t->n_cols + 1, "numbers", err);
+    for (size_t i = 0; i < t->n_rows * t->n_cols; i++)
+        t->values[i] = strtod(t->text + t->cell[i], NULL);
+    for (int j = 0; j < s->n_var; j++) {
+        design_variable_name(s, j, name);
+        const int column = table_column(t, name);
+        for (size_t i = 0; column >= 0 && i < t->n_rows; i++)
+            TRY(design_cell(s, j, t, i, &t->values[i * t->n_cols + (size_t)column], err));
+    }
+    return STATUS_OK;
+}
+
+Status design_table_read(Table *t, const char *path, const DesignSpace *space, Err *err)
+{
+    TRY(table_read(t, path, space->n_choices > 0 ? TABLE_WORDS : TABLE_HEADED, err));
+    const Status status = space->n_choices > 0 ? take_words_of_table(t, space, err) : STATUS_OK;
+    if (status != STATUS_OK)
+        table_free(t);
+    return status;
 }
 
 Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err)
@@ -325,7 +407,7 @@ Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *
 {
     Table t;
     memset(d, 0, sizeof *d);
-    TRY(table_read(&t, path, TABLE_HEADED, err));
+    TRY(design_table_read(&t, path, space, err));
     const Status status = design_of_table(d, &t, path, space, err);
     table_free(&t);
     return status;

@@ -11,12 +11,14 @@
  *   ..., side                                         side_m of the core's box
  *   ..., links     design.link_zones = 0              link_01_n_s_m.. of dashpots between floors and core
  *   ..., tuned_mass                                   tuned_mass_kg, tuned_mass_hz, tuned_mass_damping, at the roof
- *   design.devices = gap, link, none                  device_01.. : 0, 1, 2 of these words for every floor, or, with
- *                                                     design.device_zones = 4, device_zone_1..
+ *   design.devices = gap, link, none                  device_01.. : one of these words for every floor, or, with
+ *                                                     design.device_zones = 4, device_zone_1..; with tuned_mass among
+ *                                                     the variables device_roof too: tuned_mass or none
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
  * Of a floor, gap is a stop, bumper one with a bumper, link a dashpot without a stop, none nothing at all; variables of
- * what a floor does not have do nothing there. Without design.devices every floor has all that design.variables name.
+ * what a floor or the roof does not have do nothing there. x has the place of the word, from 0. Without design.devices
+ * every floor has all that design.variables name.
  *
  * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales
  * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. The right gap is how far a floor may go to the right,
@@ -38,11 +40,12 @@
 enum { DESIGN_VARIABLES_MAX = (SIDES + 3) * FLOORS_MAX + 6 };
 
 /* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides,
- * n_links links, the tuned mass (n_mass = 3), n_choices choices of n_words devices. */
+ * n_links links, the tuned mass (n_mass = 3), n_choices choices of n_words devices, has_roof choices of a tuned mass or
+ * none. */
 typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
 
 typedef struct {
-    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_mass, n_choices, n_words;
+    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_mass, n_choices, n_words, has_roof;
     FloorDevice word[N_FLOOR_DEVICES];                     /* (n_words) */
     int gap_zones, bumper_zones, link_zones, device_zones; /* 0: a variable per floor */
     GapSides gap_sides;
@@ -60,8 +63,8 @@ void design_variable_name(const DesignSpace *space, int j, char name[TABLE_NAME_
 /* May variable j have that value? STATUS_BAD_DATA: "WHERE: NAME is -1; a gap is not negative". */
 Status design_check(const DesignSpace *space, int j, double value, const char *where, Err *err);
 
-/* Is it a choice, of 0..n_words-1? */
-int design_is_choice(const DesignSpace *space, int j);
+/* The word that stands for x where variable j is a choice; NULL: it is none, or has none such. */
+const char *design_word(const DesignSpace *space, int j, double x);
 
 /* Is it searched on a logarithmic scale? */
 int design_is_log(const DesignSpace *space, int j);
@@ -76,10 +79,14 @@ typedef struct {
     double t_base, t_top;                  /* [m]; 0: there are none */
     double side;                           /* [m]; 0: as core.width_m says */
     double link[FLOORS_MAX];               /* [N (s/m)^exponent]; 0: none */
-    int n_devices;                         /* stops, links, the tuned mass */
     double mass_kg, mass_hz, mass_damping; /* of the tuned mass; 0: none */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);
+
+/* x becomes a design of links of that constant on every floor alone, or of a tuned mass alone; what else it has stays.
+ * 0: there is none such among the choices of the space. */
+int design_put_links(const DesignSpace *space, double n_s_m, double x[]);
+int design_put_mass(const DesignSpace *space, double kg, double hz, double damping, double x[]);
 
 /* The smaller gap of floor j = 0..n_floors-1 [m]. */
 double design_gap(const Design *d, int j);
@@ -97,6 +104,12 @@ typedef struct {
 
 Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *err);
 
-/* The same of a table that is read already; its numbers pass over to the designs. */
+/* Variable j of a row of words: a word of its choice or the place of one, else a number. */
+Status design_cell(const DesignSpace *space, int j, const Table *t, size_t row, double *x, Err *err);
+
+/* A table of designs, further columns among them, with numbers in the place of words. */
+Status design_table_read(Table *t, const char *path, const DesignSpace *space, Err *err);
+
+/* The same as design_read of a table that is read already; its numbers pass over to the designs. */
 Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err);
 void design_free(Designs *d);

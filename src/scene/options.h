@@ -68,6 +68,11 @@ typedef struct {
     X(GAPS_EACH, "each")
 typedef enum { GAP_SIDES_LIST(CHOICE_NAME) } GapSides;
 
+/* Of a stop, the bumper in it, a link, and tonnes; any currency. */
+typedef struct {
+    double gap, bumper, link, tuned_mass_t, core_t;
+} PriceOptions;
+
 typedef struct {
     char variables[OPTION_TEXT_MAX]; /* words (scene/design.h); empty: gaps, thickness */
     char devices[OPTION_TEXT_MAX];   /* words, of which each zone has one; empty, all: whatever variables name */
@@ -78,4 +83,5 @@ typedef struct {
     NumberList step_thickness_m;                            /* plates that are sold; none: any */
     NumberList link_n_s_m, mass_kg, mass_hz, mass_damping;
     double link_exponent; /* [-] */
+    PriceOptions prices;
 } DesignOptions;          /* the design variables and their bounds */

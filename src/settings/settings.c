@@ -22,7 +22,7 @@ typedef struct {
     const char
         *words;    /* CHOICE: "a|b|c", in the order of its enum; SHARES: the names of its numbers, likewise; PATH: names
                           that are no path, or NULL; REAL: the one that stands for OPTION_WORD, or NULL */
-    int count;     /* LIST: how many numbers there are, in ascending order; 0: any number of them */
+    int count;     /* LIST: numbers, in ascending order; 0: any number of them. SHARES: of words */
     size_t number; /* CHOICE: the field of a number that is taken in the place of a word, as the default is; 0: none */
     const char *help;
     unsigned flags; /* SettingFlags */
@@ -44,8 +44,9 @@ typedef char OptionText[OPTION_TEXT_MAX];
     OPTION(KIND_WHOLE, field, long, standard_, __VA_ARGS__, .unit = "-", .min = min_, .max = max_)
 #define CHOICE(field, type, words_, standard_, ...) \
     OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-")
-#define SHARES(field, type, words_, standard_, ...) \
-    OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = 1)
+#define SHARES(field, type, words_, max_, standard_, ...) \
+    OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = max_, \
+           .count = sizeof(type) / sizeof(double))
 #define LIST(field, unit_, standard_, min_, max_, ...) \
     OPTION(KIND_LIST, field, NumberList, standard_, __VA_ARGS__, .unit = unit_, .min = min_, .max = max_)
 #define BOUNDS(field, unit_, standard_, min_, max_, ...) \
@@ -62,7 +63,9 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #undef X
 #define ENGINE_WORDS (ENGINE_BARS + 1)
 
-/* In the order of UncertainOptions. */
+/* In the order of PriceOptions, UncertainOptions. */
+enum { SHARES_MAX = 7 };
+static const char PRICE_WORDS[] = "gap|bumper|link|tuned_mass_t|core_t";
 static const char UNCERTAIN_WORDS[] =
     "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness|strength";
 
@@ -210,7 +213,7 @@ static const Option OPTIONS[] = {
     REAL(sim.tail, "-", "0.2", 1e-3, 1, "cvar: share of all simulations, the worst, whose mean counts"),
 
     SHARES(
-        sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",
+        sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, 1, "none",
         "standard deviations of what is built, as restitution=0.05 damping=0.3: of contact.restitution, and as shares "
         "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness, of the "
         "damping ratios and of the strength (building.yield_drift); needs sim.replicates >= 2"),
@@ -236,18 +239,23 @@ static const Option OPTIONS[] = {
     BOUNDS(design.width_m, "m", "6, 15", 0.1, 200,
            "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
     TEXT(design.devices, "all",
-         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, none; all: no choice, every "
-         "floor "
-         "has what design.variables name"),
+         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, none; the roof's tuned mass is "
+         "one then too, and the search begins with links and a tuned mass that are tuned alone; all: no choice, every "
+         "floor has what design.variables name"),
     WHOLE(design.device_zones, "0", 0, 128,
           "0: a choice for every floor; else one for each of so many zones of floors"),
     WHOLE(design.link_zones, "0", 0, 128, "0: a link for every floor; else links of so many zones of floors differ"),
     REAL(design.link_exponent, "", "1", 0.1, 2,
-         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold; c is then in N (s/m)^a"),
+         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold, 0.1: nearly the constant force c of "
+         "friction; "
+         "c is then in N (s/m)^a"),
     BOUNDS(design.link_n_s_m, "N s/m", "1e4, 1e7", 1e-3, 1e12, "bounds of the search: c of a link"),
     BOUNDS(design.mass_kg, "kg", "1e4, 5e5", 1e-3, 1e9, "bounds of the search: tuned mass"),
     BOUNDS(design.mass_hz, "Hz", "0.1, 2", 1e-3, 1e3, "bounds of the search: frequency of the tuned mass"),
     BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
+    SHARES(design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4",
+           "of cost: of a stop, of its bumper, of a link, of a tonne of tuned mass and of the core; the default is an "
+           "example, in thousands of euros, no quotation"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
@@ -317,7 +325,8 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = N_OF(OPTIONS) };
 
-_Static_assert(sizeof(UncertainOptions) == 7 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
+_Static_assert(sizeof(PriceOptions) == 5 * sizeof(double), "a price for each of PRICE_WORDS");
+_Static_assert(sizeof(UncertainOptions) == SHARES_MAX * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert(N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
 _Static_assert(OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
@@ -436,7 +445,7 @@ static Status assign_choice(Settings *s, const Option *o, const char *value, Err
 static Status assign_shares(Settings *s, const Option *o, const char *value, Err *err)
 {
     char copy[OPTION_TEXT_MAX], *rest = copy;
-    UncertainOptions shares = {0};
+    double shares[SHARES_MAX] = {0};
     snprintf(copy, sizeof copy, "%s", strcmp(value, "none") == 0 ? "" : value);
     for (char *item; (item = strsep(&rest, " ,"));) {
         char *equals = strchr(item, '=');
@@ -449,9 +458,9 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
         if (i < 0)
             return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item, o->words);
         TRY(parse_number(o, equals + 1, &number, err));
-        memcpy((char *)&shares + i * sizeof number, &number, sizeof number);
+        shares[i] = number;
     }
-    memcpy(field_of(s, o), &shares, sizeof shares);
+    memcpy(field_of(s, o), shares, o->count * sizeof *shares);
     return STATUS_OK;
 }
 
@@ -635,10 +644,10 @@ static void format_shares(const Settings *s, const Option *o, char text[OPTION_T
     char name[OPTION_TEXT_MAX], number[OPTION_TEXT_MAX];
     size_t n = 0;
     snprintf(text, OPTION_TEXT_MAX, "none");
-    for (size_t i = 0; i < sizeof s->sim.uncertain / sizeof *share; i++) {
+    for (int i = 0; i < o->count; i++) {
         if (share[i] == 0)
             continue;
-        format_word(name, o->words, (int)i);
+        format_word(name, o->words, i);
         format_real(share[i], number);
         n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=%s", n ? " " : "", name, number);
     }

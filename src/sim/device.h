@@ -3,7 +3,7 @@
  *   d = B . q [m] how far the points are apart,  F = k d + c d' (d'^2 + v_r^2)^((a - 1) / 2)
  *
  * F pulls them together. a = 1: a linear dashpot; else F = c |d'|^a but for rates below v_r = 1 mm/s, where that has no
- * slope.
+ * slope; a near 0: friction of the force c.
  *
  * Energy  int F d' dt = k d^2 / 2 (held) + lost
  *

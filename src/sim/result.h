@@ -91,7 +91,8 @@ typedef struct {
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
     double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one */
-    int n_devices;                              /* of SCENE_IMPACT: stops, links, tuned masses */
+    int n_devices;                              /* stops, links, tuned masses */
+    double cost;                                /* of these and of the core, by DesignOptions.prices */
     double device_loss_j, ed_devices_pct;       /* dissipated by devices; of input_energy_j */
     long steps, force_evaluations;              /* what the run cost */
     int repeated;   /* times the run was repeated with shorter steps, its energy balance open */

@@ -522,6 +522,23 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     return sim_run_built(w, kind, &d, result, err);
 }
 
+/* Links of SCENE_LINKS are on every floor that the core has, the tuned mass of SCENE_TMD is the core's. */
+static void count_devices(const SimWorker *w, SceneKind kind, const Design *d, SimResult *result)
+{
+    const PriceOptions *price = &w->options->design.prices;
+    const double mass_kg = kind == SCENE_TMD ? result->mcore_kg : kind == SCENE_IMPACT ? d->mass_kg : 0;
+    int stops = 0, bumpers = 0, links = 0;
+    for (int j = 0; j < w->core.top && kind != SCENE_NO_CORE; j++) {
+        const int is_stop = kind == SCENE_IMPACT && !isinf(design_gap(d, j));
+        stops += is_stop;
+        bumpers += is_stop && d->bumper[j] > 0;
+        links += kind == SCENE_LINKS || (kind == SCENE_IMPACT && d->link[j] > 0);
+    }
+    result->n_devices = stops + links + (mass_kg > 0);
+    result->cost = stops * price->gap + bumpers * price->bumper + links * price->link +
+                   1e-3 * (mass_kg * price->tuned_mass_t + (kind == SCENE_TMD ? 0 : result->mcore_kg) * price->core_t);
+}
+
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
     const double start = clock_seconds();
@@ -543,7 +560,7 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(filter_floors(w, result, err));
     set_drift_ratios(w->building->storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    result->n_devices = kind == SCENE_IMPACT ? d->n_devices : 0;
+    count_devices(w, kind, d, result);
     set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "base/csv.h"
+#include "evaluate/tower.h"
 #include "store/run_read.h"
 
 static Status copy_columns(const Table *t, const char *where, const Schema *schema, double *X, Err *err)
@@ -11,11 +12,8 @@ static Status copy_columns(const Table *t, const char *where, const Schema *sche
         const char *name = schema_variable(schema, j)->name;
         if (table_column(t, name) < 0)
             return bad_data(err, "%s: %s: has no column %s", where, t->path, name);
-        for (size_t i = 0; i < t->n_rows; i++) {
-            double *x = &X[i * schema->n_var + j];
-            if (!schema->kinds[0] || !kinds_number(schema->kinds, j, sheet_text(t, i, name), x))
-                TRY(sheet_number(t, i, name, NAN, x, err));
-        }
+        for (size_t i = 0; i < t->n_rows; i++)
+            TRY(schema_cell(schema, j, t, i, &X[i * schema->n_var + j], err));
     }
     return STATUS_OK;
 }
@@ -69,24 +67,28 @@ static Status read_front(const char *where, const char *folder, const Schema *sc
 }
 
 /* Behind the n designs that X has. */
-static Status append(const char *where, const char *start, const Schema *schema, double **X, size_t *n, Err *err)
+static Status append(size_t n_var, const double more[], size_t n_more, double **X, size_t *n, Err *err)
+{
+    double *all = realloc(*X, (*n + n_more + 1) * n_var * sizeof *all);
+    if (!all)
+        return fail_memory(err, n_more, "designs");
+    memcpy(all + *n * n_var, more, n_more * n_var * sizeof *all);
+    *X = all;
+    *n += n_more;
+    return STATUS_OK;
+}
+
+static Status append_read(const char *where, const char *start, const Schema *schema, double **X, size_t *n, Err *err)
 {
     struct stat there;
-    double *more = NULL, *all;
+    double *more = NULL;
     size_t n_more = 0;
     if (stat(start, &there) != 0)
         return fail(err, STATUS_MISSING, "%s: %s: is not there", where, start);
     Status status = S_ISDIR(there.st_mode) ? read_front(where, start, schema, &more, &n_more, err)
                                            : read_table(where, start, schema, &more, &n_more, err);
-    const size_t size = schema->n_var * sizeof *more;
-    all = status == STATUS_OK ? realloc(*X, (*n + n_more + 1) * size) : NULL;
-    if (all) {
-        memcpy(all + *n * schema->n_var, more, n_more * size);
-        *X = all;
-        *n += n_more;
-    } else if (status == STATUS_OK) {
-        status = fail_memory(err, n_more, "designs");
-    }
+    if (status == STATUS_OK)
+        status = append(schema->n_var, more, n_more, X, n, err);
     free(more);
     return status;
 }
@@ -98,11 +100,77 @@ Status initial_designs_read(const char *where, const char *start, const Schema *
     *X = NULL;
     *n = 0;
     for (size_t i = 0; strcmp(start, "none") != 0 && status == STATUS_OK && i < list_count(start); i++)
-        status = list_item(start, i, item, sizeof item) ? append(where, item, schema, X, n, err)
+        status = list_item(start, i, item, sizeof item) ? append_read(where, item, schema, X, n, err)
                                                         : bad_data(err, "%s: item %zu is empty", where, i + 1);
     if (status != STATUS_OK) {
         free(*X);
         *X = NULL;
     }
     return status;
+}
+
+/* -- devices that do best alone ------------------------------------------------------------------------------------ */
+
+/* The middle of what is searched; `wall` of the way from the thinnest core to the thickest. */
+static void set_core(const Problem *p, const DesignSpace *space, double wall, double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++) {
+        const int is_wall = (int)d >= space->n_gaps && (int)d < space->n_gaps + space->n_walls;
+        x[d] = problem_spread(p, d, is_wall ? wall : 0.5);
+    }
+    problem_repair(p, x);
+}
+
+static int is_in_box(const Problem *p, const double x[])
+{
+    int is = 1;
+    for (size_t d = 0; d < p->n_var; d++)
+        is &= x[d] >= p->lower[d] && x[d] <= p->upper[d];
+    return is;
+}
+
+/* x with that device alone; 0: it is not in the space. */
+static int put_device(const Problem *p, SceneKind kind, const LinearDevice *d, double core_kg, double x[])
+{
+    const DesignSpace *space = tower_design(tower_of(p));
+    return (kind == SCENE_LINKS ? design_put_links(space, d->link_ns_m, x)
+                                : design_put_mass(space, core_kg, d->tmd_hz, d->tmd_damping, x)) &&
+           is_in_box(p, x);
+}
+
+/* Which of them the space has at all. */
+static size_t ask_devices(const Problem *p, const DesignOptions *o, double X[], Measured found[], SimTask task[])
+{
+    static const SceneKind KIND[] = {SCENE_LINKS, SCENE_TMD};
+    static const double WALL[] = {0.5, 0}; /* of a tuned mass the mass of the core is the objective */
+    const DesignSpace *space = tower_design(tower_of(p));
+    size_t n = 0;
+    for (int i = 0; i < 2; i++) {
+        double *x = X + n * p->n_var, unused[DESIGN_VARIABLES_MAX];
+        set_core(p, space, WALL[i], x);
+        if (KIND[i] == SCENE_LINKS ? o->link_exponent == 1 && design_put_links(space, 1, unused)
+                                   : design_put_mass(space, 1, 1, 1, unused)) {
+            task[n] = (SimTask){.kind = KIND[i], .x = x, .finds_device = 1, .parts = &found[n]};
+            n++;
+        }
+    }
+    return n;
+}
+
+Status initial_designs_of_devices(const Problem *p, const DesignOptions *o, double **X, size_t *n, Err *err)
+{
+    SimTask task[2];
+    Measured found[2];
+    double more[2 * DESIGN_VARIABLES_MAX], building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], kg;
+    const size_t n_tasks = tower_of(p) ? ask_devices(p, o, more, found, task) : 0;
+    if (n_tasks == 0)
+        return STATUS_OK;
+    TRY(tower_run(p, n_tasks, task, NULL, NULL, err));
+    for (size_t i = 0; i < n_tasks; i++) {
+        double *x = more + i * p->n_var;
+        TRY(scene_frequencies(tower_record(tower_of(p), 0)->scene, x, building, core, both, &kg, err));
+        if (put_device(p, task[i].kind, &found[i].device, kg, x))
+            TRY(append(p->n_var, x, 1, X, n, err));
+    }
+    return STATUS_OK;
 }

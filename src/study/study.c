@@ -186,11 +186,16 @@ static int observe(const SearchView *view, void *user)
 
 static Status search_config(Study *study, SearchConfig *config, Err *err)
 {
+    const Run *run = store_run(study->store);
     *config = search_config_of(&study->used);
     config->max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
-    if (!study->given)
+    if (!study->given) {
         TRY(initial_designs_read("search.start", study->used.search.start, adapter_schema(study->adapter),
                                  &study->given, &study->n_given, err));
+        if (!run || run->n_generations == 0) /* later nobody asks for them again */
+            TRY(initial_designs_of_devices(adapter_problem(study->adapter), &study->used.design, &study->given,
+                                           &study->n_given, err));
+    }
     config->given = study->given;
     config->n_given = study->n_given;
     return STATUS_OK;
