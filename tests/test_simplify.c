@@ -59,9 +59,9 @@ TEST(the_path_loses_stops_only_and_ends_on_steps_within_what_may_be_lost)
     const Evaluation *e = s.designs.row;
     assert_int_equal(s.n, SIMPLIFY_PATH);
     for (size_t i = 1; i < s.n; i++)
-        assert_at_most(s.n_stops[i], s.n_stops[i - 1]);
+        assert_at_most(s.n_left[i], s.n_left[i - 1]);
     for (int j = 0; j < study.schema.design.n_gaps; j++) {
-        assert_true(e[SIMPLIFY_CLOSING].x[j] == e[SIMPLIFY_START].x[j] || e[SIMPLIFY_CLOSING].x[j] == SIMPLIFY_OPEN_M);
+        assert_true(e[SIMPLIFY_CLOSING].x[j] == e[SIMPLIFY_START].x[j] || e[SIMPLIFY_CLOSING].x[j] == DESIGN_OPEN_M);
         assert_less(off_step(e[s.n - 1].x[j], STEP), 1e-9);
     }
     assert_at_most(e[s.n - 1].f[0], 1.05 * e[0].f[0] * (1 + 1e-12));
@@ -77,7 +77,7 @@ TEST(the_start_is_the_design_of_the_run_and_idle_stops_change_no_bit)
     const Evaluation *e = s.designs.row;
     assert_memory_equal(e[SIMPLIFY_START].x, run_x(&study, row), study.schema.n_var * sizeof *e->x);
     assert_memory_equal(e[SIMPLIFY_START].f, e[SIMPLIFY_CLOSING].f, study.schema.n_obj * sizeof *e->f);
-    assert_less(s.n_stops[SIMPLIFY_CLOSING], s.n_stops[SIMPLIFY_START]);
+    assert_less(s.n_left[SIMPLIFY_CLOSING], s.n_left[SIMPLIFY_START]);
     simplified_free(&s);
 }
 
@@ -85,7 +85,7 @@ TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goe
 {
     SimplifyConfig c = config_of(1e9);
     Simplified s = simplified(&c);
-    assert_int_equal(s.n_stops[s.n - 1], 0);
+    assert_int_equal(s.n_left[s.n - 1], 0);
     simplified_free(&s);
     c = (SimplifyConfig){0};
     s = simplified(&c);
@@ -139,7 +139,7 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
     assert_true(run_simplified(&now, row, pair) && pair[0] == row && pair[1] == now.table.n - 1);
     const double *x = run_x(&now, pair[1]);
     for (size_t j = 0; j < 20; j++) {
-        n_stops += x[j] < SIMPLIFY_OPEN_M;
+        n_stops += x[j] < DESIGN_OPEN_M;
         assert_less(off_step(x[j], 0.005), 1e-9);
     }
     for (size_t j = 20; j < 22; j++)
@@ -154,6 +154,45 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
     assert_non_null(strstr(page, shown));
     free(page);
     run_free(&now);
+}
+
+TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
+{
+    SimplifyConfig c = config_of(1e9);
+    c.zones = 3;
+    c.slack[0] = 0.3;
+    Simplified s = simplified(&c);
+    for (size_t i = SIMPLIFY_ZONES; i < s.n; i++)
+        for (int a = 0; a < 20; a++)
+            for (int b = 0; b < a; b++) {
+                const double *x = s.designs.row[i].x;
+                const int both = x[a] < DESIGN_OPEN_M && x[b] < DESIGN_OPEN_M;
+                assert_true(3 * a / 20 != 3 * b / 20 || !both || x[a] == x[b]);
+            }
+    assert_less(s.n_left[s.n - 1], s.n_left[0]);
+    simplified_free(&s);
+}
+
+/* A mass of that size at the roof changes little, links do: where a tenth may be lost the mass goes and links stay. */
+TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
+{
+    write_in_place("d.ini", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n[sim]\nduration_s = 20\n"
+                            "[design]\nvariables = gaps, thickness, links, tuned_mass\ndevices = gap, link, none\n"
+                            "device_zones = 4\ngap_zones = 1\nlink_zones = 1\nmass_kg = 1, 1e5\n[search]\npolish = 0\n"
+                            "objectives = j1_m, devices\ninitial = 8\npopulation = 8\nmax_evals = 8\n");
+    write_in_place("d.csv", "gap_m,t_base_m,t_top_m,link_n_s_m,tuned_mass_kg,tuned_mass_hz,tuned_mass_damping,"
+                            "device_zone_1,device_zone_2,device_zone_3,device_zone_4,device_roof\n"
+                            "9,0.02,0.02,7e5,10,0.3,0.1,gap,link,link,link,tuned_mass\n");
+    free(output_of("optimize @/d.ini --out @/d --set search.start=@/d.csv"));
+    char *said = output_of("simplify @/d --design 1 --keep j1_m=10%");
+    assert_non_null(strstr(said, "as it is: 21, "));
+    assert_non_null(strstr(said, "idle ones gone: 16, "));
+    const char *fewer = strstr(said, "fewer devices: ");
+    const int left = fewer ? atoi(strchr(fewer, ':') + 1) : 99;
+    assert_true(left == 5 || left == 10 || left == 15);
+    assert_non_null(strstr(said, "device_zone_1        none\n"));
+    assert_non_null(strstr(said, "device_roof          none\n"));
+    free(said);
 }
 
 TEST(what_stores_nothing_says_so_by_its_status)

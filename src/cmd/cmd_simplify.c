@@ -54,24 +54,39 @@ static Status take_options(const Args *args, Work *w, Err *err)
         if (c->slack[k] < 0.0)
             return misused(err, "--keep: %s may lose %g of its value; give 0 or more",
                            schema_objective(schema, k)->name, c->slack[k]);
+    long zones;
+    TRY(args_whole(args, "--zones", 1, FLOORS_MAX, 0, &zones, err));
+    c->zones = (int)zones;
     if (args_has(args, "--gap-step"))
         TRY(take_mm("--gap-step", args_value(args, "--gap-step"), &c->gap_step, err));
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
+static double measure_of(const Schema *s, const Evaluation *e, MeasureId id)
+{
+    size_t k = 0;
+    while (k < s->n_obj + s->n_extra && s->order.of[k] != (int)id)
+        k++;
+    return k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
+}
+
 static void show_path(const Work *w)
 {
-    static const char *const WORDS[] = {"as it is", "idle stops gone", "on steps", "moved on steps", "fewer stops"};
+    static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",
+                                        "on steps", "moved on steps", "fewer devices"};
     const Simplified *r = &w->result;
     json_t *table = json_array();
     for (size_t i = 0; i < r->n; i++) {
-        char label[64];
+        char label[96];
         const Evaluation *e = &r->designs.row[i];
-        snprintf(label, sizeof label, "%s: %zu", WORDS[i], r->n_stops[i]);
+        if (i == SIMPLIFY_ZONES && w->config.zones == 0)
+            continue;
+        snprintf(label, sizeof label, "%s: %g, %.4g", WORDS[i], measure_of(&w->run->schema, e, MEASURE_DEVICES),
+                 measure_of(&w->run->schema, e, MEASURE_COST));
         figures_design(table, label, 0, &w->run->schema, e->f, r->error[i], e->sd, e->extra);
     }
     figures_print(table);
-    puts("behind the colon: stops that are left");
+    puts("behind the colon: devices, and the cost by design.prices");
 }
 
 /* Name and number of every variable, gaps and plates in mm. */
@@ -79,8 +94,11 @@ static void show_design(const Work *w, const double x[])
 {
     const Schema *s = &w->run->schema;
     putchar('\n');
+    char word[KIND_WORD_MAX];
     for (size_t j = 0; j < s->n_var; j++)
-        if ((int)j < s->design.n_gaps && x[j] >= SIMPLIFY_OPEN_M)
+        if (schema_word(s, j, x[j], word))
+            printf("%-20s %s\n", schema_variable(s, j)->name, word);
+        else if ((int)j < s->design.n_gaps && x[j] >= DESIGN_OPEN_M)
             printf("%-20s no stop\n", schema_variable(s, j)->name);
         else if ((int)j < s->design.n_gaps + s->design.n_walls)
             printf("%-20s %g mm\n", schema_variable(s, j)->name, 1e3 * x[j]);
@@ -141,6 +159,7 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN),
+    VALUE("--zones", "N", "floors of each of so many zones become alike; each stays as it is if not given"),
     VALUE("--gap-step", "MM", "gaps become multiples of it; they stay if not given"),
     VALUE("--plates", "MM,MM,...", "walls become one of these; they stay if not given"),
     VALUE(
@@ -157,8 +176,9 @@ const Command CMD_SIMPLIFY = {
     .summary = "a design that can be built: fewer stops, gaps and plates as sold",
     .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
     .details =
-        "Takes out stops that never close, puts gaps and walls on steps, moves them on these, and takes out what\n"
-        "earns less than --keep, each simulated under all records of RUN. Prints the path; the end goes into the\n"
+        "Takes out stops that never close, makes the floors of a zone alike, puts gaps and walls on steps, moves\n"
+        "them on these, and takes out devices that earn less than --keep, each simulated under all records of RUN. "
+        "Prints the path; the end goes into the\n"
         "run as a design of the kind polished.",
     .options = OPTIONS,
     .run = run,

@@ -640,7 +640,7 @@ void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user
     for (size_t i = 0; i < d->n; i++)
         for (int j = 0; j < s->n_gaps; j++) {
             const double gap = d->x[i * s->n_var + j];
-            if (!(gap > GAP_MAX_M) || gap == SIMPLIFY_OPEN_M)
+            if (!(gap > GAP_MAX_M) || gap == DESIGN_OPEN_M)
                 continue;
             if (d->line && !d->id)
                 snprintf(line, sizeof line, ":%d", d->line[i]);

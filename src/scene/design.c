@@ -184,6 +184,15 @@ const char *design_word(const DesignSpace *s, int j, double x)
     return group == ROOF && x >= 0 && x < N_ROOF_DEVICES ? ROOF_WORDS[(int)x] : NULL;
 }
 
+int design_share_zone(const DesignSpace *s, int a, int b, int zones)
+{
+    const Group group = group_of(s, &a);
+    const int n[] = {s->n_gaps, 1, s->n_bumpers, 1, s->n_links, 1, s->n_choices, 1};
+    const int per_side = s->gap_sides == GAPS_EACH && group == GAP ? n[GAP] / SIDES : n[group];
+    return group_of(s, &b) == group && n[group] > 1 && a / per_side == b / per_side &&
+           a % per_side * zones / per_side == b % per_side * zones / per_side;
+}
+
 int design_is_log(const DesignSpace *s, int j)
 {
     const Group group = group_of(s, &j);

@@ -37,6 +37,8 @@
 #include "base/csv.h"
 #include "scene/options.h"
 
+static const double DESIGN_OPEN_M = 10.0; /* [m] a gap as wide stands for no stop: wider than any building sways */
+
 enum { DESIGN_VARIABLES_MAX = (SIDES + 3) * FLOORS_MAX + 6 };
 
 /* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides,
@@ -65,6 +67,9 @@ Status design_check(const DesignSpace *space, int j, double value, const char *w
 
 /* The word that stands for x where variable j is a choice; NULL: it is none, or has none such. */
 const char *design_word(const DesignSpace *space, int j, double x);
+
+/* Are variables a and b of the same sort, of floors in the same one of so many zones? */
+int design_share_zone(const DesignSpace *space, int a, int b, int zones);
 
 /* Is it searched on a logarithmic scale? */
 int design_is_log(const DesignSpace *space, int j);

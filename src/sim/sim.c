@@ -529,7 +529,7 @@ static void count_devices(const SimWorker *w, SceneKind kind, const Design *d, S
     const double mass_kg = kind == SCENE_TMD ? result->mcore_kg : kind == SCENE_IMPACT ? d->mass_kg : 0;
     int stops = 0, bumpers = 0, links = 0;
     for (int j = 0; j < w->core.top && kind != SCENE_NO_CORE; j++) {
-        const int is_stop = kind == SCENE_IMPACT && !isinf(design_gap(d, j));
+        const int is_stop = kind == SCENE_IMPACT && design_gap(d, j) < DESIGN_OPEN_M;
         stops += is_stop;
         bumpers += is_stop && d->bumper[j] > 0;
         links += kind == SCENE_LINKS || (kind == SCENE_IMPACT && d->link[j] > 0);

@@ -24,26 +24,66 @@ typedef struct {
 
 /* -- designs of a round -------------------------------------------------------------------------------------------- */
 
-/* Variable j is a gap of the present design, and closing it may. */
-static int is_stop(const Simplify *s, size_t j)
+/* The place of the word none of choice j; -1: it has none, or is no choice. */
+static int none_of(const Simplify *s, size_t j)
 {
-    return (int)j < s->space->n_gaps && s->x[j] < SIMPLIFY_OPEN_M;
+    int w = 0;
+    for (const char *word; (word = design_word(s->space, (int)j, w)); w++)
+        if (strcmp(word, "none") == 0)
+            return w;
+    return -1;
 }
 
-static size_t n_stops(const Simplify *s)
+/* Variable j is a gap of the present design that is narrower than an open one. */
+static int is_stop(const Simplify *s, size_t j)
+{
+    return (int)j < s->space->n_gaps && s->x[j] < DESIGN_OPEN_M;
+}
+
+/* Variable j stands for a device that may go: a choice where the space has any, whose last variable is one then. */
+static int is_device(const Simplify *s, size_t j)
+{
+    return none_of(s, s->n_var - 1) < 0 ? is_stop(s, j) : none_of(s, j) >= 0 && s->x[j] != none_of(s, j);
+}
+
+static size_t n_left(const Simplify *s)
 {
     size_t n = 0;
     for (size_t j = 0; j < s->n_var; j++)
-        n += is_stop(s, j);
+        n += is_device(s, j);
     return n;
 }
 
-/* The present design with variable j at `value`. */
+/* Variable k moves with variable j. */
+static int moves_with(const Simplify *s, size_t j, size_t k)
+{
+    return k == j || (s->config->zones > 0 && design_share_zone(s->space, (int)j, (int)k, s->config->zones) &&
+                      ((int)k >= s->space->n_gaps || is_stop(s, k)));
+}
+
+/* The first variable of those that move together. */
+static int leads(const Simplify *s, size_t j)
+{
+    for (size_t k = 0; k < j; k++)
+        if (moves_with(s, j, k))
+            return 0;
+    return 1;
+}
+
+/* The present design with variable j, and what moves with it, at `value`. */
 static void add(Simplify *s, size_t j, double value)
 {
     double *x = s->X + s->n++ * s->n_var;
     memcpy(x, s->x, s->n_var * sizeof *x);
-    x[j] = value;
+    for (size_t k = 0; k < s->n_var; k++)
+        if (moves_with(s, j, k))
+            x[k] = value;
+}
+
+/* ... without its device. */
+static void add_without(Simplify *s, size_t j)
+{
+    add(s, j, none_of(s, j) >= 0 ? none_of(s, j) : DESIGN_OPEN_M);
 }
 
 /* Above 1 where limits are violated by more than at the start. */
@@ -97,7 +137,7 @@ static Status note(Simplify *s, Simplification what, Err *err)
         s->violation = done.evaluation->violation;
     }
     out->loss[what] = loss_of(s, done.f, done.g);
-    out->n_stops[what] = n_stops(s);
+    out->n_left[what] = n_left(s);
     for (size_t k = 0; k < s->n_obj; k++)
         out->error[what][k] = NAN;
     out->n_evaluated++;
@@ -107,25 +147,67 @@ static Status note(Simplify *s, Simplification what, Err *err)
 
 /* -- the path ------------------------------------------------------------------------------------------------------ */
 
-static void add_removals(Simplify *s)
+/* The same results, but for what counts devices; beside links a stop that never closes changes their steps. */
+static int is_same(const Simplify *s, const double f[])
 {
-    s->n = 0;
-    for (size_t j = 0; j < s->n_var; j++)
-        if (is_stop(s, j))
-            add(s, j, SIMPLIFY_OPEN_M);
+    static const double ALIKE = 1e-6;
+    int same = 1;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        const int id = s->run->schema.order.of[k];
+        same &= fabs(f[k] - s->first[k]) <= ALIKE * fabs(s->first[k]) || id == MEASURE_DEVICES || id == MEASURE_COST;
+    }
+    return same;
 }
 
 static Status drop_idle_stops(Simplify *s, Err *err)
 {
-    add_removals(s);
+    s->n = 0;
+    for (size_t j = 0; j < s->n_var; j++)
+        if (is_device(s, j)) {
+            add_without(s, j);
+            double *x = s->X + (s->n - 1) * s->n_var; /* alone */
+            for (size_t k = 0; k < s->n_var; k++)
+                x[k] = k == j ? x[k] : s->x[k];
+        }
     TRY(simulate_round(s, err));
     for (size_t j = 0, i = 0; j < s->n_var; j++)
-        if (is_stop(s, j)) { /* design i of the round has no stop there */
-            if (s->ok[i] && memcmp(s->F + i * s->n_obj, s->first, s->n_obj * sizeof *s->F) == 0)
-                s->x[j] = SIMPLIFY_OPEN_M;
+        if (is_device(s, j)) { /* design i of the round does not have it */
+            if (s->ok[i] && is_same(s, s->F + i * s->n_obj))
+                s->x[j] = s->X[i * s->n_var + j];
             i++;
         }
     return note(s, SIMPLIFY_CLOSING, err);
+}
+
+/* The mean of what moves with variable j; of words the most frequent one, of equals the first. */
+static double middle_of(const Simplify *s, size_t j)
+{
+    double sum = 0.0, word = s->x[j];
+    size_t n = 0, most = 0;
+    for (size_t k = 0; k < s->n_var; k++) {
+        size_t alike = 0;
+        for (size_t i = 0; i < s->n_var && moves_with(s, j, k); i++)
+            alike += moves_with(s, j, i) && s->x[i] == s->x[k];
+        if (alike > most) {
+            most = alike;
+            word = s->x[k];
+        }
+        sum += alike > 0 ? s->x[k] : 0.0;
+        n += alike > 0;
+    }
+    return design_word(s->space, (int)j, 0) ? word : sum / (double)n;
+}
+
+static Status merge_zones(Simplify *s, Err *err)
+{
+    for (size_t j = 0; j < s->n_var && s->config->zones > 0; j++) {
+        if (!leads(s, j) || ((int)j < s->space->n_gaps && !is_stop(s, j)))
+            continue;
+        s->n = 0;
+        add(s, j, middle_of(s, j));
+        memcpy(s->x, s->X, s->n_var * sizeof *s->x);
+    }
+    return note(s, SIMPLIFY_ZONES, err);
 }
 
 static size_t nearest_plate(const SimplifyConfig *c, double t)
@@ -158,7 +240,9 @@ static void add_neighbours(Simplify *s)
     const SimplifyConfig *c = s->config;
     s->n = 0;
     for (size_t j = 0; j < s->n_var; j++) {
-        if (is_wall(s, j) && c->n_plates > 0) {
+        if (!leads(s, j)) {
+            continue;
+        } else if (is_wall(s, j) && c->n_plates > 0) {
             const size_t at = nearest_plate(c, s->x[j]);
             if (at > 0)
                 add(s, j, c->plate[at - 1]);
@@ -191,7 +275,10 @@ static Status descend_on_steps(Simplify *s, Err *err)
 static Status drop_what_earns_little(Simplify *s, Err *err)
 {
     for (double loss;;) {
-        add_removals(s);
+        s->n = 0;
+        for (size_t j = 0; j < s->n_var; j++)
+            if (is_device(s, j) && leads(s, j))
+                add_without(s, j);
         TRY(simulate_round(s, err));
         const size_t least = find_least(s, &loss);
         if (!(loss <= 1.0))
@@ -235,6 +322,7 @@ static Status walk(Simplify *s, const double start[], Err *err)
     TRY(reserve(s, start, err));
     TRY(note(s, SIMPLIFY_START, err));
     TRY(drop_idle_stops(s, err));
+    TRY(merge_zones(s, err));
     TRY(put_on_steps(s, err));
     TRY(descend_on_steps(s, err));
     if (s->out->loss[SIMPLIFY_MOVED] <= 1.0)
