@@ -17,7 +17,8 @@
  * Where design.devices has the word none, devices go by it, links and the tuned mass too; else stops go, by a gap of
  * DESIGN_OPEN_M.
  *
- * Every design is simulated as the run's were: under all records, with all replicates. Where step 5 cannot keep what is to be kept the path ends there, and the design with it.
+ * Every design is simulated as the run's were: under all records, with all replicates. Where step 5 cannot keep what is
+ * to be kept the path ends there, and the design with it.
  *
  * Ownership  simplify_design fills the caller's Simplified; simplified_free releases what it allocated
  * Threads    call it from one thread; the designs of a round share the simulator's workers */
