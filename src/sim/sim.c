@@ -477,6 +477,21 @@ static void replace_stops(const SimWorker *w, SceneKind kind, Design *d)
     }
 }
 
+static void count_devices(const SimWorker *w, const Design *d, SimResult *result)
+{
+    const PriceOptions *price = &w->options->design.prices;
+    int stops = 0, bumpers = 0, links = 0;
+    for (int j = 0; j < w->core.top; j++) {
+        const int is_stop = design_gap(d, j) < DESIGN_OPEN_M;
+        stops += is_stop;
+        bumpers += is_stop && d->bumper[j] > 0;
+        links += d->link[j] > 0;
+    }
+    result->n_devices = stops + links + (d->mass_kg > 0);
+    result->cost =
+        stops * price->gap + bumpers * price->bumper + links * price->link + 1e-3 * d->mass_kg * price->tuned_mass_t;
+}
+
 static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *err)
 {
     Joined joined;
@@ -510,6 +525,7 @@ static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *resu
     Status status = set_model(w, core, &d, kind == SCENE_IMPACT ? w->options->design.link_exponent : 1, err);
     if (status == STATUS_OK)
         status = run_engine(w, result, err);
+    count_devices(w, &d, result);
     w->run.work = work;
     return status;
 }
@@ -520,23 +536,6 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     if (kind != SCENE_NO_CORE)
         design_of(&w->scene->design, x, &d);
     return sim_run_built(w, kind, &d, result, err);
-}
-
-/* Links of SCENE_LINKS are on every floor that the core has, the tuned mass of SCENE_TMD is the core's. */
-static void count_devices(const SimWorker *w, SceneKind kind, const Design *d, SimResult *result)
-{
-    const PriceOptions *price = &w->options->design.prices;
-    const double mass_kg = kind == SCENE_TMD ? result->mcore_kg : kind == SCENE_IMPACT ? d->mass_kg : 0;
-    int stops = 0, bumpers = 0, links = 0;
-    for (int j = 0; j < w->core.top && kind != SCENE_NO_CORE; j++) {
-        const int is_stop = kind == SCENE_IMPACT && design_gap(d, j) < DESIGN_OPEN_M;
-        stops += is_stop;
-        bumpers += is_stop && d->bumper[j] > 0;
-        links += kind == SCENE_LINKS || (kind == SCENE_IMPACT && d->link[j] > 0);
-    }
-    result->n_devices = stops + links + (mass_kg > 0);
-    result->cost = stops * price->gap + bumpers * price->bumper + links * price->link +
-                   1e-3 * (mass_kg * price->tuned_mass_t + (kind == SCENE_TMD ? 0 : result->mcore_kg) * price->core_t);
 }
 
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
@@ -560,7 +559,8 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(filter_floors(w, result, err));
     set_drift_ratios(w->building->storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    count_devices(w, kind, d, result);
+    if (kind != SCENE_TMD)
+        result->cost += 1e-3 * result->mcore_kg * w->options->design.prices.core_t;
     set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
