@@ -208,6 +208,19 @@ TEST(constraints_whole_numbers_and_words_have_the_same_bytes_over_ranks)
     assert_same_files("bounded", "bounded-on-3");
 }
 
+TEST(devices_have_the_same_bytes_over_ranks)
+{
+    program();
+    write_in_place(
+        "devices.ini",
+        "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n[design]\nvariables = "
+        "gaps, thickness, links, tuned_mass\ndevices = gap, link, none\ngap_zones = 2\nlink_zones = 2\n"
+        "device_zones = 2\n[search]\ninitial = 12\npopulation = 12\nmax_evals = 24\npolish = 0\nthreads = 1\n");
+    free(output_of("optimize @/devices.ini --out @/devices"));
+    expect_code(launch(3, "optimize @/devices.ini --out @/devices-on-3"), 0);
+    assert_same_files("devices", "devices-on-3");
+}
+
 /* One other rank of one thread is one worker: then the order of arrival is that of asking. */
 TEST(asynchronous_with_one_worker_is_the_run_in_batches)
 {

@@ -390,6 +390,26 @@ TEST(both_engines_agree_where_storeys_lose_strength_and_stiffness)
     assert_alike(&r[0], &r[1], 1e-4);
 }
 
+TEST(both_engines_agree_on_the_baselines_of_a_tower_that_yields)
+{
+    static const SceneKind KINDS[] = {SCENE_RIGID, SCENE_LINKS, SCENE_TMD};
+    for (size_t k = 0; k < N_OF(KINDS); k++) {
+        SimResult r[2];
+        Err err = {0};
+        for (int e = 0; e < 2; e++) {
+            Tower t;
+            builtin_tower(&t, e ? ENGINE_CVODE : ENGINE_FAST, 0.004);
+            tower_open(&t);
+            sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 3e5, .tmd_hz = 0.25, .tmd_damping = 0.1});
+            CHECK_OK(sim_run(t.worker, KINDS[k], t.x, &r[e], &err), &err);
+            tower_close(&t);
+            assert_int_equal(r[e].outcome, RUN_OK);
+        }
+        assert_less(1, r[0].ed_hysteresis_pct);
+        assert_alike(&r[0], &r[1], 1e-4);
+    }
+}
+
 /* A stiff storey: flights of many samples at once follow every step in which it yields. */
 TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
 {

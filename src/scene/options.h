@@ -84,4 +84,4 @@ typedef struct {
     NumberList link_n_s_m, mass_kg, mass_hz, mass_damping;
     double link_exponent; /* [-] */
     PriceOptions prices;
-} DesignOptions;          /* the design variables and their bounds */
+} DesignOptions; /* the design variables and their bounds */

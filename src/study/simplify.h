@@ -53,7 +53,7 @@ typedef struct {
     EvaluationTable designs; /* the design after every simplification, in their order */
     size_t n;                /* of them */
     double loss[SIMPLIFY_PATH];
-    size_t n_left[SIMPLIFY_PATH]; /* variables that stand for a device that may go */
+    size_t n_left[SIMPLIFY_PATH];                /* variables that stand for a device that may go */
     double error[SIMPLIFY_PATH][OBJECTIVES_MAX]; /* likely: what twice the steps change; NAN: not known */
     size_t n_evaluated;
     double seconds;
