@@ -32,7 +32,8 @@
  * Ownership  a search belongs to the caller, who frees it; what is passed in is copied, what comes out is written into
  *            the caller's arrays
  * Threads    any: calls on one search exclude each other, searches do not know of each other. Between two calls no
- *            thread of the library runs. Not across fork: a child loads a saved search
+ *            thread of the library runs. Not across fork: a child loads a saved search. While a generation is made,
+ *            or a scene opened, the OpenBLAS of this process has one thread
  * Errors     every function that can fail returns an imtet_status and writes a sentence into *error (NULL: not wanted):
  *            what, where, what to do. Nothing has changed then. So is a handle that is NULL, as free leaves it */
 #ifndef IMTET_H

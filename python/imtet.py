@@ -15,12 +15,13 @@ the call returns (milliseconds; a generation of a search takes some 10 ms to sec
 import concurrent.futures
 import ctypes
 import ctypes.util
+import json
 import os
 import sqlite3
 
 import numpy as np
 
-__all__ = ["Search", "Scene", "Result", "Run", "open_run", "read_motion", "version", "ImtetError"]
+__all__ = ["Search", "Scene", "Result", "Run", "open_run", "merge_fronts", "read_motion", "version", "ImtetError"]
 
 
 class ImtetError(Exception):
@@ -429,8 +430,8 @@ class Run:
         self._scene = None
 
     def _read(self, db):
-        text, n_var = db.execute("SELECT settings, n_var FROM run").fetchone()
-        self.settings = _read_settings(text)
+        text, n_var, provenance = db.execute("SELECT settings, n_var, provenance FROM run").fetchone()
+        self.settings, self.inputs = _read_settings(text), json.loads(provenance).get("inputs", {})
         columns = [row[1] for row in db.execute("PRAGMA table_info(evaluation)")]
         finer = [row[1] for row in db.execute("PRAGMA table_info(finer)")]
         numbers = columns[columns.index("digest") + 1:]
@@ -465,9 +466,11 @@ class Run:
             wanted = (d.outcome == "ok") & ~(d.violation > 0)
         wanted &= np.array([i in self._marks for i in d.id], dtype=bool) | (d.kind == "polished")
         d = d[wanted]
-        F = np.column_stack([self._sense(k, n) * d[n] for k, n in enumerate(self.objectives)]) if len(d) else None
-        keep = [not np.any(np.all(F <= f, axis=1) & np.any(F < f, axis=1)) for f in F] if len(d) else []
-        return d[np.array(keep, dtype=bool)]
+        return d[self._is_nondominated(d)]
+
+    def _is_nondominated(self, d):
+        F = np.column_stack([self._sense(k, n) * d[n] for k, n in enumerate(self.objectives)])
+        return np.array([not np.any(np.all(F <= f, axis=1) & np.any(F < f, axis=1)) for f in F], dtype=bool)
 
     def design(self, number):
         """Row of the design of that id."""
@@ -500,3 +503,33 @@ def _read_settings(text):
 def open_run(path):
     """The Run of a folder that `imtet optimize` made."""
     return Run(path)
+
+
+_NOT_OF_THE_PROBLEM = ("search.", "run.", "problem.command", "problem.timeout_s", "sim.threads")
+_FILES = ("motion.record", "motion.records", "motion.forces", "building.model")  # told apart by their content
+
+
+def merge_fronts(*paths):
+    """The front of several runs of one problem: (record array, array of the run's number 0, 1, ... of each row). A design
+    that several runs have stands there once. ValueError where the problems differ, with what differs."""
+    runs = [Run(p) for p in paths]
+    if not runs:
+        raise ValueError("no run was given")
+
+    def problem(run):
+        kept = {k: v for k, v in run.settings.items() if not k.startswith(_NOT_OF_THE_PROBLEM) and k not in _FILES}
+        kept.update((k, v) for k, v in run.inputs.items() if k.endswith("_fnv1a"))
+        return {**kept, **{k: run.settings[k] for k in ("search.objectives", "search.limits")}}
+    first = problem(runs[0])
+    for path, run in zip(paths, runs):
+        other = problem(run)
+        differs = [f"{k} {first.get(k)} and {other.get(k)}" for k in {**first, **other} if first.get(k) != other.get(k)]
+        if differs or run.variables != runs[0].variables:
+            raise ValueError(f"{paths[0]} and {path} are runs of two problems: " + ("; ".join(differs) or "other variables"))
+    fronts = [np.asarray(r.front) for r in runs]
+    rows, of = np.concatenate(fronts), np.repeat(np.arange(len(runs)), [len(f) for f in fronts])
+    X = np.column_stack([rows[n] for n in runs[0].variables])
+    once = np.sort(np.unique(X, axis=0, return_index=True)[1])
+    rows, of = rows[once], of[once]
+    keep = runs[0]._is_nondominated(rows)
+    return rows[keep].view(np.recarray), of[keep]

@@ -176,15 +176,15 @@ static Status start(Asking *a, Err *err)
 /* A turn of the search, whose BLAS has one thread. */
 static Status take_turn(Asking *a, Err *err)
 {
-    const int before = linalg_threads(1);
     Status status = STATUS_OK;
+    linalg_begin();
     if (a->is_running)
         sem_post(&a->go);
     else
         status = start(a, err);
     if (status == STATUS_OK)
         wait_for(&a->back);
-    linalg_threads(before);
+    linalg_end();
     return status;
 }
 

@@ -20,9 +20,9 @@ struct imtet_scene {
 
 static Status open_tower(const imtet_scene *s, Problem *p, Err *err)
 {
-    const int threads = linalg_threads(1);
+    linalg_begin();
     const Status status = tower_open(p, &s->settings, TOWER_SINGLE, 1, err);
-    linalg_threads(threads);
+    linalg_end();
     return status;
 }
 

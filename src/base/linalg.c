@@ -2,6 +2,7 @@
 
 #include <cblas.h>
 #include <lapacke.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 
@@ -40,12 +41,32 @@ const char *linalg_kernel_name(void)
     return openblas_get_corename();
 }
 
-int linalg_threads(int n)
+/* As the number of threads that it guards, of the process. */
+static struct {
+    pthread_mutex_t lock;
+    int users, threads;
+} single = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static void count_users(int change)
 {
-    const int before = openblas_get_num_threads();
-    if (n != before)
-        openblas_set_num_threads(n);
-    return before;
+    pthread_mutex_lock(&single.lock);
+    const int is_first = single.users == 0;
+    single.users += change;
+    if (is_first)
+        single.threads = openblas_get_num_threads();
+    if (single.threads > 1 && (is_first || single.users == 0))
+        openblas_set_num_threads(is_first ? 1 : single.threads);
+    pthread_mutex_unlock(&single.lock);
+}
+
+void linalg_begin(void)
+{
+    count_users(1);
+}
+
+void linalg_end(void)
+{
+    count_users(-1);
 }
 
 /* The variable is gone again before another process is started, whose BLAS is its own affair. */

@@ -17,8 +17,10 @@ typedef enum { LINALG_KERNELS_LIST(CHOICE_NAME) } LinalgKernels;
 void linalg_use(LinalgKernels kernels);
 const char *linalg_kernel_name(void); /* "Haswell" */
 
-/* BLAS on n threads, and how many it had: for a library, which gives back what it found. */
-int linalg_threads(int n);
+/* For a library: between the two BLAS has one thread, and then again as many as before. The number is one of the whole
+ * process: of several threads that are between them the first and the last change it. */
+void linalg_begin(void);
+void linalg_end(void);
 
 /* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at
  * once, the first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where

@@ -217,6 +217,24 @@ class Simulating(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "no run is there"):
             imtet.open_run(PLACE)
 
+    def test_fronts_of_runs_of_one_problem_are_merged_and_of_two_refused(self):
+        def run(name, *more):
+            program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "40", "--threads", "1",
+                    *[w for k, v in SIX.items() for w in ("--set", f"{k}={v}")], *more)
+            return os.path.join(PLACE, name)
+        a, b, c = run("a"), run("b", "--seed", "2"), run("c", "--set", "motion.stretch=2")
+        merged, of = imtet.merge_fronts(a, b)
+        every = np.concatenate([np.asarray(imtet.open_run(r).front) for r in (a, b)])
+        senses = [-1 if n in ("ed5_10_pct", "edcs_pct") else 1 for n in imtet.open_run(a).objectives]
+        F = np.column_stack([s * every[n] for s, n in zip(senses, imtet.open_run(a).objectives)])
+        best = [i for i, f in enumerate(F) if not any((g <= f).all() and (g < f).any() for g in F)]
+        np.testing.assert_array_equal(merged.t_top_m, every["t_top_m"][best])
+        self.assertEqual(set(of), {0, 1})
+        again, _ = imtet.merge_fronts(a, a)
+        self.assertEqual(len(again), len(imtet.open_run(a).front))
+        with self.assertRaisesRegex(ValueError, "are runs of two problems: motion.stretch 3.1 and 2"):
+            imtet.merge_fronts(a, b, c)
+
     def test_a_record_is_read(self):
         dt, a, meta = imtet.read_motion("builtin:kobe-like", pga_g=0.1)
         self.assertAlmostEqual(abs(a).max(), 0.981)
