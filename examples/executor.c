@@ -2,7 +2,7 @@
  * go on. The designs are the same at any number of threads.
  *
  *   cc executor.c $(pkg-config --cflags --libs imtet) -lpthread -lm -o executor && ./executor */
-#define _GNU_SOURCE /* nanosleep */
+#define _POSIX_C_SOURCE 200809L /* nanosleep */
 #include <imtet.h>
 #include <math.h>
 #include <pthread.h>

@@ -312,18 +312,17 @@ TEST(what_is_installed_compiles_and_links_by_pkg_config_and_is_gone_again)
 TEST(python_does_what_its_tests_say)
 {
     static const char *const PYTHONS[] = {"python3", "/usr/bin/python3"}; /* that of Debian has Debian's numpy */
-    char command[1024] = "";
-    size_t k = 0;
-    for (; k < N_OF(PYTHONS); k++) {
+    char command[1024];
+    const char *python = NULL;
+    for (size_t k = 0; k < N_OF(PYTHONS) && !python; k++) {
         snprintf(command, sizeof command, "%s -c 'import numpy' 2>/dev/null", PYTHONS[k]);
-        if (system(command) == 0)
-            break;
+        python = system(command) == 0 ? PYTHONS[k] : NULL;
     }
-    if (!is_built() || k == N_OF(PYTHONS)) {
+    if (!is_built() || !python) {
         print_message("python3 with numpy (python3-numpy) is not here: python/imtet.py is not tested\n");
         skip();
     }
-    snprintf(command, sizeof command, "IMTET=$PWD/imtet %s tests/python/test_imtet.py %s", PYTHONS[k], place.folder);
+    snprintf(command, sizeof command, "IMTET=$PWD/imtet %s tests/python/test_imtet.py %s", python, place.folder);
     free(shell(command));
 }
 

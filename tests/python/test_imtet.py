@@ -149,6 +149,7 @@ class Searching(unittest.TestCase):
             if child.returncode == 0:
                 np.testing.assert_array_equal(np.load(state + ".npy"), np.hstack(drive(search()).told()[:2]))
                 os.remove(state)
+        print(kills, "kills", file=sys.stderr)
         self.assertGreater(kills, 0)
         subprocess.run([sys.executable, driver(), state], check=True)
         np.testing.assert_array_equal(np.load(state + ".npy"), np.hstack(drive(search()).told()[:2]))
