@@ -6,7 +6,7 @@
 #include "evaluate/tower.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
-#include "sim/sample_energy.h"
+#include "sim/samples.h"
 
 /* A tower of one worker for every simulation that is under way at once; they are opened when they are needed. */
 struct imtet_scene {
@@ -252,31 +252,6 @@ imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, con
 
 /* -- over time ----------------------------------------------------------------------------------------------------- */
 
-/* Rows of sample_row as they come. */
-typedef struct {
-    const SimWorker *worker;
-    size_t n, room, n_floors, width;
-    double *rows; /* (n, width) */
-    int lacks_memory;
-} Track;
-
-static void note(const SimSample *s, void *user)
-{
-    Track *t = user;
-    if (s->t == 0)
-        t->n = 0; /* a run is repeated with shorter steps */
-    if (t->n == t->room) {
-        const size_t room = 2 * t->room + 1024;
-        double *wider = realloc(t->rows, room * t->width * sizeof *wider);
-        t->lacks_memory |= !wider;
-        if (!wider)
-            return;
-        t->rows = wider;
-        t->room = room;
-    }
-    sample_row(t->worker, s, t->n_floors, t->rows + t->n++ * t->width);
-}
-
 /* The next n columns of the rows. */
 static size_t add_columns(imtet_result *r, const Track *t, const char *name, size_t first, size_t n)
 {
@@ -299,29 +274,14 @@ static void add_history(imtet_result *r, const Track *t)
         at = add_columns(r, t, ENERGIES[k], at, 1);
 }
 
-static Status follow(const Scene *scene, const Question *q, Track *t, Err *err)
-{
-    SimWorker *worker;
-    SimResult s;
-    TRY(sim_worker_create(&worker, scene, err));
-    t->worker = worker;
-    sim_worker_sample(worker, q->every_s, note, t);
-    const Status status = sim_run(worker, q->kind, q->x, &s, err);
-    sim_worker_free(worker);
-    if (status != STATUS_OK || t->lacks_memory)
-        return status == STATUS_OK ? fail_memory(err, t->n, "rows of a history") : status;
-    add_history(q->result, t);
-    result_text(q->result, "outcome", outcome_word(measure_outcome(s.outcome)));
-    return STATUS_OK;
-}
-
 static Status history(const Problem *p, const Question *q, Err *err)
 {
-    Track t = {.n_floors = (size_t)tower_n_floors(tower_of(p))};
-    t.width = SAMPLE_FIXED + SAMPLE_PARTS * t.n_floors;
-    const Status status = follow(tower_record(tower_of(p), 0)->scene, q, &t, err);
-    free(t.rows);
-    return status;
+    Track t;
+    TRY(track_run(tower_record(tower_of(p), 0)->scene, q->kind, q->x, q->every_s, &t, err));
+    add_history(q->result, &t);
+    result_text(q->result, "outcome", outcome_word(measure_outcome(t.outcome)));
+    track_free(&t);
+    return STATUS_OK;
 }
 
 imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n, double every_s,

@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "cmd/designs.h"
-#include "sim/sample_energy.h"
+#include "sim/samples.h"
 #include "motion/spectrum.h"
 #include "sim/floor_record.h"
 #include "store/output.h"

@@ -1,14 +1,14 @@
 /* report/history.h -- one response over time, as the engine fast goes through it: a floor's displacement and where
  * the input energy has gone so far.
  *
- * sim/sample_energy.h says which energies.
+ * sim/samples.h says which energies.
  * Instants   every sample of the motion, from t = 0
  * Ownership  history_run allocates, history_free releases (an empty History is fine) */
 #ifndef IMTET_REPORT_HISTORY_H
 #define IMTET_REPORT_HISTORY_H
 
 #include "evaluate/scenario.h"
-#include "sim/sample_energy.h"
+#include "sim/samples.h"
 
 typedef struct {
     size_t n;

@@ -1,7 +1,6 @@
-#include "sim/sample_energy.h"
+#include "sim/samples.h"
 
 #include "base/units.h"
-#include "sim/sim.h"
 
 static void add_mode(const SimSample *s, int i, double energy[N_ENERGIES])
 {
@@ -37,4 +36,47 @@ void sample_row(const SimWorker *worker, const SimSample *s, size_t n_floors, do
             row[k * n_floors] = part[k];
     }
     sample_energies(s, row + (SAMPLE_PARTS - 1) * n_floors);
+}
+
+static void note(const SimSample *s, void *user)
+{
+    Track *t = user;
+    if (s->t == 0)
+        t->n = 0;
+    if (t->n == t->room) {
+        const size_t room = 2 * t->room + 1024;
+        double *wider = realloc(t->rows, room * t->width * sizeof *wider);
+        t->lacks_memory |= !wider;
+        if (!wider)
+            return;
+        t->rows = wider;
+        t->room = room;
+    }
+    sample_row(t->worker, s, t->n_floors, t->rows + t->n++ * t->width);
+}
+
+Status track_run(const Scene *scene, SceneKind kind, const double x[], double every_s, Track *out, Err *err)
+{
+    SimWorker *worker;
+    SimResult result;
+    const size_t n_floors = (size_t)scene_n_floors(scene);
+    *out = (Track){.n_floors = n_floors, .width = SAMPLE_FIXED + SAMPLE_PARTS * n_floors};
+    TRY(sim_worker_create(&worker, scene, err));
+    out->worker = worker;
+    sim_worker_sample(worker, every_s, note, out);
+    Status status = sim_run(worker, kind, x, &result, err);
+    sim_worker_free(worker);
+    if (status == STATUS_OK && out->lacks_memory)
+        status = fail_memory(err, out->n, "rows of a response");
+    if (status == STATUS_OK)
+        out->outcome = result.outcome;
+    else
+        track_free(out);
+    return status;
+}
+
+void track_free(Track *t)
+{
+    free(t->rows);
+    *t = (Track){0};
 }
