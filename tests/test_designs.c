@@ -241,7 +241,7 @@ TEST(words_that_name_nothing_are_refused_with_what_is_there)
 {
     expect(65, "the nearest id is 24", SIMULATE "@/run:999");
     expect(65, "did you mean knee", SIMULATE "@/run:nee");
-    expect(65, "there are j1_m, j2_m", SIMULATE "@/run:best_j1");
+    expect(65, "j1 is no objective; did you mean j1_m?", SIMULATE "@/run:best_j1");
     expect(66, "nowhere", SIMULATE "@/nowhere:knee");
     expect(66, "holds no run", SIMULATE "@/");
     expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
