@@ -270,7 +270,7 @@ static json_t *json_of_beyond_law(const Report *r)
     return ids;
 }
 
-static json_t *json_of_importance(const Importance *m, const Schema *schema)
+json_t *importance_json(const Importance *m, const Schema *schema)
 {
     json_t *total = json_array();
     if (m->n_centres == 0) {
@@ -364,7 +364,7 @@ json_t *report_json(const Report *r)
         spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), run->table.row[r->knee].id,
         run->table.row[r->chosen].id, json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run),
         run->n_failed, run->n_front, json_of_names(r), json_of_beyond_law(r),
-        json_of_importance(&r->importance, &run->schema), growth_json(run),
+        importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
         json_of_pair(run, r->chosen), json_of_named(r), json_of_settings(run->settings), run->provenance);
 }

@@ -9,7 +9,7 @@
 #include <zlib.h>
 
 #include "base/json.h"
-#include "report/report.h"
+#include "report/report_json.h"
 #include "serve/answers.h"
 #include "serve/guard.h"
 
@@ -253,6 +253,16 @@ static Status show_front(Visit *v, Answer *a, Err *err)
     return answer_json(answer_front(v->view.look), 6, a);
 }
 
+static Status show_importance(Visit *v, Answer *a, Err *err)
+{
+    const Run *run = &v->view.look->run;
+    Importance m = {0};
+    TRY(importance_of(run, &m, err));
+    const Status status = answer_json(importance_json(&m, &run->schema), 6, a);
+    importance_free(&m);
+    return status;
+}
+
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
@@ -395,6 +405,7 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
                                {"", 1, 0, show_page, NULL},
                                {"events", 1, 0, show_events, NULL},
                                {"front", 1, 0, show_front, NULL},
+                               {"importance", 1, 0, show_importance, NULL},
                                {"design", 1, 1, show_design, NULL},
                                {"what-if", 1, 0, show_bounds, show_what_if},
                                {"against", 1, 1, show_against, NULL}};

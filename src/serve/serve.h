@@ -6,6 +6,7 @@
  *   GET  /TOKEN/RUN/                the page (report/report.h); RUN: a number
  *   GET  /TOKEN/RUN/events          server-sent events: the status, whenever it changes
  *   GET  /TOKEN/RUN/front           front and growth as they are now
+ *   GET  /TOKEN/RUN/importance      total Sobol indices of variables for objectives
  *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/on_demand.h)
  *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/on_demand.h)
  *   GET  /TOKEN/RUN/against/OTHER   two runs

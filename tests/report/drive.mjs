@@ -173,8 +173,13 @@ const tried = {
     await press("l"); // the focus went with it
     assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`log=${names[0]}`));
     await press("l");
+    const ticks = () => page.evaluate(`Array.from(document.querySelector(${JSON.stringify(headingOf(names[0]))}).parentNode.querySelectorAll(".tick text"), (t) => +t.textContent.replace("\u2212", "-"))`);
+    await press("p"); // by percentiles: ticks are values of designs, as many between any two
+    assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`percent=${names[0]}`));
+    assert.ok((await ticks()).length > 2);
+    await press("p");
     await press("Enter");
-    assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 6);
+    assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 7);
     await press("Escape");
     assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
     await press("Delete");

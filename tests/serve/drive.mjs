@@ -137,7 +137,7 @@ const tried = {
     assert.notEqual(await page.evaluate("document.querySelector('#trial tbody').textContent"), before);
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
     tell("the peak of the motion dragged", await dragSlider(0, 12));
-    assert.match(await page.evaluate("document.getElementById('place').textContent"), /another motion/);
+    assert.match(await page.evaluate("document.getElementById('place').textContent"), /motion or restitution differ/);
     await click("#back");
     await until("/Nondominated/.test(document.getElementById('place').textContent)");
   },
@@ -244,6 +244,15 @@ const tried = {
       const lie = await page.evaluate(`Array.from(document.querySelectorAll("#what-if .words span"), (e) => e.getBoundingClientRect()).flatMap((a, i, all) => all.slice(i + 1).filter((b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)).length`);
       assert.equal(lie, 0, `${lie} words lie on others at ${width} px`);
     }
+  },
+  async "which variables matter is found when its part is opened, as in the report"() {
+    await open("a");
+    await page.evaluate("document.getElementById('which-variables-matter').open = true");
+    await page.until("document.querySelector('#which-variables-matter figure svg')");
+    const html = join(folder, "a.html");
+    execFileSync(imtet, ["report", join(root, "a"), "--out", html]);
+    const report = JSON.parse(readFileSync(html, "utf8").match(/id="run">([^]*?)<\/script>/)[1]);
+    assert.deepEqual(await page.evaluate("fetch('importance').then((answer) => answer.json())"), report.importance);
   },
   async "a run of another problem has its front, its progress and no sliders"() {
     if (!(await runs()).some((r) => r.name === "c")) return;

@@ -151,8 +151,19 @@ function extent(c, beside = shownOverlays()) {
   return [Math.min(...all), Math.max(...all)];
 }
 
+// Values of a column that as many designs lie between, from one end of its scale to the other.
+function percentiles(c, low, high) {
+  const sorted = Float64Array.from(c.value).filter(Number.isFinite).sort(), inner = Array.from({ length: 19 }, (_, k) => sorted[Math.round(((k + 1) * (sorted.length - 1)) / 20)]);
+  return [...new Set([low, ...inner.filter((v) => v > low && v < high), high])];
+}
+
 function scaleOf(c, from, to, pad) {
   const [low, high] = extent(c);
+  const spread = state.percent.has(c) ? percentiles(c, low, high) : [];
+  if (spread.length > 2) {
+    const scale = charts.scaleLinear(spread, spread.map((_, k) => from + ((to - from) * (k + pad)) / (spread.length - 1 + 2 * pad)));
+    return Object.assign(scale, { ticks: () => spread.filter((_, k) => k % Math.ceil(spread.length / 10) === 0) });
+  }
   if (state.log.has(c) && low > 0) {
     const room = (high / low) ** pad;
     return charts.scaleLog([low / room, high * room], [from, to]);

@@ -3,7 +3,7 @@
 const state = {
   axes: [...results], // of the parallel coordinates, from left to right
   inverted: new Set(), // columns with their better, or larger, side up
-  log: new Set(),
+  log: new Set(), percent: new Set(),
   x: objectives[0],
   y: objectives[Math.min(1, objectives.length - 1)],
   colour: objectives[objectives.length - 1],
@@ -202,7 +202,7 @@ const pairsFrom = (text = "") => new Map(text.split(",").map((part) => part.spli
 function addressOf() {
   const names = (list) => list.map((c) => c.name).join(",");
   const all = {
-    axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), in: rangesText(state.ranges),
+    axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), percent: names([...state.percent]), in: rangesText(state.ranges),
     steps: state.steps.map(({ keep, ranges }) => (keep ? "+" : "-") + rangesText(ranges)).join(";"), x: state.x.name, y: state.y.name,
     colour: state.colour.name, theme: state.theme, kept: state.trials, weights: pairsText(state.weights), wish: pairsText(state.wishes), mark: state.marked === undefined ? "" : String(ids[state.marked]),
   };
@@ -248,7 +248,7 @@ function readAddress() {
   const named = all.axes.split(",").map((word) => [byName(word.replace(/^-/, "")), word.startsWith("-")]).filter(([c]) => c);
   if (named.length) state.axes = named.map(([c]) => c);
   state.inverted = new Set(named.filter(([, up]) => up).map(([c]) => c));
-  state.log = new Set(list(all.log ?? ""));
+  for (const key of ["log", "percent"]) state[key] = new Set(list(all[key] ?? ""));
   state.ranges = rangesFrom(all.in ?? "");
   state.steps = (all.steps ?? "").split(";").filter(Boolean).map((text) => ({ keep: text[0] === "+", ranges: rangesFrom(text.slice(1)) }));
   for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];

@@ -20,6 +20,7 @@ function axisActions(c) {
     ["Move left", at > 0, () => move(-1), "ArrowLeft"], ["Move right", at < state.axes.length - 1, () => move(1), "ArrowRight"],
     ["Turn over", true, () => toggle(state.inverted), "i"],
     [state.log.has(c) ? "Linear" : "Logarithmic", extent(c, [])[0] > 0, () => toggle(state.log), "l"],
+    [state.percent.has(c) ? "By value" : "Percentiles", !c.palette, () => toggle(state.percent), "p"],
     ["Colour by it", true, () => (state.colour = c), "c"],
     ["Hide", state.axes.length > 1, () => state.axes.splice(at, 1), "Delete"],
   ];
@@ -207,7 +208,7 @@ function parallelCoordinates(host) {
   function headAxis(group, axis, room) {
     const { c } = axis;
     const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
-      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, c colours by it, Delete hides it, Enter opens its menu`);
+      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu`);
     g.append("rect").attr("x", -Math.min(room, 2 * margin.left) / 2 + 2).attr("y", 0).attr("width", Math.min(room, 2 * margin.left) - 4).attr("height", margin.top - 2);
     label(g, c, room);
     g.append("title").text(`${c.what}. Drag sideways to move, down to turn over, up to hide; click for more.`);

@@ -126,7 +126,9 @@ function frontPart() {
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);
-  if (run.importance) importanceFigure(folded(host, "Which variables matter"));
+  const matters = folded(host, "Which variables matter");
+  matters.hidden = !run.importance; // imtet serve finds it when it is wanted
+  if (run.importance) importanceFigure(matters);
   const list = folded(host, "Selected designs as a table", true);
   list.append(element("p", { class: "note" }, "Click a heading to sort, a number to mark that design in the pictures."));
   designTable(list.appendChild(element("div")));

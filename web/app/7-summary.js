@@ -17,7 +17,7 @@ const storeys = (d) => `${d.gap_m.length} storeys, ${show(d.storey_m.reduce((a, 
 function change(value, before) {
   const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
   if (pct === 0) return "the same";
-  return value > 2 * before ? (value > 50 * before ? `from ${show(before)}` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
+  return value > 2 * before ? (value > 50 * before ? `${show(before)} with` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
 }
 
 // -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth; NaN: not known, or the
@@ -31,17 +31,17 @@ function verdict(raw, b, k) {
 function gainAndPrice(raw, b) {
   const known = objectives.map((c, k) => ({ c, k, ratio: (raw[k] / b.raw[k]) ** c.sense }));
   const gain = known.find(({ k }) => verdict(raw, b, k) > 0), price = known.filter(({ k }) => verdict(raw, b, k) < 0).sort((p, q) => q.ratio - p.ratio)[0];
-  const words = (verb, { c, k }) => `${verb} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)} (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`;
-  return [gain && words("it brings", gain), price && words("at the price of", price)].filter(Boolean).join(", ");
+  const words = (up, { c, k }, down) => `${raw[k] < b.raw[k] === (up === "reduces") ? up : down} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)} (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`;
+  return [gain && words("reduces", gain, "raises"), price && words("at the price of raising", price, "at the price of reducing")].filter(Boolean).join(", ");
 }
 
 function sentence(d) {
-  const whose = run.chosen === run.knee ? `the knee, design ${run.chosen}` : `design ${run.chosen}`;
+  const whose = run.chosen === run.knee ? `the knee (design ${run.chosen})` : `design ${run.chosen}`;
   const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(run.front)} on the front${run.front > n ? `, ${count(n)} of them on this page` : ""}`;
-  if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)}, is nearest to the best of every objective.`;
+  if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)} is nearest to the best of every objective.`;
   const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, protected by impacts on a core inside: ${done}${more}. Against the building without core, ${whose}: ${what || "neither gains nor pays"}.`;
+  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, protected by impacts on a core inside: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with

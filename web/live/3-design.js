@@ -32,6 +32,16 @@ async function completeSummary() {
   layoutChanged();
 }
 
+// Which variables matter is found when its part is opened.
+const matters = document.getElementById("which-variables-matter");
+matters.hidden = false;
+matters.addEventListener("toggle", async () => {
+  if (!run.importance) run.importance = await ask("importance").catch(() => null);
+  if (run.importance) importanceFigure(matters);
+  else matters.append(element("p", { class: "note" }, "Too few designs succeeded to say so."));
+  drawAll();
+}, { once: true });
+
 // ---- two to four side by side
 
 const compared = []; // { name, raw, gap_m, peaks }
