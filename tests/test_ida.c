@@ -8,21 +8,21 @@ TEST(a_range_of_intensities_ends_at_its_end_in_round_numbers)
     double levels[IDA_LEVELS_MAX];
     size_t n;
     Err err = {0};
-    CHECK_OK(ida_levels("0.05:0.05:0.6", levels, &n, &err), &err);
+    CHECK_OK(ida_levels("--pga", "0.05:0.05:0.6", levels, &n, &err), &err);
     assert_int_equal(n, 12);
     for (size_t i = 0; i < n; i++) {
         char text[16];
         snprintf(text, sizeof text, "%.2f", 0.05 * (double)(i + 1));
         assert_same_number(levels[i], strtod(text, NULL));
     }
-    CHECK_OK(ida_levels("0.1:0.25:0.7", levels, &n, &err), &err);
+    CHECK_OK(ida_levels("--pga", "0.1:0.25:0.7", levels, &n, &err), &err);
     assert_int_equal(n, 3); /* 0.1, 0.35, 0.6 */
-    CHECK_OK(ida_levels("0.3:1:0.3", levels, &n, &err), &err);
+    CHECK_OK(ida_levels("--pga", "0.3:1:0.3", levels, &n, &err), &err);
     assert_int_equal(n, 1);
     static const char *const BAD[] = {"0:0.1:1", "0.1:0:1", "0.5:0.1:0.4", "0.1:0.1",       "0.1:0.1:1g",
                                       "a:b:c",   "nan:1:2", "0.1:0.1:inf", "0.001:0.001:2", "1e-9:1e-18:1"};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++)
-        assert_int_equal(ida_levels(BAD[i], levels, &n, &err), STATUS_USAGE);
+        assert_int_equal(ida_levels("--pga", BAD[i], levels, &n, &err), STATUS_USAGE);
 }
 
 /* n records of which J1 is as given (INFINITY: failed), one intensity. */

@@ -4,7 +4,11 @@
 #include "analysis/fragility.h"
 #include "base/random.h"
 #include "base/stat.h"
+#include "evaluate/consequences.h"
+#include "evaluate/race.h"
 #include "evaluate/replicates.h"
+#include "motion/motion_scale.h"
+#include "motion/spectrum.h"
 
 enum { RECORDS = 40 };
 
@@ -145,6 +149,9 @@ TEST(what_the_counts_do_not_say_is_not_known)
     const Fragility parted = fragility_fit(3, x, n_at, (size_t[]){0, 5, 5});
     assert_close(parted.median, sqrt(2), 1e-12);
     assert_true(isnan(parted.beta) && isnan(parted.sd_ln_median));
+    const Fragility one = fragility_fit(3, x, n_at, (size_t[]){0, 2, 5}); /* as likely as can be with beta 0 */
+    assert_close(one.median, 2, 1e-12);
+    assert_true(isnan(one.beta));
     assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){4, 3, 1}).beta));
     const Fragility f = fragility_fit(3, x, n_at, (size_t[]){1, 2, 4});
     assert_less(0, f.beta);
@@ -164,6 +171,252 @@ TEST(the_yearly_rate_is_that_of_the_closed_form)
     assert_close(fragility_rate(&f, 30, hazard), k0 * pow(0.6, -k) * exp(k * k * 0.16 / 2), 1e-4);
     const Fragility step = {0.6, NAN, NAN, NAN};
     assert_close(fragility_rate(&step, 30, hazard), k0 * pow(0.6, -k), 2e-2);
+}
+
+/* -- consequences -------------------------------------------------------------------------------------------------- */
+
+TEST(a_state_begins_at_its_median_where_it_is_as_likely_as_not)
+{
+    assert_int_equal(damage_state(PART_STRUCTURE, 0.0059), 0);
+    assert_string_equal(damage_word(damage_state(PART_STRUCTURE, 0.0213)), "moderate");
+    assert_string_equal(damage_word(damage_state(PART_DRIFT, 0.0213)), "moderate");
+    assert_string_equal(damage_word(damage_state(PART_ACCELERATION, 11)), "complete");
+    for (DamagedPart p = 0; p < N_PARTS; p++) {
+        const struct DamagePart *d = &DAMAGE_PARTS[p];
+        double before = 0;
+        for (int s = 0; s < DAMAGE_STATES; s++) { /* half of a step at its median, by the chances of the others */
+            double cost = 0, last = 0;
+            for (int k = 0; k < DAMAGE_STATES; k++) {
+                const double z = log(d->median[s] / d->median[k]) / d->beta;
+                cost += (k == s ? 0.5 : 0.5 * (1 + erf(z / sqrt(2)))) * (d->cost[k] - last);
+                last = d->cost[k];
+            }
+            assert_close(damage_cost(p, d->median[s]), cost, 1e-12);
+            assert_less(before, cost);
+            before = cost;
+        }
+    }
+}
+
+/* Nothing moves: nothing is lost. Everything is beyond repair: the three parts are the whole building. */
+TEST(the_loss_lies_between_nothing_and_the_whole_building)
+{
+    SimResult r = {.n_floors = 3};
+    char text[DAMAGE_WORDS_MAX];
+    assert_at_most(damage_loss(&r), 0);
+    for (int j = 0; j < 3; j++)
+        r.drift_ratio[j] = r.drift_ratio_max = 1e3, r.peak_acceleration_g[j] = r.j3_g = 1e5;
+    assert_close(damage_loss(&r), 1, 1e-9);
+    assert_close(measured(&r).value[MEASURE_LOSS], 1, 1e-9);
+    assert_non_null(strstr(damage_words(&r, text), "parts sensitive to acceleration beyond complete"));
+    r.drift_ratio[1] = r.drift_ratio[2] = 0;
+    assert_close(damage_loss(&r), (0.192 + 0.329) / 3 + 0.479, 1e-9);
+}
+
+/* -- as a command -------------------------------------------------------------------------------------------------- */
+
+#define SUITE  "evaluate @/tower.ini --design @/chance:knee --records @/three_list.txt "
+#define CURVES SUITE "--sa 0.1:0.1:0.6 --fragility 'drift_ratio=0.012,drift_ratio<=0.02,j3_g=0.5' "
+
+static const json_t *curve_of(const json_t *o, const char *of, const char *scene)
+{
+    size_t i;
+    json_t *c;
+    json_array_foreach(json_object_get(o, "fragility"), i, c)
+    {
+        if (strcmp(json_string_value(json_object_get(c, "of")), of) == 0 &&
+            strcmp(json_string_value(json_object_get(c, "scene")), scene) == 0)
+            return c;
+    }
+    return NULL;
+}
+
+/* What was counted is what the rows of the records have; the building alone answers in proportion to Sa. */
+TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere)
+{
+    write_in_place("three_list.txt", "builtin:suite-01\nbuiltin:suite-02\nbuiltin:suite-03\n");
+    write_in_place("hazard.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.01\n1,0.0001\n");
+    json_t *o = json_of(CURVES "--hazard @/hazard.csv --json"), *run;
+    static const char *const SCENES[] = {"with_core", "rigid", "no_core", "links"};
+    size_t i, n[4] = {0};
+    double at_first[3], link = 0;
+    json_array_foreach(json_object_get(o, "records"), i, run)
+    {
+        for (int c = 0; c < 4; c++)
+            n[c] += number(json_object_get(run, SCENES[c]), "j3_g") > 0.5;
+        const double j1 = number(json_object_get(run, "no_core"), "j1_m"), sa = number(run, "sa_g");
+        assert_close(sa, 0.1 * (double)(i % 6 + 1), 1e-12);
+        at_first[i / 6] = i % 6 == 0 ? j1 / sa : at_first[i / 6];
+        assert_close(j1 / sa, at_first[i / 6], 1e-9);
+        link = i == 0 ? number(json_object_get(run, "links"), "link_ns_m") : link;
+        assert_same_number(number(json_object_get(run, "links"), "link_ns_m"), link);
+    }
+    assert_int_equal(i, 18);
+    for (int c = 0; c < 4; c++) {
+        const json_t *curve = curve_of(o, "j3_g", SCENES[c]), *exceeded = json_object_get(curve, "exceeded");
+        size_t sum = 0;
+        for (size_t l = 0; l < 6; l++)
+            sum += (size_t)json_integer_value(json_array_get(exceeded, l));
+        assert_int_equal(sum, n[c]);
+        const json_t *rate = json_object_get(curve, "rate_per_year");
+        if (json_is_number(rate)) /* of 0.01 g at most, and of the last intensity at least where all exceed it */
+            assert_less(json_number_value(rate), 0.1);
+    }
+    json_decref(o);
+    free(output_of(CURVES "--csv @/rows.csv"));
+    char *rows = read_in_place("rows.csv");
+    assert_non_null(strstr(rows, "record,scene,outcome,sa_g,pga_g,scale,"));
+    free(rows);
+}
+
+TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
+{
+    json_t *o = json_of(SUITE "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
+    const json_t *hz = json_object_get(b, "building_hz");
+    const double T = 1 / json_number_value(json_array_get(hz, 0));
+    Motion m;
+    Err err = {0};
+    CHECK_OK(motion_load(&m, "builtin:suite-01", UNIT_FROM_FILE, &err), &err);
+    double at = 0;
+    spectrum_psa(&m, 0.05, 1, &T, &at);
+    assert_close(number(json_array_get(json_object_get(o, "records"), 0), "scale"), 0.2 * 9.81 / at, 1e-6);
+    motion_free(&m);
+    json_decref(o);
+    json_decref(b);
+    expect(2, "--sa and --pga do not go together", SUITE "--sa 0.2 --pga 0.3");
+    expect(2, "--fragility wants intensities", SUITE "--sa 0.2 --fragility j3_g=1");
+    expect(2, "is no list of NAME=NUMBER", SUITE "--sa 0.1:0.1:0.2 --fragility j3_g");
+    expect(2, "drift is no result", SUITE "--sa 0.1:0.1:0.2 --fragility drift=1");
+    expect(2, "a probability is no limit of one simulation", SUITE "--sa 0.1:0.1:0.2 --fragility limits");
+    expect(65, "no storey yields", SUITE "--sa 0.1:0.1:0.2 --fragility ductility=2");
+    write_in_place("pga.csv", "pga_g,rate_per_year\n0.01,0.1\n0.1,0.01\n");
+    write_in_place("up.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.2\n");
+    expect(65, "pga.csv: has no columns sa_g and rate_per_year of two rows", CURVES "--hazard @/pga.csv");
+    expect(65, "up.csv:3: intensities must rise, and their rates fall", CURVES "--hazard @/up.csv");
+}
+
+/* -- records that speak for the rest ------------------------------------------------------------------------------- */
+
+enum { WORLD_RECORDS = 24, WORLD_DESIGNS = 40, WORLD_OBJECTIVES = 2 };
+
+/* Designs with two factors: most records show the first, some the second, all with noise; those at `clear` show their
+ * factor without. */
+typedef struct {
+    double y[WORLD_DESIGNS][WORLD_RECORDS];
+} World;
+
+static void make_world(World *w, uint32_t seed, const size_t clear[2])
+{
+    for (size_t i = 0; i < WORLD_DESIGNS; i++) {
+        Random random = random_stream(seed, RANDOM_TEST, 1, (uint32_t)i);
+        const double factor[2] = {random_normal(&random), random_normal(&random)};
+        for (size_t r = 0; r < WORLD_RECORDS; r++) {
+            const double noise = r == clear[0] || r == clear[1] ? 0 : 2;
+            w->y[i][r] = factor[r == clear[1] || (r != clear[0] && r % 3 == 0)] + noise * random_normal(&random);
+        }
+    }
+}
+
+/* Mean, and a number that no record tells apart. */
+static void means(size_t n, const size_t records[], double y[], void *user)
+{
+    const World *w = user;
+    for (size_t i = 0; i < WORLD_DESIGNS; i++) {
+        y[i * WORLD_OBJECTIVES] = 0;
+        y[i * WORLD_OBJECTIVES + 1] = 7;
+        for (size_t r = 0; r < n; r++)
+            y[i * WORLD_OBJECTIVES] += w->y[i][records[r]] / (double)n;
+    }
+}
+
+TEST(the_records_that_show_the_factors_of_the_designs_are_seen_first)
+{
+    static World w;
+    size_t order[WORLD_RECORDS], found = 0;
+    Err err = {0};
+    assert_int_equal(race_first(WORLD_RECORDS), 3);
+    for (uint32_t seed = 0; seed < 50; seed++) {
+        const size_t clear[2] = {seed % 12, 12 + seed % 12};
+        size_t seen[WORLD_RECORDS] = {0};
+        make_world(&w, seed, clear);
+        CHECK_OK(race_order(WORLD_RECORDS, WORLD_DESIGNS, WORLD_OBJECTIVES, means, &w, order, &err), &err);
+        for (size_t i = 0; i < WORLD_RECORDS; i++)
+            seen[order[i]]++;
+        for (size_t i = 0; i < WORLD_RECORDS; i++)
+            assert_int_equal(seen[i], 1);
+        for (size_t i = 0; i < race_first(WORLD_RECORDS); i++)
+            found += order[i] == clear[0] || order[i] == clear[1];
+    }
+    assert_less(75, (double)found); /* of 100; three records at random: 12 or 13 */
+}
+
+/* ---- hand-over --------------------------------------------------------------------------------------------------- */
+
+static const double *column_of(const Table *t, const char *name)
+{
+    const int c = table_column(t, name);
+    if (c < 0)
+        fail_msg("no column %s", name);
+    return t->values + c;
+}
+
+/* By pelicun's rules: EVENT-TYPE-PLACE-DIRECTION above, units in the first row, then samples from 0. */
+TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printed)
+{
+    static const char HEAD[] = ",1-PFA-0-1,1-PFA-1-1,1-PFA-2-1,1-PFA-3-1,1-PFA-4-1,1-PFA-5-1,1-PFA-6-1,1-PID-1-1,"
+                               "1-PID-2-1,1-PID-3-1,1-PID-4-1,1-PID-5-1,1-PID-6-1\n"
+                               "Units,g,g,g,g,g,g,g,unitless,unitless,unitless,unitless,unitless,unitless\n0,";
+    json_t *o = json_of(SUITE "--pga 0.3 --pelicun @/pelicun.csv --json");
+    char *text = read_in_place("pelicun.csv"), *row = text + strlen(HEAD) - 2;
+    assert_true(strncmp(text, HEAD, strlen(HEAD)) == 0);
+    for (int i = 0; i < 3; i++) {
+        const json_t *r = json_object_get(json_array_get(json_object_get(o, "records"), (size_t)i), "with_core");
+        assert_int_equal(strtol(row, &row, 10), i);
+        assert_close(strtod(row + 1, &row), 0.3, 1e-12);
+        for (size_t j = 0; j < 6; j++)
+            assert_same_number(strtod(row + 1, &row),
+                               json_real_value(json_array_get(json_object_get(r, "peak_acceleration_g"), j)));
+        for (size_t j = 0; j < 6; j++)
+            assert_same_number(strtod(row + 1, &row),
+                               json_real_value(json_array_get(json_object_get(r, "peak_drift_ratio"), j)));
+        assert_int_equal(*row++, '\n');
+    }
+    assert_int_equal(*row, 0);
+    free(text);
+    free(output_of(SUITE "--pga 0.3 --pelicun @/response.csv"));
+    Table t;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(table_read(&t, path_of("response.csv", path), TABLE_HEADED, &err), &err);
+    const json_t *third = json_object_get(json_array_get(json_object_get(o, "records"), 2), "with_core");
+    assert_int_equal(t.n_rows, 3);
+    assert_int_equal(t.n_cols, 2 + 3 * 6 + 1);
+    const size_t last = 2 * t.n_cols;
+    assert_close(column_of(&t, "id")[last], 3, 0);
+    assert_close(column_of(&t, "1-PFA-0-1")[last], 0.3 * 9.81, 1e-12);
+    const double roof = json_real_value(json_array_get(json_object_get(third, "peak_displacement_m"), 5));
+    assert_close(column_of(&t, "1-PFD-6-1")[last], roof, 1e-12);
+    assert_close(column_of(&t, "1-PRD-1-1")[last], roof / (4 + 5 * 3.5), 1e-9);
+    table_free(&t);
+    json_decref(o);
+    expect(2, "--pelicun is a file of one intensity", SUITE "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
+}
+
+TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
+{
+    free(output_of("spectrum builtin:kobe-like --pga 0.3 --history @/event.json"));
+    Motion m, again;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(motion_load(&again, path_of("event.json", path), UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    assert_int_equal(again.n, m.n);
+    assert_close(again.dt_s, m.dt_s, 1e-15);
+    assert_close(motion_peak(&again), 0.3 * 9.81, 1e-12);
+    for (size_t i = 0; i < m.n; i++)
+        assert_true(fabs(again.accel[i] - m.accel[i] * 0.3 * 9.81 / motion_peak(&m)) < 1e-12);
+    motion_free(&m);
+    motion_free(&again);
 }
 
 int main(void)

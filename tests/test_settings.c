@@ -563,6 +563,10 @@ TEST(fidelity_needs_replicates_that_average_no_noise)
     assert_false(settings_screens(&s));
     s.search.replicate_share = 0;
     assert_true(settings_screens(&s));
+    s.search.fidelity = FIDELITY_RECORDS;
+    assert_false(settings_screens(&s));
+    snprintf(s.motion.records, sizeof s.motion.records, "builtin:suite");
+    assert_true(settings_screens(&s));
 }
 
 int main(void)

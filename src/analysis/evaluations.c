@@ -59,7 +59,8 @@ static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
     for (size_t i = 0; scenes && i < n; i++) {
         scenes[i].record = i / e->n_levels;
         if (e->level)
-            snprintf(scenes[i].setting, sizeof scenes[i].setting, "motion.pga_g=%.17g", e->level[i % e->n_levels]);
+            snprintf(scenes[i].setting, sizeof scenes[i].setting, "motion.%s=%.17g", e->intensity,
+                     e->level[i % e->n_levels]);
     }
     if (e->level)
         motion_unscale(&s.motion);
@@ -102,21 +103,28 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
 
 /* ---- all runs ---------------------------------------------------------------------------------------------------- */
 
-size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
+int evaluated_has(const Evaluations *e, const EvaluatedRun *run, EvaluatedCase which)
 {
-    return e->level || run->record->from_folder ? N_EVALUATED : N_WITH_DEVICES;
+    return which < N_EVALUATED || (!e->level && !run->record->from_folder) ||
+           (which == EVALUATED_LINKS && e->has_links);
+}
+
+static int finds_device(const Evaluations *e, size_t i, EvaluatedCase which)
+{
+    return which >= N_EVALUATED && evaluated_has(e, &e->run[i], which) &&
+           (!e->level || i % e->n_levels == e->n_levels / 2);
 }
 
 /* What does not wait for anything: devices are found, and simulated in the second round. */
 static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
-    size_t n = evaluated_cases(e, run);
-    for (size_t c = 0; c < n; c++)
+    size_t n = 0;
+    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
         if (c < N_EVALUATED)
-            task[c] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
-        else
-            task[c] = (SimTask){
+            task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
+        else if (finds_device(e, i, c))
+            task[n++] = (SimTask){
                 .kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .finds_device = 1, .parts = &run->device[c]};
     run->error_known = e->is_estimated && !e->level;
     if (run->error_known && run->record->from_folder)
@@ -124,16 +132,36 @@ static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask ta
     return n;
 }
 
+/* One building has the same links under every record. */
+static Status settle_links(Evaluations *e, Err *err)
+{
+    const size_t n_runs = e->n_records * e->n_levels;
+    double *found;
+    size_t n = 0;
+    if (!e->has_links)
+        return STATUS_OK;
+    TRY_ROOM(found, e->n_records, "links", err);
+    for (size_t i = 0; i < n_runs; i++)
+        if (e->run[i].record && e->run[i].record->readable == STATUS_OK && finds_device(e, i, EVALUATED_LINKS))
+            found[n++] = e->run[i].device[EVALUATED_LINKS].device.link_ns_m;
+    sort_values(n, found);
+    for (size_t i = 0; i < n_runs; i++)
+        e->run[i].device[EVALUATED_LINKS].device.link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
+    free(found);
+    return STATUS_OK;
+}
+
 static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
-    for (size_t c = N_EVALUATED; c < evaluated_cases(e, run); c++)
-        task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind,
-                              .x = x,
-                              .scene = i,
-                              .device = run->device[c].device,
-                              .result = &run->result[c]};
+    for (EvaluatedCase c = N_EVALUATED; c < N_WITH_DEVICES; c++)
+        if (evaluated_has(e, run, c))
+            task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind,
+                                  .x = x,
+                                  .scene = i,
+                                  .device = run->device[c].device,
+                                  .result = &run->result[c]};
     return n;
 }
 
@@ -180,6 +208,7 @@ Status evaluations_run(Evaluations *e, size_t n_var, const double x[], Evaluatio
     if (e->tower.n_var != n_var)
         return bad_data(err, "the front has designs of %zu variables, this building has %zu", n_var, e->tower.n_var);
     TRY(run_round(e, first_tasks, x, told, err));
+    TRY(settle_links(e, err));
     TRY(run_round(e, device_tasks, x, NULL, err));
     TRY(run_round(e, replicate_tasks, x, told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
@@ -199,17 +228,17 @@ void evaluations_free(Evaluations *e)
 
 /* ---- incremental dynamic analysis -------------------------------------------------------------------------------- */
 
-Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err)
+Status ida_levels(const char *option, const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err)
 {
     double from, step, to;
     char more;
     if (sscanf(text, "%lf:%lf:%lf%c", &from, &step, &to, &more) != 3 || !(from > 0 && step > 0 && to >= from) ||
         !isfinite(to) || !(step >= 1e-9 * to))
-        return fail(err, STATUS_USAGE, "--pga %.60s: a range is FROM:STEP:TO in g, all above 0, as 0.05:0.05:0.6",
+        return fail(err, STATUS_USAGE, "%s %.60s: a range is FROM:STEP:TO in g, all above 0, as 0.05:0.05:0.6", option,
                     text);
     const double steps = floor((to - from) / step + 1e-6);
     if (!(steps < IDA_LEVELS_MAX))
-        return fail(err, STATUS_USAGE, "--pga %.60s: more than %d intensities", text, IDA_LEVELS_MAX);
+        return fail(err, STATUS_USAGE, "%s %.60s: more than %d intensities", option, text, IDA_LEVELS_MAX);
     *n = (size_t)steps + 1;
     for (size_t i = 0; i < *n; i++) {
         char digits[32]; /* 0.15, not 0.15000000000000002 */
@@ -243,4 +272,21 @@ double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, 
     }
     free(sorted);
     return value;
+}
+
+Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const Limit *limit, size_t n_at[],
+                        size_t exceeded[])
+{
+    for (size_t l = 0; l < e->n_levels; l++) {
+        n_at[l] = exceeded[l] = 0;
+        for (size_t r = 0; r < e->n_records; r++) {
+            const SimResult *result = &e->run[r * e->n_levels + l].result[which];
+            const double value = measure_value(result, k);
+            if (e->record[r].readable != STATUS_OK || (result->outcome == RUN_OK && isnan(value)))
+                continue;
+            n_at[l]++;
+            exceeded[l] += result->outcome != RUN_OK || limit->sign * (value - limit->bound) > 0;
+        }
+    }
+    return fragility_fit(e->n_levels, e->level, n_at, exceeded);
 }

@@ -15,6 +15,8 @@
 #ifndef IMTET_ANALYSIS_EVALUATIONS_H
 #define IMTET_ANALYSIS_EVALUATIONS_H
 
+#include "analysis/fragility.h"
+#include "evaluate/limits.h"
 #include "evaluate/tower.h"
 
 typedef enum {
@@ -53,7 +55,10 @@ typedef struct {
 typedef struct {
     size_t n_records, n_levels;
     EvaluatedRecord *record; /* (n_records) */
-    const double *level;     /* [g] (n_levels) peaks that the records are scaled to; NULL: as the settings say, once */
+    const double *level;     /* [g] (n_levels) that the records are scaled to; NULL: as the settings say, once */
+    const char *intensity;   /* what the levels are: pga_g or sa_g, of [motion] */
+    int has_links;           /* viscous links at every level too: the median over the records of those that are found
+                                at the middle level */
     EvaluatedRun *run;       /* (n_records, n_levels) of those that can be read, zeroed for the others */
     size_t n_read;
     long replicates; /* of the design under each record; 0: itself alone */
@@ -62,8 +67,7 @@ typedef struct {
     Problem tower;     /* a scene for every run */
 } Evaluations;
 
-/* Cases of a run: N_EVALUATED, or N_WITH_DEVICES. */
-size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run);
+int evaluated_has(const Evaluations *e, const EvaluatedRun *run, EvaluatedCase which);
 
 Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err);
 
@@ -88,13 +92,19 @@ const char *evaluated_name(const EvaluatedRecord *r); /* the last part of its pa
 
 enum { IDA_LEVELS_MAX = 1000 };
 
-/* "0.05:0.05:0.6", from, step and to [g], as levels (IDA_LEVELS_MAX at most); a range ends at `to` or just below. */
-Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err);
+/* "0.05:0.05:0.6", from, step and to [g], as levels (IDA_LEVELS_MAX at most); a range ends at `to` or just below.
+ * option: who gave it. */
+Status ida_levels(const char *option, const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err);
 
 /* Measure k of a run; INFINITY: it failed. */
 double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k);
 
 /* Of measure k over the records at intensity l; INFINITY: too many failed. */
 double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p);
+
+/* Of measure k beyond the limit: the curve, and n_at and exceeded (n_levels) of which it is. A simulation that failed
+ * has exceeded it, one that does not have k is left out. */
+Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const Limit *limit, size_t n_at[],
+                        size_t exceeded[]);
 
 #endif

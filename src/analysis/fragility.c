@@ -7,7 +7,8 @@ static double normal_cdf(double z)
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
 
-/* Where exceeded intensities begin above all others: between the last without and the first with. NAN: they overlap. */
+/* Where exceeded intensities begin above all others: between the last without and the first with, or the one that has
+ * both, where the likelihood grows as beta falls to 0. NAN: they overlap. */
 static double parting_of(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
 {
     double none = 0, all = INFINITY;
@@ -15,7 +16,7 @@ static double parting_of(size_t n, const double x[], const size_t n_at[], const 
         none = exceeded[j] < n_at[j] ? fmax(none, x[j]) : none;
         all = exceeded[j] > 0 ? fmin(all, x[j]) : all;
     }
-    return none > 0 && isfinite(all) && none < all ? sqrt(none * all) : NAN;
+    return none > 0 && isfinite(all) && none <= all ? sqrt(none * all) : NAN;
 }
 
 typedef struct {

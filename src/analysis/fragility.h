@@ -8,7 +8,8 @@
  *
  * in a = -ln(median) / beta, b = 1 / beta, where it is concave: Fisher scoring. Standard errors of ln median and beta
  * are those of the inverse information (delta method). With all or none exceeded nothing is known; where the levels
- * part without overlap (none below, all above) the median lies between them and beta is not known.
+ * part without overlap (none below, all above, at most one that has both) the median lies there and beta is not known:
+ * the levels are too far apart.
  *
  *   rate = integral P(exceeded | x) |d lambda(x)|     [1/year], lambda: the hazard curve, yearly rate of more than x
  *

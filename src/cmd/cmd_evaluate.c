@@ -6,7 +6,9 @@
 #include "base/json.h"
 #include "base/list.h"
 #include "cmd/commands.h"
+#include "cmd/demands.h"
 #include "cmd/designs.h"
+#include "cmd/fragilities.h"
 #include "cmd/full_model.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
@@ -23,6 +25,7 @@ typedef struct {
     const double *x;
     const char *word; /* as it was asked for */
     Known known[N_MEASURES];
+    Fragilities fragilities; /* without limits where none are asked for */
 } Chosen;
 
 /* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
@@ -30,6 +33,11 @@ typedef struct {
 enum { IDA_FRACTILES = 3, IDA_SHOWN = 3 };
 static const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
 static const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
+
+static int is_spectral(const Evaluations *e)
+{
+    return e->level && strcmp(e->intensity, "sa_g") == 0;
+}
 
 static int n_shown(const MeasureOrder *order)
 {
@@ -45,7 +53,8 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
         printf(is_one ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word,
                e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
-            json_t *row = json_put(figures_row(table), "pga_g=%g", e->level[l]);
+            json_t *row = figures_row(table);
+            json_object_set_new(row, e->intensity, json_number(e->level[l]));
             for (int i = 0; i < n_shown(order); i++) {
                 for (int f = 0; f < IDA_FRACTILES; f++)
                     figure_text(ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]), NAN, NAN, value[f]);
@@ -73,7 +82,8 @@ static json_t *json_fractiles(const Evaluations *e, EvaluatedCase which, double 
 static json_t *ida_json(const Evaluations *e)
 {
     static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
-    json_t *o = json_of("pga_g=%p", json_numbers(e->n_levels, e->level));
+    json_t *o = json_object();
+    json_object_set_new(o, e->intensity, json_numbers(e->n_levels, e->level));
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
@@ -146,10 +156,10 @@ static void write_script(FILE *script, const void *user)
     fprintf(script,
             "set terminal svg size 1300,520 font 'sans,13' noenhanced background '#ffffff'\n"
             "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:*]\nset yrange [0:*]\n"
-            "set ylabel 'peak ground acceleration [g]'\n"
+            "set ylabel '%s'\n"
             "set multiplot layout 1,%d margins 0.06,0.98,0.13,0.82 spacing 0.07,0\n"
             "set key at screen 0.5,0.98 center top horizontal\n",
-            n_shown(p->order));
+            is_spectral(p->e) ? "spectral acceleration [g]" : "peak ground acceleration [g]", n_shown(p->order));
     for (int k = 0; k < n_shown(p->order); k++)
         write_panel(script, p, k);
     fputs("unset multiplot\n", script);
@@ -157,18 +167,25 @@ static void write_script(FILE *script, const void *user)
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
+static double level_of(const Evaluations *e, const EvaluatedRun *run)
+{
+    return e->level[(size_t)(run - e->run) % e->n_levels];
+}
+
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     json_t *o =
         json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
-    for (size_t c = 0; c < evaluated_cases(e, run); c++)
-        json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
-    if (evaluated_cases(e, run) == N_WITH_DEVICES) {
-        json_t *tmd = json_object_get(o, "tmd"), *links = json_object_get(o, "links");
-        json_put(tmd, "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
+    if (is_spectral(e))
+        json_put(o, "sa_g=%g", level_of(e, run));
+    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
+        if (evaluated_has(e, run, c))
+            json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
+    if (evaluated_has(e, run, EVALUATED_TMD))
+        json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
                  run->device[EVALUATED_TMD].device.tmd_damping);
-        json_put(links, "link_ns_m=%g", run->device[EVALUATED_LINKS].device.link_ns_m);
-    }
+    if (evaluated_has(e, run, EVALUATED_LINKS))
+        json_put(json_object_get(o, "links"), "link_ns_m=%g", run->device[EVALUATED_LINKS].device.link_ns_m);
     if (run->error_known)
         put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
@@ -190,17 +207,19 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
              unreadable);
     if (e->level)
         json_put(all, "ida=%p", ida_json(e));
+    if (c->fragilities.limits.n > 0)
+        json_put(all, "fragility=%p", fragilities_json(&c->fragilities, e));
     return show_json(all, err);
 }
 
-/* Who it is of, then the motion. */
-static json_t *begin_row(json_t *table, const char *record, EvaluatedCase which, const char *outcome,
-                         const double motion[3])
+/* Who it is of, then the motion: spectral acceleration, where that is the intensity, peak, scale, stretch. */
+static json_t *begin_row(json_t *table, const Evaluations *e, const char *record, EvaluatedCase which,
+                         const char *outcome, const double motion[4])
 {
-    static const char *const KEYS[] = {"pga_g", "scale", "stretch"};
+    static const char *const KEYS[] = {"sa_g", "pga_g", "scale", "stretch"};
     json_t *row =
         json_put(figures_row(table), "record=%s scene=%s outcome=%s", record, EVALUATION_CASES[which].key, outcome);
-    for (int i = 0; i < 3; i++)
+    for (int i = !is_spectral(e); i < 4; i++)
         json_object_set_new(row, KEYS[i], json_number(motion[i]));
     return row;
 }
@@ -208,10 +227,13 @@ static json_t *begin_row(json_t *table, const char *record, EvaluatedCase which,
 static void add_rows(json_t *table, const Evaluations *e, size_t i)
 {
     const EvaluatedRun *run = &e->run[i];
-    for (size_t c = 0; run->record->readable == STATUS_OK && c < evaluated_cases(e, run); c++) {
+    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++) {
+        if (run->record->readable != STATUS_OK || !evaluated_has(e, run, c))
+            continue;
         const Measured m = measured(&run->result[c]);
-        const double motion[] = {e->level ? e->level[i % e->n_levels] : run->pga_g, run->scale, run->stretch};
-        json_t *row = begin_row(table, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
+        const double level = e->level ? level_of(e, run) : NAN;
+        const double motion[] = {level, e->level && !is_spectral(e) ? level : run->pga_g, run->scale, run->stretch};
+        json_t *row = begin_row(table, e, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
         put_measures(row, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
             put_replicates(row, c == EVALUATED_DESIGN ? &run->replicates : NULL);
@@ -221,11 +243,11 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
 static void add_fractiles(json_t *table, const Evaluations *e, size_t level, EvaluatedCase which)
 {
     double values[N_MEASURES];
+    const double at = e->level[level], motion[] = {at, is_spectral(e) ? NAN : at, NAN, NAN};
     for (int i = 0; i < IDA_FRACTILES; i++) {
         for (int k = 0; k < N_MEASURES; k++)
             values[k] = ida_fractile(e, level, which, k, IDA_FRACTILE[i]);
-        put_measures(begin_row(table, IDA_FRACTILE_WORD[i], which, "", (double[]){e->level[level], NAN, NAN}), "",
-                     values, NULL, NULL);
+        put_measures(begin_row(table, e, IDA_FRACTILE_WORD[i], which, "", motion), "", values, NULL, NULL);
     }
 }
 
@@ -274,8 +296,9 @@ static void print_records(const Evaluations *e, const MeasureOrder *order)
             continue;
         if (!e->record[i].from_folder)
             print_motion(e, i);
-        for (size_t c = 0; c < (e->record[i].from_folder ? N_EVALUATED : evaluated_cases(e, &e->run[i])); c++)
-            add_case(table, e->n_records > 1 ? evaluated_name(&e->record[i]) : "", order, &e->run[i], c);
+        for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
+            if (evaluated_has(e, &e->run[i], c))
+                add_case(table, e->n_records > 1 ? evaluated_name(&e->record[i]) : "", order, &e->run[i], c);
     }
     if (e->replicates > 0)
         puts("replicates are of the design with impacts; the other lines are as designed");
@@ -297,7 +320,9 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
         printf("design %ld of %s\n\n", c->id, args->operand);
     else
         printf("design %s by the settings of %s\n\n", c->word, args->operand);
-    if (e->level)
+    if (c->fragilities.limits.n > 0)
+        figures_print(fragilities_table(&c->fragilities, e));
+    else if (e->level)
         ida_print(e, order);
     else
         print_records(e, order);
@@ -309,11 +334,16 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
 {
     if (args_has(args, "--csv"))
         TRY(write_csv(e, args_value(args, "--csv"), err));
-    if (args_has(args, "--svg"))
-        TRY(gnuplot_draw(args_value(args, "--svg"), write_script, &(Picture){e, &c->schema->order}, err));
+    const char *svg = args_value(args, "--svg");
+    if (svg && c->fragilities.limits.n > 0)
+        TRY(fragilities_draw(&c->fragilities, e, svg, err));
+    else if (svg)
+        TRY(gnuplot_draw(svg, write_script, &(Picture){e, &c->schema->order}, err));
+    if (args_has(args, "--pelicun"))
+        TRY(demands_write(e, args_value(args, "--pelicun"), err));
     if (args_has(args, "--json"))
         return show_as_json(args, c, e, err);
-    if (!args_has(args, "--csv") && !args_has(args, "--svg"))
+    if (!args_has(args, "--csv") && !args_has(args, "--svg") && !args_has(args, "--pelicun"))
         print_all(args, c, e);
     return STATUS_OK;
 }
@@ -342,25 +372,45 @@ static Status add_records(const Args *args, Evaluations *e, const Settings *s, c
     return args_has(args, "--records") ? evaluations_add_suite(e, args_value(args, "--records"), err) : STATUS_OK;
 }
 
-/* --pga: one peak is a setting, a range the intensities of an incremental dynamic analysis. */
+/* The period of --sa is the building's first, unless another is set. */
+static Status take_period(const Args *args, Settings *s, Err *err)
+{
+    Building b;
+    if (args_gives(args, "motion.sa_period_s"))
+        return STATUS_OK;
+    TRY(building_load(&b, &s->building, err));
+    s->motion.sa_period_s = 2 * M_PI / b.omega[0];
+    building_free(&b);
+    return STATUS_OK;
+}
+
+/* --pga or --sa: one is a setting, a range the intensities of an incremental dynamic analysis. */
 static Status take_intensities(const Args *args, Settings *s, double levels[], Evaluations *e, Err *err)
 {
     static const char *const OTHERS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
-    const char *pga = args_value(args, "--pga");
+    const char *sa = args_value(args, "--sa"), *text = sa ? sa : args_value(args, "--pga");
+    const char *option = sa ? "--sa" : "--pga";
+    const int is_range = text && strchr(text, ':');
     e->n_levels = 1;
-    if (args_has(args, "--svg") && !(pga && strchr(pga, ':')))
-        return misused(err, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO");
-    if (!pga)
-        return STATUS_OK;
-    if (strchr(pga, ':')) {
-        for (size_t i = 0; i < N_OF(OTHERS); i++)
-            if (args_gives(args, OTHERS[i]))
-                return misused(err, "--pga %.60s scales every record; %s does not go with it", pga, OTHERS[i]);
+    e->intensity = sa ? "sa_g" : "pga_g";
+    TRY(args_alone(args, "--sa", "--pga", err));
+    if (args_has(args, "--svg") && !is_range)
+        return misused(err, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO, or --sa");
+    if (args_has(args, "--pelicun") && is_range)
+        return misused(err, "--pelicun is a file of one intensity: %s G", option);
+    if (args_has(args, "--fragility") && !is_range)
+        return misused(err, "--fragility wants intensities: --sa FROM:STEP:TO, or --pga");
+    for (size_t i = 0; (sa || is_range) && i < N_OF(OTHERS); i++)
+        if (args_gives(args, OTHERS[i]))
+            return misused(err, "%s %.60s scales every record; %s does not go with it", option, text, OTHERS[i]);
+    if (sa || is_range)
         motion_unscale(&s->motion);
-        e->level = levels;
-        return ida_levels(pga, levels, &e->n_levels, err);
-    }
-    return settings_put(s, "motion.pga_g", pga, err);
+    if (sa)
+        TRY(take_period(args, s, err));
+    if (!is_range)
+        return !text ? STATUS_OK : settings_put(s, sa ? "motion.sa_g" : "motion.pga_g", text, err);
+    e->level = levels;
+    return ida_levels(option, text, levels, &e->n_levels, err);
 }
 
 typedef struct {
@@ -400,18 +450,29 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
     return give(args, c, e, err);
 }
 
-static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
+static Status take_fragilities(const Args *args, Settings *s, Chosen *c, Evaluations *e, Err *err)
+{
+    const char *limits = args_value(args, "--fragility"), *hazard = args_value(args, "--hazard");
+    if (hazard && !limits)
+        return misused(err, "--hazard is how often intensities come; --fragility says for which limits");
+    e->has_links = limits != NULL;
+    return limits ? fragilities_read(&c->fragilities, c->schema, limits, hazard, e->intensity, s, err) : STATUS_OK;
+}
+
+static Status evaluate(const Args *args, Settings *s, Chosen *c, Err *err)
 {
     double levels[IDA_LEVELS_MAX];
     Evaluations e = {.duration_s = s->sim.duration_s};
     TRY(take_intensities(args, s, levels, &e, err));
+    TRY(take_fragilities(args, s, c, &e, err));
     TRY(settings_check(s, err));
     if (e.level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
-        return misused(err, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
-                       s->sim.replicates, args_value(args, "--pga"));
+        return misused(err, "sim.replicates = %ld: every intensity is shown once, without replicates",
+                       s->sim.replicates);
     e.replicates = !e.level && s->sim.replicates > 1 ? s->sim.replicates : 0;
     const Status status = run_and_give(args, s, c, &e, err);
     evaluations_free(&e);
+    fragilities_free(&c->fragilities);
     return status;
 }
 
@@ -490,6 +551,12 @@ static const ArgOption OPTIONS[] = {
     OPTION_CHANNEL,
     VALUE("--pga", "G",
           "scaled to this peak; FROM:STEP:TO: incremental dynamic analysis, every record at each of these"),
+    VALUE("--sa", "G",
+          "scaled to this spectral acceleration (5 %) at the building's first period, or motion.sa_period_s; "
+          "FROM:STEP:TO as above"),
+    VALUE("--fragility", "LIST",
+          "of such a range, probability by intensity of drift_ratio=0.02,j3_g=5 (limits: the run's) being exceeded"),
+    VALUE("--hazard", "FILE", "CSV of sa_g (or pga_g) and rate_per_year: how often they then are"),
     OPTION_UNIT,
     OPTION_SET,
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
@@ -498,8 +565,10 @@ static const ArgOption OPTIONS[] = {
         "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"),
     OPTION_JSON,
     VALUE("--csv", "FILE", "a row per record, intensity and scene as CSV into FILE; -: standard output"),
+    VALUE("--pelicun", "FILE",
+          "peaks of every floor, a row per record: demand CSV of pelicun; named response.csv: of EE-UQ"),
     VALUE("--svg", "FILE",
-          "of --pga FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %"),
+          "of FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %, or fragilities"),
     SWITCH("--full-model", "on all degrees of freedom of the building's frame, beside the reduced model"),
     OPTION_END,
 };
@@ -515,7 +584,8 @@ const Command CMD_EVALUATE = {
         "the\n"
         "building without a core beside it. Files of a folder that cannot be read are listed with the reason. Peak,\n"
         "stretch, replicates and all else are the run's unless an option says otherwise; each record stands alone.\n"
-        "--pga 0.05:0.05:0.6 makes it an incremental dynamic analysis, without replicates.\n"
+        "--pga 0.05:0.05:0.6 or --sa makes it an incremental dynamic analysis, without replicates; --fragility\n"
+        "fits lognormal curves to it by maximum likelihood, with viscous links beside (docs/risk.md).\n"
         "--full-model simulates designs on the building as the settings reduce it (building.modes, by default the "
         "floors\n"
         "alone) and on all degrees of freedom of its frame, with the contacts at the floors and all modes: 106 of the\n"

@@ -127,14 +127,14 @@ static void print_screening(const StudySummary *sum)
 {
     if (sum->n_screened == 0)
         return;
-    printf(
-        "%zu designs were screened by their first replicate (search.fidelity), and %zu finished or simulated at once, "
-        "as much as %zu of %ld evaluations; ",
-        sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    printf("%zu designs were screened by a part of their simulations (search.fidelity), and %zu finished or simulated "
+           "at once, "
+           "as much as %zu of %ld evaluations; ",
+           sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
     if (isnan(sum->level_agreement))
-        puts("too few were finished to know how well the first replicate ranks designs\n");
+        puts("too few were finished to know how well that part ranks designs\n");
     else
-        printf("the first replicate ranks designs as all do by a Kendall's tau of %.2f%s\n\n", sum->level_agreement,
+        printf("that part ranks designs as all do by a Kendall's tau of %.2f%s\n\n", sum->level_agreement,
                sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 

@@ -137,7 +137,7 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
     const MeasureOrder *order = tower_measures(t);
     const char *missing = measures_missing(order, s->search.objectives, tower_n_floors(t));
     json_t *table = json_array();
-    char label[DESIGN_LABEL_MAX];
+    char label[DESIGN_LABEL_MAX], damage[DAMAGE_WORDS_MAX];
     for (size_t i = 0; i < tower_n_records(t); i++)
         show_motion(stdout, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
     if (missing && strcmp(s->search.objectives, "auto") != 0)
@@ -150,6 +150,8 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
             figures_replicates(table, order, &job->summary[i], row_of(job->error, i));
     }
     figures_print(table);
+    if (job->n == 1 && *damage_words(job->results, damage))
+        printf("\n%s\n", damage);
 }
 
 static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)

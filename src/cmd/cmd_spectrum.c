@@ -164,6 +164,30 @@ static Status write_curves(const char *path, size_t n_rows, size_t n, const Curv
     return output_close(&o, err);
 }
 
+/* As SimCenter's tools read it, and motion/formats/simcenter.c. */
+static Status write_event(const Motion *m, const char *path, Err *err)
+{
+    Output o;
+    json_t *samples = json_array();
+    for (size_t i = 0; i < m->n; i++)
+        json_array_append_new(samples, json_real(m->accel[i] / GRAVITY));
+    json_t *event = json_of("name=%s type=%s units=%s dT=%g numSteps=%zu data_x=%p", m->name, "Seismic", "g", m->dt_s,
+                            m->n, samples);
+    Status status = output_open(&o, path, err);
+    if (status == STATUS_OK) {
+        json_dumpf(event, o.stream, JSON_REAL_PRECISION(17));
+        status = output_close(&o, err);
+    }
+    json_decref(event);
+    return status;
+}
+
+static int is_json(const char *path)
+{
+    const char *end = strrchr(path, '.');
+    return end && strcmp(end, ".json") == 0;
+}
+
 static void print_curves(size_t n, const Curve c[])
 {
     json_t *table = json_array();
@@ -337,7 +361,9 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
     curves_of_one(s, c);
     histories_of(s, history);
     TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
-    TRY(times ? write_curves(times, s->motion.n, N_HISTORIES, history, err) : STATUS_OK);
+    if (times)
+        TRY(is_json(times) ? write_event(&s->motion, times, err)
+                           : write_curves(times, s->motion.n, N_HISTORIES, history, err));
     TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_json(s, err);
@@ -453,7 +479,9 @@ static const ArgOption OPTIONS[] = {
     OPTION_SET,
     OPTION_JSON,
     OPTION_CSV,
-    VALUE("--history", "FILE", "acceleration, velocity, displacement and Husid's curve as CSV; -: standard output"),
+    VALUE("--history", "FILE",
+          "acceleration, velocity, displacement and Husid's curve as CSV (NAME.json: a SimCenter event); -: standard "
+          "output"),
     VALUE("--svg", "FILE", "a picture of all of it, drawn by gnuplot"),
     OPTION_END,
 };

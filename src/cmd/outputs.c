@@ -12,7 +12,7 @@
 
 /* Options whose value is a file that is written. */
 static const char *const WRITTEN[] = {"--csv",           "--svg", "--history", "--contacts",
-                                      "--floor-spectra", "--out", "--dossier"};
+                                      "--floor-spectra", "--out", "--dossier", "--pelicun"};
 enum { N_WRITTEN = N_OF(WRITTEN) };
 
 static int is_written(const Given *g)

@@ -364,6 +364,20 @@ static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
     return NULL;
 }
 
+static json_t *json_damage(const SimResult *r)
+{
+    json_t *o = json_object();
+    for (DamagedPart p = 0; p < N_PARTS; p++) {
+        json_t *list = json_array();
+        for (int j = 0; j < r->n_floors; j++)
+            json_array_append_new(
+                list, json_string(damage_word(
+                          damage_state(p, p == PART_ACCELERATION ? r->peak_acceleration_g[j] : r->drift_ratio[j]))));
+        json_object_set_new(o, DAMAGE_PARTS[p].key, list);
+    }
+    return o;
+}
+
 json_t *json_result(SceneKind kind, const SimResult *r)
 {
     static const char *const SCENES[N_SCENES] = {[SCENE_IMPACT] = "impact",
@@ -386,7 +400,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     for (size_t i = 0; i < N_OF(FIELDS); i++)
         if (!(FIELDS[i].needs & ~has))
             json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
-    return o;
+    return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
 }
 
 void put_measures(json_t *o, const char *end, const double values[], const char *other, const double others[])

@@ -9,6 +9,7 @@ struct Adapter {
     Limits limits;
     Problem problem;
     int threads;
+    size_t *order; /* (n_parts) of adapter_order; NULL: none */
     Recipe recipe; /* of an external simulator; without scenes */
 };
 
@@ -87,6 +88,15 @@ static Status describe(Adapter *a, const Settings *s, Err *err)
     return STATUS_OK;
 }
 
+Status adapter_order(Adapter *a, size_t n_cheap, const size_t order[], Err *err)
+{
+    TRY_ROOM(a->order, a->problem.n_parts, "the order of simulations", err);
+    memcpy(a->order, order, a->problem.n_parts * sizeof *order);
+    a->problem.order = a->order;
+    a->problem.n_cheap = n_cheap;
+    return STATUS_OK;
+}
+
 Status adapter_constrain(Adapter *a, long n, Err *err)
 {
     if (a->problem.recipe != &a->recipe)
@@ -119,5 +129,6 @@ void adapter_close(Adapter *a)
         return;
     problem_close(&a->problem);
     schema_free(&a->schema);
+    free(a->order);
     free(a);
 }

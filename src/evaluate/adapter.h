@@ -28,5 +28,8 @@ int adapter_threads(const Adapter *a);
  * kept. Of other problems nothing changes. */
 Status adapter_constrain(Adapter *a, long n, Err *err);
 
+/* order (n_parts), copied: parts are taken in it, the first n_cheap as the cheap level. */
+Status adapter_order(Adapter *a, size_t n_cheap, const size_t order[], Err *err);
+
 /* Copied; at first there is none. */
 void adapter_observe(Adapter *a, const Observer *observer);

@@ -12,6 +12,7 @@
  * Threads  pure functions */
 #pragma once
 
+#include "evaluate/consequences.h"
 #include "evaluate/evaluation.h"
 #include "sim/sim.h"
 
@@ -84,7 +85,9 @@ enum {
       "largest stroke of a link or tuned mass")                                                                        \
     X(DEVICE_SHARE, "ed_devices_pct", "%", -1, NEEDS_NOTHING, r->ed_devices_pct,                                       \
       "share of the input dissipated by links and the tuned mass")                                                     \
-    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "of devices and core by design.prices")
+    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "of devices and core by design.prices")                            \
+    X(LOSS, "loss", "-", 1, NEEDS_NOTHING, damage_loss(r),                                                             \
+      "expected cost of repair over that of replacing the building (evaluate/consequences.h)")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,

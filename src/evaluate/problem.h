@@ -9,7 +9,8 @@
  *
  *   task -> Simulator.simulate -> part (part_size bytes)      all parts of a design -> Simulator.combine -> Evaluation
  *
- * The first n_cheap parts may be a cheap level of the problem, an approximation of f and g (the first replicates).
+ * The first n_cheap parts that are taken may be a cheap level of the problem, an approximation of f and g (the first
+ * replicates, or a few records).
  *
  * A part is a plain record of fixed size, without pointers: it could come from another machine. What the simulator
  * answers is natural (units and signs of the files); `judge` makes the minimised f and the g of it.
@@ -98,7 +99,8 @@ struct Problem {
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
-    size_t n_cheap;           /* 0: there is no cheap level */
+    size_t n_cheap;      /* 0: there is no cheap level */
+    const size_t *order; /* (n_parts) in which parts are taken, of the cheap level combined too; NULL: as numbered */
     const Executor *executor; /* NULL: this process */
     const void
         *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem; NULL: none */

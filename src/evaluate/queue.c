@@ -18,7 +18,8 @@ typedef struct {
     long request;
     Variant variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
-    char *parts;
+    char *parts;   /* in the order in which they are taken */
+    char *ordered; /* by their numbers, where these differ */
 } Slot;
 
 typedef struct {
@@ -80,6 +81,7 @@ static void layout(Slot *s, const Queue *q, Carve *c)
     CARVE(c, s->f, p->n_obj);
     CARVE(c, s->g, p->n_con);
     s->parts = carve(c, p->n_parts, p->part_size);
+    s->ordered = carve(c, p->order ? p->n_parts : 0, p->part_size);
 }
 
 static Status slot_create(Slot **out, const Queue *q, Err *err)
@@ -124,7 +126,7 @@ static Status slot_get(Queue *q, Slot **out, Err *err)
     }
     Slot *s = q->idle[--q->n_idle];
     const Slot was = *s;
-    *s = (Slot){.e = was.e, .index = was.index, .f = was.f, .g = was.g, .parts = was.parts};
+    *s = (Slot){.e = was.e, .index = was.index, .f = was.f, .g = was.g, .parts = was.parts, .ordered = was.ordered};
     evaluation_forget(&s->e, p->n_obj, p->n_extra);
     *out = s;
     return STATUS_OK;
@@ -416,14 +418,15 @@ static Slot *find_work(Queue *q)
 
 static void hand_out(Queue *q, Slot *s, Task *task)
 {
-    const size_t part = s->n_taken++;
+    const Problem *p = q->problem;
+    const size_t i = s->n_taken++;
     *task = (Task){.id = s->request,
-                   .part = part,
+                   .part = p->order ? p->order[i] : i,
                    .repeat = s->repeat,
                    .variant = s->variant,
                    .x = s->e.x,
-                   .result = s->parts + part * q->problem->part_size,
-                   .size = q->problem->part_size,
+                   .result = s->parts + i * p->part_size,
+                   .size = p->part_size,
                    .may_go_on = may_go_on,
                    .user = q,
                    .slot = s->index};
@@ -455,11 +458,21 @@ static void make_canonical(size_t n, double values[])
         values[i] = isfinite(values[i]) ? values[i] + 0.0 : NAN;
 }
 
+/* All of a design by their numbers; of a cheap level as they were taken. */
+static const char *parts_of(const Problem *p, Slot *s)
+{
+    if (!p->order || s->n_parts < p->n_parts)
+        return s->parts;
+    for (size_t i = 0; i < p->n_parts; i++)
+        memcpy(s->ordered + p->order[i] * p->part_size, s->parts + i * p->part_size, p->part_size);
+    return s->ordered;
+}
+
 static void complete(const Queue *q, Slot *s)
 {
     const Problem *p = q->problem;
     Evaluation *e = &s->e;
-    p->simulator->combine(p, s->n_parts, s->parts, e);
+    p->simulator->combine(p, s->n_parts, parts_of(p, s), e);
     for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
         e->f[k] = NAN;
     make_canonical(p->n_obj, e->f);

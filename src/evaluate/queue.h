@@ -45,7 +45,7 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err);
 typedef struct {
     const Evaluation *evaluation; /* kind: as asked; KIND_INFILL where it was not asked for */
     const double *f, *g;          /* (n_obj) (n_con) minimised, as the problem judges it */
-    const void *parts;            /* (n_parts) of part_size; NULL where the evaluation was known */
+    const void *parts;            /* (n_parts) of part_size as they were taken; NULL where the evaluation was known */
 } Finished;
 
 /* Waits for the next finished design of those pending; what `out` points to holds until the next call or queue_ask. */

@@ -617,6 +617,7 @@ static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult r
     Problem own = *p;
     size_t n_simulations = 0;
     own.observer.done = NULL;
+    own.order = NULL;
     own.n_parts = 1;
     for (size_t i = 0; i < n; i++) {
         n_simulations += tasks[i].n_parts ? tasks[i].n_parts : 1;

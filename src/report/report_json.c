@@ -30,10 +30,11 @@ json_t *result_json(const SimResult *r, const MeasureOrder *order)
     json_t *closings = json_array();
     for (size_t j = 0; j < n; j++)
         json_array_append_new(closings, json_integer(r->closings[j]));
+    char damage[DAMAGE_WORDS_MAX];
     json_t *o =
-        json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
+        json_of("damage=%s objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
                 "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
-                objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
+                damage_words(r, damage), objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
                 r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
                 json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
                 json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));

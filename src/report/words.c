@@ -35,6 +35,7 @@ static const Words WORDS[N_MEASURES] = {
     [MEASURE_PLASTIC_DRIFT] = {"plastic drift", "%", 100},
     [MEASURE_RESIDUAL_DRIFT] = {"residual drift", "%", 100},
     [MEASURE_HYSTERESIS] = {"hysteresis share", "%", 1},
+    [MEASURE_LOSS] = {"repair cost", "%", 100},
 };
 
 Words words_of_measure(int k)

@@ -9,7 +9,7 @@
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
 /* What of most designs is evaluated alone (moga/screening.c): the first replicate of every record. */
-#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates")
+#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates") X(FIDELITY_RECORDS, "records")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;
 
 #endif

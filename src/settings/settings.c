@@ -303,10 +303,10 @@ static const Option OPTIONS[] = {
            "off: evolutionary search without a surrogate"),
     CHOICE(search.asynchronous, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
            "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
-    CHOICE(
-        search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
-        "replicates (tower, sim.replicates >= 2): of most designs only the first replicate is simulated, and the rest "
-        "where it promises most"),
+    CHOICE(search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
+           "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
+           "replicate, "
+           "or an eighth of the records, is simulated, and the rest where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
          "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
     WHOLE(search.replicates_max, "4", 1, 1000,
@@ -783,5 +783,8 @@ int settings_screens(const Settings *s)
 {
     const SearchOptions *search = &s->search;
     const int repeats = s->problem.noisy == NOISY_YES && search->replicates_max > 1 && search->replicate_share > 0;
-    return search->fidelity != FIDELITY_OFF && !repeats && s->problem.kind == PROBLEM_TOWER && s->sim.replicates > 1;
+    const int has_cheap = search->fidelity == FIDELITY_REPLICATES
+                              ? s->sim.replicates > 1
+                              : search->fidelity == FIDELITY_RECORDS && suite_count(&s->motion) > 1;
+    return has_cheap && !repeats && s->problem.kind == PROBLEM_TOWER;
 }

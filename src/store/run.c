@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include "evaluate/problem.h"
+#include "evaluate/race.h"
 #include "evaluate/scenario.h"
 #include "moga/nd_tree.h"
+#include "motion/suite.h"
 #include "settings/settings.h"
 #include "settings/options.h"
 
@@ -152,11 +154,14 @@ int run_is_screened(const Run *run)
     return settings_screens(run->settings);
 }
 
-/* As in the search, whose simulations of one replicate are one here. */
+/* As in the search; the first replicate of all records is one here. */
 static LevelCosts costs_of(const Run *run)
 {
-    const size_t whole = run->settings->sim.replicates;
-    return (LevelCosts){1, whole - 1, whole};
+    const Settings *s = run->settings;
+    const int by_record = s->search.fidelity == FIDELITY_RECORDS;
+    const size_t n = by_record ? suite_count(&s->motion) : 1, first = by_record ? race_first(n) : 1;
+    const size_t whole = n * (size_t)s->sim.replicates;
+    return (LevelCosts){first, whole - first, whole};
 }
 
 /* The cheap level has no spread. */

@@ -109,9 +109,9 @@ Status run_settle_front(Run *run, Err *err);
 
 int run_is_screened(const Run *run); /* search.fidelity acts */
 
-/* Of search.max_evals, those of the rows from `first` on: a screened design is one of sim.replicates parts of an
- * evaluation, finished it is the rest. Of a generation that is not finished no more than it will be: rows without
- * spreads are taken as screened. */
+/* Of search.max_evals, those of the rows from `first` on: a screened design is its share of an evaluation (one of
+ * sim.replicates, or records of race_first), finished it is the rest. Of a generation that is not finished no more than
+ * it will be: rows without spreads are taken as screened. */
 size_t run_evaluations(const Run *run, size_t first);
 
 size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */

@@ -17,6 +17,7 @@
 #include "study/initial_designs.h"
 #include "study/job_limit.h"
 #include "study/named.h"
+#include "study/record_race.h"
 #include "study/study_log.h"
 
 typedef struct {
@@ -436,6 +437,7 @@ static Status run_search(Study *study, Err *err)
         config.planned_evals = run->planned_evals;
         config.initial = (initial < run->planned_evals ? initial : run->planned_evals);
     }
+    TRY(record_race(study->adapter, &study->used, err));
     omp_set_num_threads(search_threads(study));
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     const Status status =

@@ -101,6 +101,7 @@ function warnings(d) {
   const worse = overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)]).filter(([, list]) => list.length);
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
+    d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}.`] : null,
     ...turnovers(d),
     ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
     d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,

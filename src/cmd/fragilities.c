@@ -1,0 +1,273 @@
+#include "cmd/fragilities.h"
+
+#include "base/figure.h"
+#include "cmd/show.h"
+#include "report/gnuplot.h"
+#include "settings/settings.h"
+
+static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_RIGID, EVALUATED_NO_CORE, EVALUATED_LINKS};
+static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
+static const double YEARS = 50;
+static const double CUT_OFF_NOTICEABLE = 0.01; /* of the probability where a hazard curve begins */
+
+/* ---- what is asked for ------------------------------------------------------------------------------------------- */
+
+/* "j3_g=5" as "j3_g<=5", what is better when it is more as ">=". */
+static Status write_limits(const Schema *schema, const char *list, char out[OPTION_TEXT_MAX], Err *err)
+{
+    char item[128];
+    size_t used = 0, k;
+    for (size_t i = 0; i < list_count(list); i++) {
+        char *is = list_item(list, i, item, sizeof item) ? strchr(item, '=') : NULL;
+        if (!is || is == item)
+            return misused(err, "--fragility %.80s: is no list of NAME=NUMBER, nor `limits`", list);
+        const char *relation = "=";
+        *is = 0;
+        if (is[-1] != '<' && is[-1] != '>') {
+            TRY(schema_pick_result(schema, "--fragility", item, STATUS_USAGE, &k, err));
+            relation = schema_objective(schema, k)->sense > 0 ? "<=" : ">=";
+        }
+        used +=
+            (size_t)snprintf(out + used, OPTION_TEXT_MAX - used, "%s%s%s%s", used ? "," : "", item, relation, is + 1);
+        if (used >= OPTION_TEXT_MAX)
+            return misused(err, "--fragility: the list is too long");
+    }
+    return STATUS_OK;
+}
+
+static Status take_hazard(Fragilities *f, const Table *t, const char *intensity, Err *err)
+{
+    const int column[2] = {table_column(t, intensity), table_column(t, "rate_per_year")};
+    if (column[0] < 0 || column[1] < 0 || t->n_rows < 2)
+        return bad_data(err, "%s: has no columns %s and rate_per_year of two rows at least", t->path, intensity);
+    TRY_ROOM(f->hazard, 2 * t->n_rows, "points of a hazard curve", err);
+    f->n_hazard = t->n_rows;
+    for (size_t i = 0; i < t->n_rows; i++) {
+        double *at = f->hazard + 2 * i;
+        at[0] = t->values[i * t->n_cols + (size_t)column[0]];
+        at[1] = t->values[i * t->n_cols + (size_t)column[1]];
+        if (!(at[0] > (i ? at[-2] : 0) && at[1] > 0 && (i == 0 || at[1] < at[-1])))
+            return bad_data(err, "%s:%d: intensities must rise, and their rates fall, all above 0", t->path,
+                            t->line[i]);
+    }
+    return STATUS_OK;
+}
+
+Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, const char *hazard,
+                        const char *intensity, Settings *s, Err *err)
+{
+    Err why = {0};
+    Table t = {0};
+    char item[128];
+    f->schema = schema;
+    if (strcmp(list, "limits") != 0)
+        TRY(write_limits(schema, list, s->search.limits, err));
+    for (size_t i = 0; i < list_count(s->search.limits); i++) { /* one by one: a measure may have several */
+        Limits one;
+        list_item(s->search.limits, i, item, sizeof item);
+        if (limits_read(&one, schema, item, &why) != STATUS_OK)
+            return misused(err, "--fragility: %s", why.text);
+        if (one.n == 0 || f->limits.n == LIMITS_MAX)
+            return misused(err, "--fragility %s: no limit, or more than %d", list, LIMITS_MAX);
+        f->limits.limit[f->limits.n++] = one.limit[0];
+    }
+    for (size_t i = 0; i < f->limits.n; i++)
+        if (schema->order.of[f->limits.limit[i].result] >= MEASURES_LISTED)
+            return misused(err, "--fragility: a probability is no limit of one simulation");
+    Status status = hazard ? table_read(&t, hazard, TABLE_HEADED, err) : STATUS_OK;
+    if (status == STATUS_OK && hazard)
+        status = take_hazard(f, &t, intensity, err);
+    table_free(&t);
+    return status;
+}
+
+void fragilities_free(Fragilities *f)
+{
+    free(f->hazard);
+}
+
+/* ---- curves ------------------------------------------------------------------------------------------------------ */
+
+/* One limit under one case. */
+typedef struct {
+    const Limit *limit;
+    const char *name;
+    EvaluatedCase which;
+    size_t n_at[IDA_LEVELS_MAX], exceeded[IDA_LEVELS_MAX], n, hits;
+    Fragility fit;
+    double low, high; /* median, 95 % */
+    double rate;      /* per year; NAN: not known */
+} Curve;
+
+static void find_curve(const Fragilities *f, const Evaluations *e, size_t i, EvaluatedCase which, Curve *c)
+{
+    const Limit *limit = &f->limits.limit[i];
+    *c = (Curve){.limit = limit, .name = schema_objective(f->schema, limit->result)->name, .which = which};
+    c->fit = ida_fragility(e, which, f->schema->order.of[limit->result], limit, c->n_at, c->exceeded);
+    for (size_t l = 0; l < e->n_levels; l++) {
+        c->n += c->n_at[l];
+        c->hits += c->exceeded[l];
+    }
+    const double range = exp(CONFIDENCE * c->fit.sd_ln_median);
+    c->low = c->fit.median / range;
+    c->high = c->fit.median * range;
+    c->rate = f->hazard ? fragility_rate(&c->fit, f->n_hazard, f->hazard) : NAN;
+}
+
+typedef void CurveFn(const Fragilities *f, const Evaluations *e, const Curve *c, void *user);
+
+static void each_curve(const Fragilities *f, const Evaluations *e, CurveFn *take, void *user)
+{
+    Curve c;
+    for (size_t i = 0; i < f->limits.n; i++)
+        for (size_t k = 0; k < N_OF(CASES); k++) {
+            find_curve(f, e, i, CASES[k], &c);
+            take(f, e, &c, user);
+        }
+}
+
+static const char *relation(const Curve *c)
+{
+    return c->limit->sign > 0 ? ">" : "<";
+}
+
+/* 0.52 (0.45 to 0.6); where it is not known, why. */
+static void median_words(const Curve *c, char text[4 * FIGURE_MAX])
+{
+    char median[FIGURE_MAX], low[FIGURE_MAX], high[FIGURE_MAX];
+    figure_text(c->fit.median, NAN, NAN, median);
+    figure_text(c->low, NAN, NAN, low);
+    figure_text(c->high, NAN, NAN, high);
+    if (isfinite(c->fit.beta))
+        snprintf(text, 4 * FIGURE_MAX, "%s (%s to %s)", median, low, high);
+    else if (isfinite(c->fit.median))
+        snprintf(text, 4 * FIGURE_MAX, "%s: finer steps", median);
+    else
+        snprintf(text, 4 * FIGURE_MAX, "%s",
+                 c->hits == 0      ? "never"
+                 : c->hits == c->n ? "always"
+                                   : "not rising with intensity");
+}
+
+static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, void *table)
+{
+    char text[4 * FIGURE_MAX], column[64];
+    snprintf(text, sizeof text, "%s%s%g", c->name, relation(c), c->limit->bound);
+    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, EVALUATION_CASES[c->which].word);
+    median_words(c, text);
+    snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
+    json_object_set_new(row, column, json_string(text));
+    figures_put(row, "beta", c->fit.beta, NAN, c->fit.sd_beta);
+    snprintf(text, sizeof text, "%zu of %zu", c->hits, c->n);
+    json_put(row, "exceeded=%s", text);
+    if (!f->hazard)
+        return;
+    figures_put(row, "per_year", c->rate, NAN, NAN);
+    figures_put(row, "in_50_years_pct", -100 * expm1(-YEARS * c->rate), NAN, NAN);
+    if (fragility_at(&c->fit, f->hazard[0]) > CUT_OFF_NOTICEABLE)
+        json_put(row, " =%s", "more often: the hazard curve begins too high");
+}
+
+json_t *fragilities_table(const Fragilities *f, const Evaluations *e)
+{
+    json_t *table = json_array();
+    each_curve(f, e, add_row, table);
+    return table;
+}
+
+static json_t *counts(size_t n, const size_t of[])
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < n; i++)
+        json_array_append_new(list, json_integer((json_int_t)of[i]));
+    return list;
+}
+
+static void add_object(const Fragilities *f, const Evaluations *e, const Curve *c, void *list)
+{
+    const double range[] = {c->low, c->high};
+    json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g",
+                        c->name, relation(c), c->limit->bound, EVALUATION_CASES[c->which].key, c->fit.median,
+                        json_numbers(2, range), c->fit.beta, c->fit.sd_ln_median, c->fit.sd_beta);
+    json_put(o, "simulations=%p exceeded=%p", counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
+    if (f->hazard)
+        json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
+                 -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
+    if (c->which == EVALUATED_LINKS)
+        json_put(o, "link_ns_m=%g", e->run[0].device[EVALUATED_LINKS].device.link_ns_m);
+    json_array_append_new(list, o);
+}
+
+json_t *fragilities_json(const Fragilities *f, const Evaluations *e)
+{
+    json_t *list = json_array();
+    each_curve(f, e, add_object, list);
+    return list;
+}
+
+/* ---- picture ----------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const Fragilities *f;
+    const Evaluations *e;
+} Picture;
+
+static size_t number_of(const Fragilities *f, const Curve *c)
+{
+    return (size_t)(c->limit - f->limits.limit) * N_WITH_DEVICES + c->which;
+}
+
+/* Intensity and share that exceeded it. */
+static void write_block(const Fragilities *f, const Evaluations *e, const Curve *c, void *script)
+{
+    fprintf(script, "$S%zu << EOD\n", number_of(f, c));
+    for (size_t l = 0; l < e->n_levels; l++) {
+        fprintf(script, "%.6g ", e->level[l]);
+        gnuplot_number(script, (double)c->exceeded[l] / (double)c->n_at[l]);
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+/* Its panel, where it is the first, shares and curve. */
+static void write_curve(const Fragilities *f, const Evaluations *e, const Curve *c, void *script)
+{
+    static const char *const COLOURS[N_WITH_DEVICES] = {"#0072b2", "#8a6d00", "#d55e00", "", "#009e73"};
+    const Fragility *fit = &c->fit;
+    (void)e;
+    if (c->which == CASES[0])
+        fprintf(script, "\nset title '%s %s %g'\nset key %s\nplot ", c->name, relation(c), c->limit->bound,
+                c->limit == f->limits.limit ? "left top" : "off");
+    fprintf(script, "$S%zu using 1:2 with points pt 7 ps 0.5 lc '%s' notitle, ", number_of(f, c), COLOURS[c->which]);
+    if (isnan(fit->median))
+        fputs("NaN", script);
+    else if (isnan(fit->beta))
+        fprintf(script, "x > %.9g", fit->median);
+    else
+        fprintf(script, "norm(log(x / %.9g) / %.9g)", fit->median, fit->beta);
+    fprintf(script, " with lines lw 2.5 lc '%s' title '%s'%s", COLOURS[c->which], EVALUATION_CASES[c->which].word,
+            c->which == CASES[N_OF(CASES) - 1] ? "\n" : ", ");
+}
+
+static void write_script(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    const size_t n = p->f->limits.n, columns = MIN_OF(n, 3), rows = (n + columns - 1) / columns;
+    const double height = 60 + 400 * (double)rows, width = 200 + 400 * (double)columns;
+    fprintf(script,
+            "set terminal svg size %g,%g font 'sans,13' noenhanced background '#ffffff'\n"
+            "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:%.6g]\nset yrange [0:1]\nset samples 400\n"
+            "set xlabel '%s [g]'\nset ylabel 'probability'\n"
+            "set multiplot layout %zu,%zu margins screen %g,0.98,%g,%g spacing 0.07,0.16\n",
+            width, height, p->e->level[p->e->n_levels - 1] * 1.05,
+            p->e->intensity[0] == 's' ? "spectral acceleration" : "peak ground acceleration", rows, columns, 60 / width,
+            60 / height, 1 - 40 / height);
+    each_curve(p->f, p->e, write_block, script);
+    each_curve(p->f, p->e, write_curve, script);
+    fputs("unset multiplot\n", script);
+}
+
+Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err)
+{
+    return gnuplot_draw(path, write_script, &(Picture){f, e}, err);
+}

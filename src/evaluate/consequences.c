@@ -1,0 +1,72 @@
+#include "evaluate/consequences.h"
+
+#include <math.h>
+#include <stdio.h>
+
+const struct DamagePart DAMAGE_PARTS[N_PARTS] = {
+    {"structure", "steel frame", {0.006, 0.012, 0.03, 0.08}, 0.4, {0.004, 0.019, 0.096, 0.192}},
+    {"drift_sensitive", "parts sensitive to drift", {0.004, 0.008, 0.025, 0.05}, 0.5, {0.007, 0.033, 0.164, 0.329}},
+    {"acceleration_sensitive",
+     "parts sensitive to acceleration",
+     {0.3, 0.6, 1.2, 2.4},
+     0.6,
+     {0.009, 0.048, 0.144, 0.479}},
+};
+
+int damage_state(DamagedPart part, double demand)
+{
+    int state = 0;
+    while (state < DAMAGE_STATES && demand >= DAMAGE_PARTS[part].median[state])
+        state++;
+    return state;
+}
+
+const char *damage_word(int state)
+{
+    static const char *const WORDS[] = {"none", "slight", "moderate", "extensive", "complete"};
+    return WORDS[state];
+}
+
+double damage_cost(DamagedPart part, double demand)
+{
+    const struct DamagePart *d = &DAMAGE_PARTS[part];
+    double cost = 0, before = 0;
+    for (int s = 0; s < DAMAGE_STATES; s++) {
+        cost += 0.5 * erfc(-log(demand / d->median[s]) / (d->beta * M_SQRT2)) * (d->cost[s] - before);
+        before = d->cost[s];
+    }
+    return cost;
+}
+
+static const double *demands(const SimResult *r, DamagedPart part)
+{
+    return part == PART_ACCELERATION ? r->peak_acceleration_g : r->drift_ratio;
+}
+
+double damage_loss(const SimResult *r)
+{
+    double loss = 0;
+    for (DamagedPart p = 0; p < N_PARTS; p++)
+        for (int j = 0; j < r->n_floors; j++)
+            loss += damage_cost(p, demands(r, p)[j]) / r->n_floors;
+    return loss;
+}
+
+const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
+{
+    int used = 0;
+    text[0] = 0;
+    for (DamagedPart p = 0; p < N_PARTS && r->outcome == RUN_OK; p++) {
+        const int is_drift = p != PART_ACCELERATION;
+        const double worst = is_drift ? r->drift_ratio_max : r->j3_g, end = DAMAGE_PARTS[p].median[DAMAGE_STATES - 1];
+        const int state = damage_state(p, worst);
+        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s %s%s (%.3g%s; complete from %.3g)",
+                         p ? ", " : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
+                         damage_word(state), is_drift ? 100 * worst : worst, is_drift ? " %" : " g",
+                         is_drift ? 100 * end : end);
+    }
+    if (r->outcome == RUN_OK)
+        snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "; repair some %.2g %% of replacement",
+                 100 * damage_loss(r));
+    return text;
+}
