@@ -419,6 +419,13 @@ TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
     motion_free(&again);
 }
 
+TEST(the_settings_of_the_page_on_risk_have_no_fault)
+{
+    char *said = output_of("check configs/risk.ini");
+    assert_non_null(strstr(said, "configs/risk.ini: no fault"));
+    free(said);
+}
+
 int main(void)
 {
     return RUN_TESTS(make_place, clear_place);

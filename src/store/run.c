@@ -168,8 +168,9 @@ static LevelCosts costs_of(const Run *run)
 static size_t cost_of(const Run *run, const LevelCosts *cost, size_t row)
 {
     EvaluationKind kind = run->table.row[row].kind;
+    const double *sd = run->table.row[row].sd; /* NULL: of one simulation of every record */
     if (kind == KIND_UNFINISHED && run_is_screened(run))
-        kind = isfinite(run->table.row[row].sd[0]) ? KIND_FINISHED : KIND_SCREENED;
+        kind = sd && isfinite(sd[0]) ? KIND_FINISHED : KIND_SCREENED;
     return kind == KIND_SCREENED   ? cost->cheap
            : kind == KIND_FINISHED ? cost->rest
            : kind == KIND_POLISHED ? 0
