@@ -55,4 +55,3 @@ void linalg_congruent(int n, int m, const double A[], const double T[], double w
 
 /* C (n, n) = A B' with A, B (n, m). */
 void linalg_product_of_rows(int n, int m, const double A[], const double B[], double C[]);
-

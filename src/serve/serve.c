@@ -400,14 +400,10 @@ struct Route {
     ShowFn get, post; /* NULL: not known */
 };
 
-static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
-                               {"runs", 0, 0, show_runs, NULL},
-                               {"", 1, 0, show_page, NULL},
-                               {"events", 1, 0, show_events, NULL},
-                               {"front", 1, 0, show_front, NULL},
-                               {"importance", 1, 0, show_importance, NULL},
-                               {"design", 1, 1, show_design, NULL},
-                               {"what-if", 1, 0, show_bounds, show_what_if},
+static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},        {"runs", 0, 0, show_runs, NULL},
+                               {"", 1, 0, show_page, NULL},          {"events", 1, 0, show_events, NULL},
+                               {"front", 1, 0, show_front, NULL},    {"importance", 1, 0, show_importance, NULL},
+                               {"design", 1, 1, show_design, NULL},  {"what-if", 1, 0, show_bounds, show_what_if},
                                {"against", 1, 1, show_against, NULL}};
 
 static const Route *route_of(const ServePath *path)
