@@ -117,7 +117,7 @@ TEST(without_contact_there_is_no_spread)
     ReplicateSummary sum;
     Err err = {0};
     for (int j = 0; j < N_VAR; j++)
-        x[j] = j < 20 ? 5.0 * (j + 1) : 0.01;
+        x[j] = j < 20 ? 4.0 * (j + 1) : 0.01;
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     CHECK_OK(tower_replicate(&p, 1, x, &shown, &sum, &err), &err);
     problem_close(&p);

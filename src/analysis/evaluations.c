@@ -34,15 +34,22 @@ Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *e
     return STATUS_OK;
 }
 
+typedef struct {
+    Evaluations *e;
+    const char *suite;
+} Added;
+
+/* A record that stands by itself is asked for by name: it has to be there. */
 static Status add_of_suite(const char *source, void *user, Err *err)
 {
-    return evaluations_add(user, source, 1, err);
+    const Added *a = user;
+    return evaluations_add(a->e, source, strcmp(source, a->suite) != 0, err);
 }
 
 Status evaluations_add_suite(Evaluations *e, const char *suite, Err *err)
 {
     Err why = {0};
-    const Status status = suite_each(suite, add_of_suite, e, &why);
+    const Status status = suite_each(suite, add_of_suite, &(Added){e, suite}, &why);
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "--records %s", why.text);
 }
 

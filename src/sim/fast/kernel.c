@@ -493,6 +493,8 @@ static void report_energies(FastWork *k, SimResult *r)
     double *damped = scalars(k->reach.bound_q);
     for (int i = 0; i < k->m_pad; i++) {
         damped[i] = damped_by(k, i, &r->kinetic_strain_j);
+        if (scalars_const(k->zeta)[i] == 0)
+            damped[i] = 0; /* what the balance leaves of a mode without damping is rounding */
         r->input_energy_j += scalars_const(k->now.ground_work)[i];
         contact_work += scalars_const(k->now.contact_work)[i];
         missed += scalars_const(k->now.defect)[i] * scalars_const(k->now.defect)[i];
