@@ -618,15 +618,15 @@ static int print_by(int printer, char *page, char *pdf, FILE *faults)
     char *const chromium[] = {
         "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer", option, page, NULL};
     char *const weasyprint[] = {"weasyprint", page, pdf, NULL};
-    char *const version[N_PRINTERS][3] = {{"chromium", "--version", NULL}, {"weasyprint", "--version", NULL}};
-    char *const *words = !page ? version[printer] : printer ? weasyprint : chromium;
-    return program_run(words, faults, NULL, faults);
+    return program_run(printer ? weasyprint : chromium, faults, NULL, faults);
 }
 
 static int first_printer(FILE *faults)
 {
+    char chromium[] = "chromium", weasyprint[] = "weasyprint", option[] = "--version";
+    char *const version[N_PRINTERS][3] = {{chromium, option, NULL}, {weasyprint, option, NULL}};
     int i = 0;
-    while (i < N_PRINTERS && print_by(i, NULL, NULL, faults) != 0)
+    while (i < N_PRINTERS && program_run(version[i], faults, NULL, faults) != 0)
         i++;
     return i;
 }
