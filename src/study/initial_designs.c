@@ -69,7 +69,7 @@ static Status read_front(const char *where, const char *folder, const Schema *sc
 /* Behind the n designs that X has. */
 static Status append(size_t n_var, const double more[], size_t n_more, double **X, size_t *n, Err *err)
 {
-    double *all = realloc(*X, (*n + n_more + 1) * n_var * sizeof *all);
+    double *all = realloc(*X, ((*n + n_more) * n_var + 1) * sizeof *all);
     if (!all)
         return fail_memory(err, n_more, "designs");
     memcpy(all + *n * n_var, more, n_more * n_var * sizeof *all);
