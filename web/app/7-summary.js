@@ -98,7 +98,9 @@ function turnovers(d) {
 }
 
 function warnings(d) {
-  const worse = overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)]).filter(([, list]) => list.length);
+  // Of links and a tuned mass only where they are better in half of the objectives or more: then they are the simpler answer.
+  const worse = overlays.map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)])
+    .filter(([o, list]) => list.length >= (["no_core", "rigid"].includes(o.key) ? 1 : objectives.length / 2));
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
     d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}.`] : null,
