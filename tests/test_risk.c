@@ -152,6 +152,8 @@ TEST(what_the_counts_do_not_say_is_not_known)
     const Fragility one = fragility_fit(3, x, n_at, (size_t[]){0, 2, 5}); /* as likely as can be with beta 0 */
     assert_close(one.median, 2, 1e-12);
     assert_true(isnan(one.beta));
+    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){4, 5, 5}).median)); /* it is below the first */
+    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){0, 0, 2}).median)); /* or above the last */
     assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){4, 3, 1}).beta));
     const Fragility f = fragility_fit(3, x, n_at, (size_t[]){1, 2, 4});
     assert_less(0, f.beta);

@@ -19,6 +19,18 @@ static double parting_of(size_t n, const double x[], const size_t n_at[], const 
     return none > 0 && isfinite(all) && none <= all ? sqrt(none * all) : NAN;
 }
 
+/* Do all intensities exceed but one that has both, or none but that one? The median is then beyond it, nobody knows how
+ * far: the intensities have to begin lower, or end higher. */
+static int is_at_the_end(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
+{
+    size_t none = 0, all = 0;
+    for (size_t j = 0; j < n; j++) {
+        none += exceeded[j] == 0;
+        all += exceeded[j] == n_at[j];
+    }
+    return (none == 0 || all == 0) && isfinite(parting_of(n, x, n_at, exceeded));
+}
+
 typedef struct {
     double gradient[2], information[3]; /* of a, b; aa, ab, bb */
 } Score;
@@ -51,7 +63,7 @@ Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const s
         mean += log(x[j]) / (double)n;
     }
     const double parting = parting_of(n, x, n_at, exceeded);
-    if (hits == 0 || hits == all)
+    if (hits == 0 || hits == all || is_at_the_end(n, x, n_at, exceeded))
         return f;
     if (isfinite(parting)) {
         f.median = parting;

@@ -72,7 +72,9 @@ static void list_variables(Job *job)
         Sensitivity *o = &job->out[j];
         design_variable_name(&job->space, (int)j, o->name);
         o->value = job->x[j];
-        o->step = j < (size_t)job->space.n_gaps ? fmin(GAP_STEP, 0.5 * o->value) : SHARE * o->value;
+        o->step = design_word(&job->space, (int)j, o->value) ? 0 /* no slope: the next word is another device */
+                  : j < (size_t)job->space.n_gaps            ? fmin(GAP_STEP, 0.5 * o->value)
+                                                             : SHARE * o->value;
         for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {
             double *x = job->X + (j * SIDES_OF_TWO_STEPS + side) * job->n_var;
             memcpy(x, job->x, job->n_var * sizeof *x);

@@ -406,7 +406,7 @@ static void write_intensities(const Dossier *o, Evaluations *e)
 static void write_ida(const Dossier *o, size_t n, const char *const records[])
 {
     double level[LEVELS];
-    Evaluations e = {.n_levels = LEVELS, .level = level};
+    Evaluations e = {.n_levels = LEVELS, .level = level, .intensity = "pga_g"};
     Settings s = *o->s;
     Err why = {0};
     Status status = STATUS_OK;
@@ -604,10 +604,15 @@ static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n
 
 enum { N_PRINTERS = 2 };
 
-static int is_pdf(const char *path)
+static int ends_in(const char *path, const char *ending)
 {
     const char *end = strrchr(path, '.');
-    return end && strcmp(end, ".pdf") == 0;
+    return end && strcmp(end, ending) == 0;
+}
+
+static int is_pdf(const char *path)
+{
+    return ends_in(path, ".pdf");
 }
 
 /* page, pdf: paths. */
@@ -633,6 +638,8 @@ static int first_printer(FILE *faults)
 
 Status dossier_check(const char *path, Err *err)
 {
+    if (!is_pdf(path) && !ends_in(path, ".html"))
+        return misused(err, "--dossier %s: it is written as a page or a PDF; name the file .html or .pdf", path);
     FILE *faults = is_pdf(path) ? tmpfile() : NULL;
     const int is_there = !faults || first_printer(faults) < N_PRINTERS;
     if (faults)
