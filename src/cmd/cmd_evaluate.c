@@ -459,18 +459,23 @@ static Status take_fragilities(const Args *args, Settings *s, Chosen *c, Evaluat
     return limits ? fragilities_read(&c->fragilities, c->schema, limits, hazard, e->intensity, s, err) : STATUS_OK;
 }
 
+static Status take_and_run(const Args *args, Settings *s, Chosen *c, Evaluations *e, Err *err)
+{
+    TRY(take_fragilities(args, s, c, e, err));
+    TRY(settings_check(s, err));
+    if (e->level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
+        return misused(err, "sim.replicates = %ld: every intensity is shown once, without replicates",
+                       s->sim.replicates);
+    e->replicates = !e->level && s->sim.replicates > 1 ? s->sim.replicates : 0;
+    return run_and_give(args, s, c, e, err);
+}
+
 static Status evaluate(const Args *args, Settings *s, Chosen *c, Err *err)
 {
     double levels[IDA_LEVELS_MAX];
     Evaluations e = {.duration_s = s->sim.duration_s};
     TRY(take_intensities(args, s, levels, &e, err));
-    TRY(take_fragilities(args, s, c, &e, err));
-    TRY(settings_check(s, err));
-    if (e.level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
-        return misused(err, "sim.replicates = %ld: every intensity is shown once, without replicates",
-                       s->sim.replicates);
-    e.replicates = !e.level && s->sim.replicates > 1 ? s->sim.replicates : 0;
-    const Status status = run_and_give(args, s, c, &e, err);
+    const Status status = take_and_run(args, s, c, &e, err);
     evaluations_free(&e);
     fragilities_free(&c->fragilities);
     return status;
