@@ -239,16 +239,18 @@ include mk/checks.mk mk/figures.mk
 format: ## clang-format over the sources
 	clang-format -i $(wildcard include/*.h examples/*.c src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] bench/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-# Manual pages are written by the program itself; completion asks it.
+# Manual pages are written by the program itself; completion asks it, that of zsh and fish through that of bash.
 SHARE := $(DESTDIR)$(PREFIX)/share
-install: all install-library ## program, library, manual pages, bash completion, examples; PREFIX=/usr/local DESTDIR=
+COMPLETIONS := bash-completion/completions/imtet fish/vendor_completions.d/imtet.fish \
+               zsh/$(if $(filter /usr,$(PREFIX)),vendor-completions,site-functions)/_imtet
+install: all install-library ## program, library, manual pages, completion, examples; PREFIX=/usr/local DESTDIR=
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
 	@if [ -e imtet_mpi ]; then install -m 755 imtet_mpi scripts/imtet-mpirun $(DESTDIR)$(PREFIX)/bin; fi
 	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(SHARE)/imtet/configs/$$f; done
-	@install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions
+	@install -d $(SHARE)/man/man1 $(dir $(COMPLETIONS:%=$(SHARE)/%))
 	@./imtet --man > $(SHARE)/man/man1/imtet.1
 	@for c in $$(./imtet --commands); do ./imtet --man $$c > $(SHARE)/man/man1/imtet-$$c.1; done
-	@install -m 644 scripts/completion.bash $(SHARE)/bash-completion/completions/imtet
+	@for f in $(COMPLETIONS); do sed 's|@SHARE@|$(PREFIX)/share|' scripts/completion.$${f%%[-/]*} > $(SHARE)/$$f; done
 	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/*; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
@@ -272,7 +274,7 @@ uninstall-library:
 
 uninstall: uninstall-library ## removes what install has put under PREFIX
 	rm -f $(addprefix $(DESTDIR)$(PREFIX)/bin/,imtet imtet_mpi imtet-mpirun) $(SHARE)/man/man1/imtet.1 $(SHARE)/man/man1/imtet-*.1 \
-	    $(SHARE)/bash-completion/completions/imtet
+	    $(COMPLETIONS:%=$(SHARE)/%)
 	rm -rf $(SHARE)/imtet $(SHARE)/doc/imtet
 
 clean: ## removes build/ and ./imtet

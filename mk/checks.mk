@@ -78,11 +78,14 @@ laws: $(BENCH) ## rebound of the contact laws
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
 
+fresh-packages: ## the packages of `make deb` in a Debian that has nothing, the same way
+	@scripts/fresh-debian build/fresh-packages build/deb
+
 CALLS ?= 100000
 api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
 	@$(MAKE) --no-print-directory MODE=asan build/asan/tests/test_asking build/asan/imtet
 	@IMTET=$(CURDIR)/build/asan/imtet API_CALLS=$(CALLS) build/asan/tests/test_asking
 
-deb: ## packages imtet, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
+deb: ## packages imtet, imtet-mpi, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt
 	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)

@@ -1,53 +1,66 @@
-# bash completion of imtet, installed by `make install`: asks the program for its commands, options and settings.
+# Completion of imtet for bash, which sources it, and for zsh and fish, which run it with the words of a line, of which the
+# last may be empty; installed by `make install`. Commands, options and settings are asked of the program.
 
-# The words that a setting takes, FILE where it takes a file: "(a|b|FILE)" at the end of its description.
-_imtet_setting()
+# What may stand in the place of the last WORD, a line each, with a tab before what it is; FILE at the end: any file.
+_imtet_offers() # PROGRAM WORD...
 {
-    "$1" settings | awk -v key="$2" '
-        /^\[/ { section = substr($0, 2, length($0) - 2) }
-        /^;/  { words = match($0, /\([^ ()]*(\||FILE)[^ ()]*\)$/) ? substr($0, RSTART + 1, RLENGTH - 2) : "" }
-        section "." $1 == key { gsub(/\|/, " ", words); print words }'
-}
-
-_imtet()
-{
-    local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} cur=${COMP_WORDS[COMP_CWORD]} asked=${COMP_WORDS[COMP_CWORD-1]}
-    local before=${COMP_WORDS[COMP_CWORD-2]} motions="kobe-like elcentro-like sylmar-like" words= option=
-    if [[ $asked$cur == builtin: ]]; then # name=value and builtin:NAME come as three words
-        COMPREPLY=($motions)
+    local program=$1 command=$2 asked=${*: -2:1} cur=${*: -1} before='' option='' key='' words='' word
+    if (($# == 2)) || [[ $# == 3 && $command == help ]]; then
+        "$program" help | sed -n 's/^  \([a-z]\+\) \+\([][A-Z|.]\+ \+\)\?/\1\t/p'
+        (($# == 3)) || printf '%s\n' help --help --version
         return
     fi
-    [[ $cur == = ]] && cur=
-    [[ $asked == = ]] && asked=$before
+    [[ $cur == --*=* ]] && asked=${cur%%=*} before=${cur%%=*}= cur=${cur#*=}
     [[ $asked == -* ]] && option=$("$program" help "$command" 2>/dev/null | grep -E -- "^  $asked [^ ]")
-    if ((COMP_CWORD == 1)); then
-        words="$("$program" --commands) help --help --version"
-    elif [[ $command == help ]]; then
-        words=$("$program" --commands)
-    elif [[ $before$asked == builtin: ]]; then
-        words=$motions
+    if [[ $asked == --set && $cur == *=* ]]; then
+        key=${cur%%=*} before+=$key=
+    elif [[ $option == *"= --set "* ]]; then
+        key=${option##*= --set }
+    fi
+    if [[ $key ]]; then # its words: "(a|b|FILE)" at the end of its description
+        words=$("$program" settings | awk -v key="$key" '
+            /^\[/ { section = substr($0, 2, length($0) - 2) }
+            /^;/  { words = match($0, /\([^ ()]*(\||FILE)[^ ()]*\)$/) ? substr($0, RSTART + 1, RLENGTH - 2) : "" }
+            section "." $1 == key { gsub(/\|/, " ", words); print words }')
     elif [[ $option == *"--set SECTION"* ]]; then
-        words=$("$program" settings | awk '/^\[/ { s = substr($0, 2, length($0) - 2) } / = / && !/^;/ { print s "." $1 "=" }')
-        compopt -o nospace 2>/dev/null
+        "$program" settings | awk -v before="$before" '
+            /^\[/ { section = substr($0, 2, length($0) - 2) }
+            /^;/  { help = substr($0, 3) }
+            / = / && !/^;/ { print before section "." $1 "=\t" help }'
     elif [[ $option == *"--design FILE"* ]]; then
         words="none FILE"
     elif [[ $option == *"--design ID"* ]]; then
         words=knee
-    elif [[ $option == *"= --set "* ]]; then
-        words=$(_imtet_setting "$program" "${option##*= --set }")
     elif [[ $option ]]; then
         [[ $option =~ ^\ \ [-a-z]+\ (FILE|DIR|FOLDER)\  ]] && words=FILE
-    elif [[ $asked == *.* && $before == --set ]] || [[ $asked == "$before" ]]; then
-        words=$(_imtet_setting "$program" "$asked")
     elif [[ $cur == -* ]]; then
-        words="$("$program" help "$command" 2>/dev/null | grep -oE -- '^  --[a-z-]+')"
+        "$program" help "$command" 2>/dev/null | sed -n 's/^  \(--[a-z-]\+\)\( [^ ]*\)\? \+/\1\t/p'
     else
         words=FILE
     fi
-    COMPREPLY=($(compgen -W "${words/FILE*/}" -- "$cur"))
-    if [[ $words == *FILE* ]]; then
-        COMPREPLY+=($(compgen -f -- "$cur"))
-        compopt -o filenames 2>/dev/null
-    fi
+    for word in $words; do echo "$before$word"; done
 }
-complete -F _imtet imtet
+
+_imtet()
+{
+    local line=${COMP_LINE:0:COMP_POINT} cur word words
+    read -ra words <<<"$line"
+    [[ $line == *[[:space:]] ]] && words+=("")
+    cur=${words[-1]}
+    COMPREPLY=()
+    while IFS=$'\t' read -r word _; do
+        if [[ $word == *FILE ]]; then
+            mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "${cur#"${word%FILE}"}")
+            compopt -o filenames 2>/dev/null
+        elif [[ $word == "$cur"* ]]; then # bash replaces what is behind the last = or :
+            COMPREPLY+=("${word#"${cur%"${cur##*[=:]}"}"}")
+            [[ $word == *= ]] && compopt -o nospace 2>/dev/null
+        fi
+    done < <(_imtet_offers "${words[@]}")
+}
+
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+    _imtet_offers "$@"
+else
+    complete -F _imtet imtet
+fi

@@ -84,22 +84,26 @@ TEST(an_empty_front_is_refused_with_its_reason_everywhere)
     expect(69, WHY, "evaluate @/hollow --design knee --record builtin:kobe-like");
 }
 
-/* What bash would offer behind these words. */
-static char *offered(const char *words)
+static char *shell(const char *format, ...)
 {
-    char command[1024], path[128];
-    snprintf(path, sizeof path, "%s/offered", place.folder);
-    snprintf(command, sizeof command,
-             "bash -c 'source scripts/completion.bash; COMP_WORDS=(%s %s); "
-             "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _imtet; echo \"${COMPREPLY[@]}\"' > %s",
-             getenv("IMTET"), words, path);
+    char command[2048], path[128];
+    va_list list;
+    va_start(list, format);
+    const size_t n = (size_t)snprintf(command, sizeof command, "exec >%s/offered; ", place.folder);
+    spread(command + n, sizeof command - n, format, list);
+    va_end(list);
     assert_int_equal(system(command), 0);
+    snprintf(path, sizeof path, "%s/offered", place.folder);
     return text_of(path);
 }
 
+/* Bash replaces what is behind the last = or :. */
 static void expect_offer(const char *words, const char *wanted)
 {
-    char *offer = offered(words);
+    char *offer =
+        shell("bash -c 'source scripts/completion.bash; COMP_LINE=\"%s %s\"; COMP_POINT=${#COMP_LINE}; _imtet; "
+              "echo \"${COMPREPLY[*]}\"'",
+              getenv("IMTET"), words);
     if (strncmp(offer, wanted, strlen(wanted)) != 0)
         fail_msg("imtet %s: offered '%s', wanted '%s'", words, offer, wanted);
     free(offer);
@@ -111,17 +115,47 @@ TEST(bash_offers_commands_options_keys_and_words)
     expect_offer("help spec", "spectrum\n");
     expect_offer("simulate --des", "--design\n");
     expect_offer("simulate x.ini --set motion.pg", "motion.pga_g=\n");
-    expect_offer("simulate x.ini --set sim.accuracy = f", "fine\n");
-    expect_offer("simulate x.ini --set sim.engine = cv", "cvode\n");
+    expect_offer("simulate x.ini --set sim.accuracy=f", "fine\n");
+    expect_offer("simulate x.ini --set=sim.engine=cv", "cvode\n");
     expect_offer("simulate configs/qu", "configs/quick.ini\n");
     expect_offer("simulate x.ini --record LICEN", "LICENSE\n");
+    expect_offer("simulate x.ini --set motion.record=LICEN", "LICENSE\n");
     expect_offer("simulate x.ini --pga 0", "\n");
     expect_offer("simulate x.ini --record built", "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like\n");
-    expect_offer("simulate x.ini --record builtin :", "kobe-like elcentro-like sylmar-like\n");
-    expect_offer("simulate x.ini --set motion.record = builtin : k", "kobe-like\n");
+    expect_offer("simulate x.ini --record builtin:", "kobe-like elcentro-like sylmar-like\n");
+    expect_offer("simulate x.ini --set motion.record=builtin:k", "kobe-like\n");
     expect_offer("simulate x.ini --design non", "none\n");
     expect_offer("evaluate results/x --design k", "knee\n");
     expect_offer("spectrum LICEN", "LICENSE\n");
+}
+
+/* zsh is typed to in a terminal of its own. */
+TEST(zsh_and_fish_offer_what_bash_does_and_what_is_installed_is_gone_again)
+{
+    static const char *const OFFERS[][2] = {{"opti", "optimize"},
+                                            {"simulate --des", "--design"},
+                                            {"simulate x.ini --set motion.pg", "motion.pga_g="},
+                                            {"simulate x.ini --set=sim.accuracy=f", "--set=sim.accuracy=fine"},
+                                            {"simulate x.ini --record LICEN", "LICENSE"},
+                                            {"help spec", "spectrum"}};
+    if (access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
+        skip();
+    free(shell("make -s -o imtet install PREFIX=@/opt"));
+    for (size_t k = 0; k < N_OF(OFFERS); k++) {
+        const char *words = OFFERS[k][0], *offer = OFFERS[k][1];
+        free(shell(
+            "export PATH=@/opt/bin:$PATH; which fish || exit 0; fish -c 'source "
+            "@/opt/share/fish/vendor_completions.d/imtet.fish; complete -C \"imtet %s\"' | cut -f1 | grep -xFe '%s'",
+            words, offer));
+        free(shell("export PATH=@/opt/bin:$PATH; which zsh || exit 0; timeout 60 zsh -f -c 'zmodload zsh/zpty; "
+                   "zpty z zsh -f -i; zpty -w z \"fpath=(@/opt/share/zsh/site-functions \\$fpath); "
+                   "autoload -U compinit; compinit -u -D; print REA''DY\"; zpty -r z out \"*READY*\"; "
+                   "zpty -w -n z \"imtet %s\"$'\\''\\t'\\''; zpty -r z out \"*imtet* %s*\"'",
+                   words, offer));
+    }
+    char *left = shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l");
+    assert_string_equal(left, "");
+    free(left);
 }
 
 /* Every row of the table in the documentation is a status of the program and the other way round. */
