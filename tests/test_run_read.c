@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 
 #include "store/run.h"
+#include "base/dominance.h"
 #include "store/folder.h"
+#include "study/merged.h"
 
 static void change(const char *database, const char *sql)
 {
@@ -168,6 +170,81 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
         assert_int_equal(h.place[i].on_front, sound.place[i].on_front);
     run_free(&h);
     run_free(&sound);
+}
+
+/* Whether a design of the front of a or b dominates row i of a. */
+static int is_dominated(const Run *a, size_t i, const Run *b)
+{
+    double f[OBJECTIVES_MAX], g[OBJECTIVES_MAX];
+    int is = 0;
+    run_minimise(a, i, f);
+    for (size_t j = 0; j < b->n_front; j++) {
+        run_minimise(b, b->front[j], g);
+        is |= dominates(a->schema.n_obj, g, f);
+    }
+    return is;
+}
+
+TEST(several_runs_are_one_front_on_which_a_design_stands_once)
+{
+    Run a, b, both;
+    Err err = {0};
+    long step;
+    size_t n = 0;
+    char path[2][PATH_MAX];
+    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
+    free(output_of("optimize @/plain.ini --max-evals 150 --out @/first"));
+    free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --seed 2 --set search.start=@/first"));
+    const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
+    CHECK_OK(run_read(&a, folders[0], &err), &err);
+    CHECK_OK(run_read(&b, folders[1], &err), &err);
+    CHECK_OK(merged_read(&both, 2, folders, &step, &err), &err);
+    assert_int_equal(both.table.n, a.table.n + b.table.n);
+    assert_int_equal(step, 1000);
+    for (size_t i = 0; i < a.n_front; i++)
+        n += !is_dominated(&a, a.front[i], &b);
+    const size_t n_first = n;
+    for (size_t i = 0; i < b.n_front; i++) {
+        int is_twice = 0;
+        for (size_t j = 0; j < a.n_front; j++)
+            is_twice |= memcmp(run_x(&a, a.front[j]), run_x(&b, b.front[i]), 4 * sizeof(double)) == 0;
+        n += !is_twice && !is_dominated(&b, b.front[i], &a);
+    }
+    assert_less(0, n_first);
+    assert_less(n_first, n);
+    assert_less(n, n_first + b.n_front); /* the second one began with the front of the first */
+    assert_int_equal(both.n_front, n);
+    const size_t last = both.front[n - 1];
+    assert_int_equal(both.table.row[last].id, b.table.row[last - a.table.n].id + step);
+    free(output_of("export @/first @/second --csv @/both.csv"));
+    Table t = table_of("both.csv");
+    assert_int_equal(t.n_rows, n);
+    assert_same_number(t.values[(n - 1) * t.n_cols], (double)both.table.row[last].id);
+    table_free(&t);
+    json_t *o = json_of("choose @/first @/second/run.sqlite --json");
+    assert_same_number(number(o, "front"), (double)n);
+    json_decref(o);
+    run_free(&a);
+    run_free(&b);
+    run_free(&both);
+}
+
+TEST(runs_of_two_problems_are_not_merged)
+{
+    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
+    free(output_of("optimize @/plain.ini --max-evals 40 --out @/one"));
+    free(output_of("optimize @/plain.ini --max-evals 40 --set problem.kind=wfg4 --out @/wfg"));
+    free(output_of("optimize @/plain.ini --max-evals 40 --set search.limits='f1<=1' --out @/limited"));
+    expect(65, "are runs of two problems: problem.kind dtlz2 and wfg4", "export @/one @/wfg --csv -");
+    expect(65, "search.limits none and f1<=1", "choose @/one @/limited");
+    expect(2, "--out FILE is missing", "report @/one @/one");
+    expect(66, "holds no run", "export @/one @ --csv -");
+    free(output_of("export @/one @/one --csv @/twice.csv"));
+    free(output_of("export @/one --csv @/once.csv"));
+    char path[PATH_MAX], *once = text_of(path_of("once.csv", path)), *twice = text_of(path_of("twice.csv", path));
+    assert_string_equal(once, twice);
+    free(once);
+    free(twice);
 }
 
 TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)

@@ -7,6 +7,7 @@
 #include "cmd/outputs.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
+#include "study/merged.h"
 
 enum { OPTIONS_MAX = 32 };
 
@@ -101,13 +102,14 @@ static Status take_option(Args *args, int argc, char *const argv[], int *i, Err 
 }
 
 /* A run is its folder; who names the database in it means that. */
-static Status take_run_folder(Args *args, Err *err)
+static Status take_run_folder(Args *args, const char *word, Err *err)
 {
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s", args->operand) >= (int)sizeof path || !run_drop_name(path))
+    if (snprintf(path, sizeof path, "%s", word) >= (int)sizeof path || !run_drop_name(path))
         return STATUS_OK;
-    args->operand = args->folder = strdup(path);
-    return args->folder ? STATUS_OK : fail_memory(err, 1, "a path");
+    char *folder = strdup(path);
+    args->operands[args->n_operands - 1] = args->folders[args->n_operands - 1] = folder;
+    return folder ? STATUS_OK : fail_memory(err, 1, "a path");
 }
 
 static Status take_operand(Args *args, const char *word, Err *err)
@@ -121,8 +123,9 @@ static Status take_operand(Args *args, const char *word, Err *err)
     if (!word[0])
         return misused(err, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
     args->operands[args->n_operands++] = word;
-    args->operand = args->operand ? args->operand : word;
-    return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
+    TRY(strstr(c->operand, "RUN") ? take_run_folder(args, word, err) : STATUS_OK);
+    args->operand = args->operands[0];
+    return STATUS_OK;
 }
 
 static int asks_for_help(const char *word)
@@ -140,6 +143,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         return STATUS_OK;
     TRY_ROOM(args->given, argc + 1, "options", err);
     TRY_ROOM(args->operands, argc + 1, "options", err);
+    TRY_ROOM(args->folders, argc + 1, "options", err);
     for (int i = 0; i < argc; i++)
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
@@ -160,6 +164,18 @@ void args_place(const Args *args, Err *err)
         settings_place(args->operand, is_given, args, err);
 }
 
+/* The run of the operand, or several as one. */
+static Status read_runs(const Args *args, Run *run, Err *err)
+{
+    long step;
+    if (args->n_operands == 1)
+        return run_read(run, args->operand, err);
+    TRY(merged_read(run, (size_t)args->n_operands, args->operands, &step, err));
+    for (int i = 1; i < args->n_operands; i++)
+        fprintf(stderr, "note: the ids of %s have %ld added\n", args->operands[i], i * step);
+    return STATUS_OK;
+}
+
 Status command_run(const Args *args, Err *err)
 {
     Run run;
@@ -169,7 +185,7 @@ Status command_run(const Args *args, Err *err)
     TRY(own);
     if (!args->command->run_of)
         return STATUS_OK;
-    TRY(run_read(&run, args->operand, err));
+    TRY(read_runs(args, &run, err));
     const Status status = args->command->run_of(args, &run, err);
     run_free(&run);
     return status;
@@ -246,8 +262,10 @@ int args_gives(const Args *args, const char *key)
 void args_free(Args *args)
 {
     free(args->given);
+    for (int i = 0; i < args->n_operands; i++)
+        free(args->folders[i]);
     free(args->operands);
-    free(args->folder);
+    free(args->folders);
     memset(args, 0, sizeof *args);
 }
 

@@ -275,7 +275,7 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_CHOOSE = {
     .name = "choose",
     .group = GROUP_DECIDE,
-    .operand = "RUN",
+    .operand = "RUN...",
     .summary = "designs of a front by limits, weights or a reference point",
     .example = "imtet choose results/quick --max j3_g=5 --weights j1_m=2,mcore_kg=1",
     .details =

@@ -50,14 +50,15 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_EXPORT = {
     .name = "export",
     .group = GROUP_DECIDE,
-    .operand = "RUN",
-    .summary = "the front of a run, or all of it, as CSV or JSON",
+    .operand = "RUN...",
+    .summary = "the front of a run or of several, or all of it, as CSV or JSON",
     .example = "imtet export results/quick --csv front.csv",
     .details =
         "The front of the folder RUN: one row per design with id, variables [m] and objectives in their natural "
         "signs.\n"
         "With --all every evaluated design, failed ones too: id, generation, kind, outcome and reason before the\n"
         "variables; kind is `unfinished` for those of a generation that is under way or was cut short.\n"
+        "Several runs of one problem are one front, on which a design stands once.\n"
         "results/README.md explains every column. The run may still be going on.",
     .options = OPTIONS,
     .run = check_options,

@@ -89,6 +89,8 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
         given = given ? given : args_value(args, PLACES[i]);
     TRY(args_alone(args, "--out", "--pictures --dossier", err));
     TRY(args_alone(args, "--pictures", "--dossier", err));
+    if (!given && args->n_operands > 1)
+        return misused(err, "--out FILE is missing: where the page of several runs goes");
     if (snprintf(path, PATH_MAX, "%s%s", given ? given : args->operand, given ? "" : "/report.html") >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (!given)
@@ -152,7 +154,7 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_REPORT = {
     .name = "report",
     .group = GROUP_DECIDE,
-    .operand = "RUN",
+    .operand = "RUN...",
     .summary = "one HTML page to look at a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",
     .details =

@@ -26,10 +26,11 @@ typedef struct {
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
-    Status (*run_of)(const Args *args, const struct Run *run, Err *err); /* run NULL: of the operand, which is read */
-    const char *program;                                                 /* of which it is a command; NULL: imtet */
-    int only_reads; /* runs and files: no linear algebra, nothing to evaluate */
-    int is_alone;   /* nothing to evaluate: all ranks of imtet_mpi but the first end */
+    Status (*run_of)(const Args *args, const struct Run *run,
+                     Err *err); /* run NULL: of the operands, which are read: several as one (study/merged.h) */
+    const char *program;        /* of which it is a command; NULL: imtet */
+    int only_reads;             /* runs and files: no linear algebra, nothing to evaluate */
+    int is_alone;               /* nothing to evaluate: all ranks of imtet_mpi but the first end */
 } Command;
 
 typedef struct {
@@ -39,10 +40,11 @@ typedef struct {
 
 struct Args {
     const Command *command;
-    const char *operand;   /* the first; of a RUN its folder, also where run.sqlite in it was named */
-    char *folder;          /* what operand points to then */
+    const char *operand;   /* the first */
     int n_operands;        /* one at most, unless the command's operand ends with "..." */
-    const char **operands; /* (n_operands) in the order of the command line */
+    const char **operands; /* (n_operands) in the order of the command line; of a RUN its folder, also where run.sqlite
+                              in it was named */
+    char **folders;        /* (n_operands) what operands point to then, or NULL */
     int help;              /* --help was asked for: nothing else was checked */
     int n_given;
     Given *given; /* (n_given) in the order of the command line */

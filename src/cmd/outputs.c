@@ -127,7 +127,7 @@ static Status check_one(const Args *args, const Given *out, Err *err)
         return refuse(out, "is write-protected", err);
     TRY(check_place(out, err));
     for (int j = 0; j < args->n_operands; j++)
-        n_readers += is_read(out->value, j > 0 ? args->operands[j] : args->operand); /* of run.sqlite its folder */
+        n_readers += is_read(out->value, args->operands[j]);
     for (int j = 0; j < args->n_given; j++) {
         const Given *other = &args->given[j];
         if (other == out || !other->value)

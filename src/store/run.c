@@ -100,9 +100,18 @@ void run_minimise(const Run *run, size_t row, double f[])
         f[k] = minimised(run, row, k);
 }
 
-/* Of the front of the search, or of all that were ever on it where designs have other values than the search knew, and
- * of the polished designs, which it was found without. */
-static Status form_again(Run *run, Err *err)
+/* The front of the search, or all that were ever on it where designs have other values than the search knew, and the
+ * polished designs, which it was found without. */
+static void mark_candidates(Run *run)
+{
+    for (size_t i = 0; i < run->table.n; i++) {
+        RunPlace *p = &run->place[i];
+        if (run->table.row[i].kind == KIND_POLISHED || (run->finer.n > 0 && p->entered != NEVER))
+            p->on_front = 1;
+    }
+}
+
+static Status drop_dominated(Run *run, Err *err)
 {
     NdTree *tree;
     NdChange change;
@@ -110,10 +119,8 @@ static Status form_again(Run *run, Err *err)
     Status status = F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail_memory(err, 1, "the front");
     for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
         RunPlace *p = &run->place[i];
-        const int is_candidate =
-            run->table.row[i].kind == KIND_POLISHED || (run->finer.n > 0 ? p->entered != NEVER : p->on_front);
-        p->on_front = 0;
-        if (!p->ok || !is_candidate || run->table.row[i].violation > 0.0)
+        p->on_front &= p->ok && !(run->table.row[i].violation > 0.0);
+        if (!p->on_front)
             continue;
         run_minimise(run, i, F + i * run->schema.n_obj);
         status = nd_tree_insert(tree, F, i, &change, err);
@@ -140,11 +147,22 @@ static void list_front(Run *run)
             run->front[run->n_front++] = i;
 }
 
+Status run_form_front(Run *run, Err *err)
+{
+    free(run->front);
+    TRY_ROOM(run->front, run->table.n + 1, "designs", err);
+    TRY(drop_dominated(run, err));
+    list_front(run);
+    return STATUS_OK;
+}
+
 Status run_settle_front(Run *run, Err *err)
 {
+    if (run->finer.n > 0 || run_has_polished(run)) {
+        mark_candidates(run);
+        return run_form_front(run, err);
+    }
     TRY_ROOM(run->front, run->table.n + 1, "designs", err);
-    if (run->finer.n > 0 || run_has_polished(run))
-        TRY(form_again(run, err));
     list_front(run);
     return STATUS_OK;
 }
@@ -341,7 +359,7 @@ Status run_why_empty(const Run *run, Err *err)
         return fail(err, STATUS_INTERNAL,
                     "%s: none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
                     run->folder, run->table.n, run->table.row[0].reason, run->folder);
-    if (run->n_generations == 0)
+    if (run->n_finished == 0)
         return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
                         run->folder, run->table.n);
     const int has_list = strcmp(s->search.limits, "none") != 0, has_g = s->problem.constraints > 0;

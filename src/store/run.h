@@ -107,6 +107,9 @@ size_t run_find(const Run *run, long id);
  * there. */
 Status run_settle_front(Run *run, Err *err);
 
+/* The front of the designs whose place is marked as on it: ok, feasible, and dominated by no other of them. */
+Status run_form_front(Run *run, Err *err);
+
 int run_is_screened(const Run *run); /* search.fidelity acts */
 
 /* Of search.max_evals, those of the rows from `first` on: a screened design is its share of an evaluation (one of

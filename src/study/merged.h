@@ -1,0 +1,20 @@
+/* study/merged.h -- several runs of one problem, read as one run.
+ *
+ *   rows        those of every search, then the polished ones of every run; ids of the runs after the first have the
+ *               same multiple of `step`, a power of ten, added: 1, 2, ... times
+ *   front       what is nondominated among the fronts of all; of a design that is on several the first stays
+ *   the rest    settings and provenance of the first; no generations, no sessions, no state; the folder "results/A + B"
+ *
+ * One problem: the same settings but for search.*, run.* and how the simulator is started, the same objectives and
+ * limits, and files of the same content.
+ *
+ * Ownership  run_free releases the run
+ * Errors     STATUS_BAD_DATA: two problems, and what differs */
+#ifndef IMTET_STUDY_MERGED_H
+#define IMTET_STUDY_MERGED_H
+
+#include "store/run.h"
+
+Status merged_read(Run *run, size_t n, const char *const folders[], long *step, Err *err);
+
+#endif
