@@ -66,7 +66,7 @@ static void push_core(Frame *f, const double push[], int modes, SimForces *out)
         force[j] = -push[j]; /* on the floor */
         in_contact |= (FloorSet)(push[j] != 0) << j;
     }
-    force_monitor_start(f->monitor, modes);
+    force_monitor_start(f->monitor, modes, 1);
     force_monitor_point(
         f->monitor,
         &(ForcePoint){
@@ -156,7 +156,9 @@ TEST(floors_pushed_by_their_own_weight_have_a_base_shear_of_one)
         moment += F[j] * (z += f.building.storey_m[j]);
     }
     static_answer(f.building.phi, f.building.omega, F, N, q);
-    force_monitor_start(f.monitor, 0);
+    force_monitor_start(f.monitor, 0, 1);
+    force_monitor_point(
+        f.monitor, &(ForcePoint){.t = 0.999, .building_q = zero, .building_v = zero, .force = zero}); /* hides no end */
     force_monitor_point(f.monitor, &(ForcePoint){.t = 1, .building_q = q, .building_v = zero, .force = zero});
     force_monitor_report(f.monitor, 1, &r);
     assert_close(r.base_shear_ratio, 1, 1e-9);
@@ -172,7 +174,7 @@ TEST(a_peak_between_points_is_found_by_the_parabola)
     double F[N] = {[N - 1] = 1e6}, q[N], now[N], zero[N] = {0};
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
     static_answer(f.core.phi, f.core.omega, F, N, q);
-    force_monitor_start(f.monitor, N);
+    force_monitor_start(f.monitor, N, 4);
     for (int k = 0; k < 40; k++) { /* ten points a period: (w h)^4 / 400 = 4e-4, and the sine is no parabola */
         for (int i = 0; i < N; i++)
             now[i] = q[i] * sin(2 * M_PI * (k / 10.0 + 0.033));
@@ -402,7 +404,7 @@ static void add_all(const SimSample *s, void *user)
     const int kept = s->n_modes - s->n_building;
     FloorSet in_contact = 0;
     if (s->t == 0)
-        force_monitor_start(all->monitor, kept < N ? kept : N);
+        force_monitor_start(all->monitor, kept < N ? kept : N, HUGE_VAL);
     for (int j = 0; j < N; j++)
         in_contact |= (FloorSet)(s->force[j] != 0) << j;
     force_monitor_point(all->monitor, &(ForcePoint){.t = s->t,

@@ -13,7 +13,7 @@ typedef double v8 __attribute__((vector_size(64)));
 typedef int64_t m8 __attribute__((vector_size(64)));
 enum { LANES8 = 8 };
 
-/* [s] Slow points that follow sooner are left out; contacts are shorter. */
+/* [s] Slow points that follow sooner are left out, but for the last; contacts are shorter. */
 static const double SLOW_SPACING = 4e-3;
 
 typedef struct {
@@ -42,6 +42,7 @@ struct ForceMonitor {
     const CoreBeam *core;
     SceneOptions options;
     double weight_n, thickness[2]; /* [N] of the floors; [m] at base and top */
+    double end;                    /* [s] of the run: its last point is never left out */
 
     Group *group;      /* (n_groups) */
     int *due;          /* (n_groups) those whose peaks may rise, n_due of them */
@@ -288,8 +289,9 @@ static int is_followed(const ForceMonitor *m, int group)
     return group < m->at_slow ? m->nc > 0 : group == m->at_slow || m->with_storeys;
 }
 
-void force_monitor_start(ForceMonitor *m, int core_modes)
+void force_monitor_start(ForceMonitor *m, int core_modes, double end)
 {
+    m->end = end * (1 - 1e-12);
     m->core_modes = m->own_modes ? core_modes : 0;
     m->has_residual = m->core_modes < m->own_modes;
     m->n_due = m->rising = 0;
@@ -384,7 +386,7 @@ CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
         if (m->looks > g->look + 1)
             g->points = 0;
         g->look = m->looks;
-        if (g->points > 0 && !(p->t > g->t[0] && p->t >= g->t[0] + g->spacing))
+        if (g->points > 0 && !(p->t > g->t[0] && p->t >= fmin(g->t[0] + g->spacing, m->end)))
             continue;
         v8 now;
         find_outputs(m, g, p, &now);

@@ -48,8 +48,8 @@ void force_monitor_on_contact(ForceMonitor *m, SimContactFn contact, void *user)
 
 /* --- for engines ---------------------------------------------------------------------------------------------- */
 
-/* A run from rest. core_modes: those that points have, from the lowest; the others are quasi-static. */
-void force_monitor_start(ForceMonitor *m, int core_modes);
+/* A run from rest to end [s]. core_modes: those that points have, from the lowest; the others are quasi-static. */
+void force_monitor_start(ForceMonitor *m, int core_modes, double end);
 
 /* Modal coordinates and velocities of the building, coordinates of the core; force (n) [N] on the floors by their
  * contacts, in_contact where it is not zero; ground acceleration [m/s2]. */

@@ -220,7 +220,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     o->storeys.model = model;
     o->contacts = (Contacts){.model = model, .log = o->options->onsets, .forces = o->options->forces};
     if (o->contacts.forces)
-        force_monitor_start(o->contacts.forces, model->nc - model->has_mass);
+        force_monitor_start(o->contacts.forces, model->nc - model->has_mass, o->options->duration);
     energy_account_start(&o->account, model);
     if (SUNContext_Create(NULL, &o->context))
         return -1;
