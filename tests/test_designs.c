@@ -22,7 +22,7 @@ static int make_run(void **state)
     char *said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                            "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.055' " SHORT);
     assert_non_null(strstr(said, "against viscous links ("));
-    assert_non_null(strstr(said, ": impacts win in "));
+    assert_non_null(strstr(said, ": with impacts better in "));
     free(said);
     CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
     known.knee = h.table.row[run_knee(&h)].id;

@@ -142,6 +142,14 @@ TEST(both_engines_agree_on_devices_beside_impacts_and_yielding)
         assert_close(fast.hysteresis_j, cvode.hysteresis_j, 2e-3);
         assert_alike(&fast, &cvode, 2e-3);
         assert_close(fast.dashpot_n, cvode.dashpot_n, 1e-4);
+        double most = 0;
+        for (int j = 0; j <= FLOORS_MAX; j++) {
+            const int is_there = j < FLOORS ? j % 3 == 0 : j == FLOORS_MAX;
+            assert_int_equal(fast.device[j].force > 0, is_there);
+            assert_close(fast.device[j].stroke, cvode.device[j].stroke, 2e-3);
+            most = fmax(most, fast.device[j].force);
+        }
+        assert_same_number(most, fast.dashpot_n);
         assert_close(fast.device_loss_j, cvode.device_loss_j, 2e-3);
     }
 }

@@ -26,7 +26,7 @@ TEST(a_value_ends_where_its_error_begins)
     expect_figure(9.96, 0.96, NAN, "10 ± 1");
     expect_figure(306251, 4100, NAN, "306000 ± 4000");
     expect_figure(-4.567, 0.021, NAN, "-4.57 ± 0.02");
-    expect_figure(1.5312e8, 2.1e6, NAN, "(1.53 ± 0.02)e+08");
+    expect_figure(1.5312e8, 2.1e6, NAN, "(1.53 ± 0.02)·10^8");
     expect_figure(0, 0.3, NAN, "0.0 ± 0.3");
 }
 
@@ -37,7 +37,7 @@ TEST(an_error_that_cannot_be_seen_is_not_shown)
     expect_figure(0, 0, NAN, "0");
 }
 
-TEST(without_an_error_there_are_three_digits_and_no_exponent)
+TEST(without_an_error_there_are_three_digits_and_no_e)
 {
     expect_figure(16.48, NAN, NAN, "16.5");
     expect_figure(436251.3, NAN, NAN, "436000");
@@ -45,8 +45,10 @@ TEST(without_an_error_there_are_three_digits_and_no_exponent)
     expect_figure(0, NAN, NAN, "0");
     expect_figure(NAN, NAN, NAN, "-");
     expect_figure(INFINITY, 1, NAN, "-");
-    expect_figure(1.5312e8, NAN, NAN, "1.53e+08");
-    expect_figure(1.5312e-9, NAN, NAN, "1.53e-09");
+    expect_figure(1.5312e8, NAN, NAN, "1.53·10^8");
+    expect_figure(1.5312e-9, NAN, NAN, "1.53·10^-9");
+    expect_figure(1.234e-5, NAN, NAN, "0.0000123");
+    expect_figure(-5.04e-5, 2.1e-5, NAN, "-0.00005 ± 0.00002");
 }
 
 TEST(an_error_as_large_as_the_value_leaves_its_order_or_zero)
@@ -80,7 +82,8 @@ TEST(a_share_that_is_a_negative_nothing_is_none)
 /* The page has the rule once more, in its own language: the same text for every value and error. */
 TEST(the_page_writes_the_same_figures)
 {
-    static const double VALUES[] = {0, 16.48, -16.48, 0.0766421, 436251.3, 1.5312e8, 1.5312e-9, 9.96, -0.0066, 1e-4};
+    static const double VALUES[] = {0,    16.48,   -16.48, 0.0766421, 436251.3, 1.5312e8, 1.5312e-9,
+                                    9.96, -0.0066, 1e-4,   3.21e-5,   1e-6,     9.9999e-7};
     static const double SHARES[] = {NAN, 0, 1e-9, 1e-3, 0.013, 0.11, 0.6, 1.3, 30};
     char path[] = "/tmp/imtet-figure-XXXXXX", command[200], text[FIGURE_MAX], line[FIGURE_MAX + 2];
     if (system("command -v node >/dev/null") != 0)

@@ -510,6 +510,33 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     free(page);
 }
 
+/* Links on the floors of a zone or none at all; the building alone costs nothing. */
+TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and_forces)
+{
+    char *said = output_of(
+        "optimize configs/quick.ini " SIX_FLOORS "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
+        "search.polish=0 --set sim.duration_s=20 --set design.variables=gaps,thickness,links --set "
+        "design.devices=link,none --set design.device_zones=2 --set design.gap_zones=1 --set design.link_zones=1 --set "
+        "search.objectives=j1_m,cost --set 'design.prices=link=1 core_t=1' --out @/links");
+    assert_non_null(strstr(said, "against no core: with links better in j1_m; worse in cost\n"));
+    assert_null(strstr(said, "never_closing"));
+    expect(0, "", "report @/links --dossier @/links.html");
+    char *page = read_in_place("links.html");
+    assert_non_null(strstr(page, "link [MN (s/m)^1]</th><th>link force [MN]"));
+    assert_non_null(strstr(page, "on floors: none."));
+    assert_null(strstr(page, "a contact <b>"));
+    const char *roof = strstr(page, "<th>6</th>");
+    double constant, force, stroke;
+    assert_int_equal(sscanf(roof ? roof : "",
+                            "<th>6</th><td></td><td></td><td></td><td></td><td>%lf</td><td>%lf</td><td>%lf", &constant,
+                            &force, &stroke),
+                     3);
+    assert_close(force, first_cell(page, "Forces and stresses", "force of a link or tuned mass [MN]"), 5e-3);
+    assert_close(stroke, 1e3 * first_cell(page, "Forces and stresses", "stroke of a link or tuned mass [m]"), 5e-3);
+    free(page);
+    free(said);
+}
+
 TEST(a_dossier_that_cannot_be_made_is_refused_before_anything_is_simulated)
 {
     expect(65, "is of a design of the tower", "report @/dtlz --dossier @/d.html");

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 enum { DIGITS_UNKNOWN = 3, DIGITS_MOST = 4 };
-static const double LEAST = 1e-4, MOST = 1e7; /* written without an exponent */
+static const double LEAST = 1e-6, MOST = 1e7; /* written without a power of ten */
 
 /* Of the first digit of x once it is rounded to so many: 16.48 and 2 digits: 1, tens; 9.96 and 2: 1 too. */
 static int first_place(double x, int digits)
@@ -38,7 +38,7 @@ static void write_figure(double value, double uncertain, const char *word, int p
         n += write_decimal(text + n, FIGURE_MAX - n, uncertain / scale, place - exponent);
     }
     if (exponent)
-        n += snprintf(text + n, FIGURE_MAX - n, "%se%+03d", is_bracketed ? ")" : "", exponent);
+        n += snprintf(text + n, FIGURE_MAX - n, "%s\u00b710^%d", is_bracketed ? ")" : "", exponent);
     snprintf(text + n, FIGURE_MAX - n, "%s", uncertain > 0 ? word : "");
 }
 

@@ -8,7 +8,7 @@
  *                  zero: 0.00 +- 0.01
  *   -              no number
  *
- * with the plus-minus sign of UTF-8. Without an exponent from 1e-4 to 1e7, beyond that (1.53 +- 0.02)e+08.
+ * with the plus-minus sign of UTF-8. Digits alone from 0.000001 to 1e7, beyond that (1.53 +- 0.02) 10^8, with a dot.
  *
  * Threads  pure functions */
 #pragma once

@@ -29,7 +29,8 @@ static const MeasureId RESPONSE[] = {MEASURE_J1,  MEASURE_J2,     MEASURE_DRIFT_
                                      MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
 static const MeasureId DEMAND[] = {MEASURE_DRIFT_RATIO,   MEASURE_DUCTILITY,     MEASURE_RESIDUAL_DRIFT,
                                    MEASURE_CONTACT_FORCE, MEASURE_PRESSURE,      MEASURE_INDENTATION,
-                                   MEASURE_BUMPER_STRAIN, MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING,
+                                   MEASURE_BUMPER_STRAIN, MEASURE_DEVICE_FORCE,  MEASURE_DEVICE_STROKE,
+                                   MEASURE_DEVICE_SHARE,  MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING,
                                    MEASURE_CORE_STRESS,   MEASURE_CORE_BUCKLING, MEASURE_BUILDING_SHEAR,
                                    MEASURE_BASE_SHEAR,    MEASURE_BASE_ROTATION, MEASURE_UPLIFT};
 
@@ -86,6 +87,20 @@ static void say(const Dossier *o, const char *text)
     fputs("</p>\n", o->out);
 }
 
+/* Of what the design has: "a contact 3 MN, a link or tuned mass 1 MN". */
+static void list_forces(const Dossier *o)
+{
+    static const char *const WORDS[] = {"a contact", "a link or tuned mass"};
+    const SimResult *r = &o->d->result[SCENE_IMPACT];
+    const double force_n[] = {r->forces.contact_force_max_n, r->dashpot_n};
+    const char *comma = "";
+    for (int k = 0; k < 2; k++)
+        if (force_n[k] > 0) {
+            fprintf(o->out, "%s%s <b>%.3g MN</b>", comma, WORDS[k], 1e-6 * force_n[k]);
+            comma = ", ";
+        }
+}
+
 static void put_lines(json_t *table, const char *what, const char *format, double value)
 {
     char text[64];
@@ -120,13 +135,13 @@ static void write_summary(const Dossier *o)
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
     fputs("<p class=\"lines\">", o->out);
-    show_verdicts(o->out, &o->r->run->schema, run_f(o->r->run, o->r->chosen), d->baseline);
+    show_verdicts(o->out, &o->r->run->schema, o->x, run_f(o->r->run, o->r->chosen), d->baseline);
+    fputs("</p>\n<p>Largest force: ", o->out);
+    list_forces(o);
     fprintf(o->out,
-            "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>. Largest bending stress of the core: <b>%.3g MPa</b>, "
-            "%.3g "
-            "times the buckling stress of its bare wall. Nothing here is designed for them.</p>\n",
-            1e-6 * own->forces.contact_force_max_n, 1e-6 * own->forces.core_stress_pa,
-            own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
+            ". Largest bending stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall. "
+            "Nothing here is designed for them.</p>\n",
+            1e-6 * own->forces.core_stress_pa, own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
 }
 
 static void write_building(const Dossier *o)
@@ -171,6 +186,41 @@ static void write_building(const Dossier *o)
     frame_free(&frame);
 }
 
+/* Constants of what stands on every floor and at the roof, and what it reaches under the first record. */
+static void list_devices(const Dossier *o, const Design *design)
+{
+    const Detail *d = o->d;
+    const SimResult *r = &d->result[SCENE_IMPACT];
+    json_t *table = json_array();
+    char link[64];
+    snprintf(link, sizeof link, "link [MN (s/m)^%g]", o->s->design.link_exponent);
+    for (int j = 0; j < d->n_floors; j++) {
+        const char *const columns[] = {
+            "gap right [mm]",  "gap left [mm]",   "bumper [MN/m]", "contact force [MN]", link,
+            "link force [MN]", "link stroke [mm]"};
+        const int has_stop = d->gap_m[j] < INFINITY;
+        const double values[] = {1e3 * d->gap_side_m[0][j],
+                                 1e3 * d->gap_side_m[1][j],
+                                 has_stop * 1e-6 * d->bumper_n_m[j],
+                                 1e-6 * fmax(r->forces.contact_force_n[0][j], r->forces.contact_force_n[1][j]),
+                                 1e-6 * design->link[j],
+                                 1e-6 * r->device[j].force,
+                                 1e3 * r->device[j].stroke};
+        json_t *row = has_stop || design->link[j] > 0 ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
+        for (size_t k = 0; row && k < N_OF(values); k++)
+            if (values[k] > 0 && isfinite(values[k]))
+                figures_put(row, columns[k], values[k], NAN, NAN);
+            else
+                put_text(row, columns[k], "");
+    }
+    figures_html(o->out, table);
+    if (design->mass_kg > 0)
+        fprintf(o->out,
+                "<p>Tuned mass at the roof: %.4g t, %.3g Hz, damping %.3g; force %.3g MN, stroke %.3g mm.</p>\n",
+                1e-3 * design->mass_kg, design->mass_hz, design->mass_damping, 1e-6 * r->device[FLOORS_MAX].force,
+                1e3 * r->device[FLOORS_MAX].stroke);
+}
+
 static void write_design(const Dossier *o)
 {
     const Schema *schema = &o->r->run->schema;
@@ -178,11 +228,12 @@ static void write_design(const Dossier *o)
     design_of(&schema->design, o->x, &design);
     heading(o, "The design");
     fputs("<figure>", o->out);
-    draw_devices(o->out, o->d, &schema->design, &design);
+    draw_devices(o->out, o->d, &design);
     fputs("<figcaption>Section: tower, core and what is between them. Heights to scale, gaps and walls each in "
           "proportion "
           "to their largest. Orange: a stop (thick: with a bumper); green: a dashpot.</figcaption></figure>\n",
           o->out);
+    list_devices(o, &design);
 }
 
 /* ---- how it responds ------------------------------------------------------------------------------------------- */
@@ -293,7 +344,7 @@ static void write_demand(const Dossier *o)
         const Words w = words_of_measure(DEMAND[i]);
         const double value = measure_value(r, DEMAND[i]);
         char head[80];
-        if (!isfinite(value) || (DEMAND[i] == MEASURE_BUMPER_STRAIN && value <= 0))
+        if (!isfinite(value) || (value <= 0 && DEMAND[i] != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
             continue;
         snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
         json_t *row = json_put(figures_row(table), "=%s", head);
@@ -301,19 +352,18 @@ static void write_demand(const Dossier *o)
         put_limit(o, row, DEMAND[i], value);
     }
     figures_html(o->out, table);
-    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa%s. Floors whose contacts never close: ",
+    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa%s. Stops that never close, on floors: ",
             1e-6 * YIELD_PA, f->core_stress_pa > YIELD_PA ? ", which the core exceeds" : "");
     int n = 0;
     for (int j = 0; j < o->d->n_floors; j++)
-        if (r->closings[j] == 0)
+        if (r->closings[j] == 0 && o->d->gap_m[j] < INFINITY)
             fprintf(o->out, "%s%d", n++ ? ", " : "", j + 1);
     fprintf(o->out, "%s.</p>\n<figure>", n ? "" : "none");
-    if (r->forces_known)
-        draw_profiles(o->out, o->d, NAMES, N_OF(panels) - !f->stress_known, panels);
-    fputs(
-        "<figcaption>Largest forces of the contacts by side of the core, largest bending stress by storey.</figcaption>"
-        "</figure>\n",
-        o->out);
+    const int first = f->contact_force_max_n > 0 ? 0 : SIDES, end = (int)N_OF(panels) - !f->stress_known;
+    if (r->forces_known && first < end)
+        draw_profiles(o->out, o->d, NAMES, end - first, panels + first);
+    fprintf(o->out, "<figcaption>%sargest bending stress by storey.</figcaption></figure>\n",
+            first ? "L" : "Largest forces of the contacts by side of the core, l");
 }
 
 static void write_ladder(const Dossier *o)
@@ -505,10 +555,9 @@ static void write_not_covered(const Dossier *o)
                 ? ", and the bare wall would buckle: stiffeners are needed, "
                   "and their mass is missing here and in every objective"
                 : "");
-    fprintf(o->out,
-            "<li>Connections: the contacts carry up to <b>%.3g MN</b> in milliseconds. Stops, bearings, floors as "
-            "diaphragms, local stresses and fatigue are not designed.</li>\n",
-            1e-6 * f->contact_force_max_n);
+    fputs("<li>Connections, at the largest force: ", o->out);
+    list_forces(o);
+    fputs(". Stops, bearings, floors as diaphragms, local stresses and fatigue are not designed.</li>\n", o->out);
     if (strcmp(s->core.foundation, "fixed") == 0)
         fprintf(o->out,
                 "<li>The core is clamped: its foundation bears %.3g MN and %.4g MN m without giving way.</li>\n",

@@ -33,7 +33,7 @@ void figures_put(json_t *row, const char *column, double value, double error, do
 /* Behind the point, of a number that is known: 0.03, not 0.03000. */
 static void drop_zeros(char *text)
 {
-    size_t n = strchr(text, '.') && !strchr(text, 'e') ? strlen(text) : 0;
+    size_t n = strchr(text, '.') && !strchr(text, '^') ? strlen(text) : 0;
     while (n > 0 && text[n - 1] == '0')
         n--;
     if (n > 0)
@@ -552,7 +552,7 @@ json_t *json_review(const FrontReview *r)
         json_array_append_new(largest, json_integer(r->at_largest[j]));
     }
     for (size_t j = 0; j < r->n_floors; j++)
-        if (r->closes[j] == 0)
+        if (r->closes[j] == 0 && r->has_stop[j])
             json_array_append_new(never, json_integer(j + 1));
     json_t *o =
         json_of("beyond_contact_law=%ld gaps_on_smallest=%p gaps_on_largest=%p", r->n_beyond, smallest, largest);
@@ -563,7 +563,7 @@ json_t *json_review(const FrontReview *r)
 }
 
 /* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth; none
- * that the baseline does not have, such as the mass of a core where there is none. */
+ * of what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share. */
 static void print_better(FILE *out, const char *verb, const Schema *schema, double sign, const double natural[],
                          const Baseline *b)
 {
@@ -571,22 +571,29 @@ static void print_better(FILE *out, const char *verb, const Schema *schema, doub
     int n = 0;
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
-        const double other = b->value[schema->order.of[k]];
-        if (other != 0 && sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
+        const int id = schema->order.of[k];
+        const double other = b->value[id];
+        if ((other != 0 || (c->sense > 0 && id != MEASURE_MCORE)) &&
+            sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
             fprintf(out, "%s%s", n++ ? ", " : verb, c->name);
     }
     if (n == 0)
         fprintf(out, "%snothing", verb);
 }
 
-void show_verdicts(FILE *out, const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
+void show_verdicts(FILE *out, const Schema *schema, const double x[], const double natural[],
+                   const Baseline baseline[N_BASELINES])
 {
-    char device[DEVICE_TEXT_MAX];
+    char device[DEVICE_TEXT_MAX], has[PROTECTION_MAX];
+    Design design;
+    design_of(&schema->design, x, &design);
+    design_protection(&schema->design, &design, has);
     for (int k = 0; k < N_BASELINES; k++) {
         baseline_device_text(k, &baseline[k].device, device);
-        fprintf(out, "against %s%s%s%s: impacts ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "");
-        print_better(out, "win in ", schema, 1, natural, &baseline[k]);
-        print_better(out, "; lose in ", schema, -1, natural, &baseline[k]);
+        fprintf(out, "against %s%s%s%s: with %s ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "",
+                has);
+        print_better(out, "better in ", schema, 1, natural, &baseline[k]);
+        print_better(out, "; worse in ", schema, -1, natural, &baseline[k]);
         fputc('\n', out);
     }
 }

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/figure.h"
+
 const struct DamagePart DAMAGE_PARTS[N_PARTS] = {
     {"structure", "steel frame", {0.006, 0.012, 0.03, 0.08}, 0.4, {0.004, 0.019, 0.096, 0.192}},
     {"drift_sensitive", "parts sensitive to drift", {0.004, 0.008, 0.025, 0.05}, 0.5, {0.007, 0.033, 0.164, 0.329}},
@@ -54,19 +56,22 @@ double damage_loss(const SimResult *r)
 
 const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
 {
+    char figure[FIGURE_MAX];
     int used = 0;
     text[0] = 0;
     for (DamagedPart p = 0; p < N_PARTS && r->outcome == RUN_OK; p++) {
         const int is_drift = p != PART_ACCELERATION;
-        const double worst = is_drift ? r->drift_ratio_max : r->j3_g, end = DAMAGE_PARTS[p].median[DAMAGE_STATES - 1];
-        const int state = damage_state(p, worst);
-        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s %s%s (%.3g%s; complete from %.3g)",
+        const double worst = is_drift ? 100 * r->drift_ratio_max : r->j3_g;
+        const int state = damage_state(p, is_drift ? r->drift_ratio_max : worst);
+        const char *unit = is_drift ? " %" : " g";
+        figure_text(worst, NAN, NAN, figure);
+        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s %s%s (%s%s; complete from %.3g%s)",
                          p ? ", " : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
-                         damage_word(state), is_drift ? 100 * worst : worst, is_drift ? " %" : " g",
-                         is_drift ? 100 * end : end);
+                         damage_word(state), figure, unit,
+                         (is_drift ? 100 : 1) * DAMAGE_PARTS[p].median[DAMAGE_STATES - 1], unit);
     }
+    figure_text(100 * damage_loss(r), NAN, NAN, figure);
     if (r->outcome == RUN_OK)
-        snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "; repair some %.2g %% of replacement",
-                 100 * damage_loss(r));
+        snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "; repair some %s %% of replacement", figure);
     return text;
 }

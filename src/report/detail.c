@@ -45,9 +45,11 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     const double given = w->options.sim.duration_s, as_set = w->options.contact.bumper_stiffness_n_m;
     Design design;
     design_of(scene_design(w->scene), x, &design);
+    design_protection(scene_design(w->scene), &design, d->protection);
     d->gap_sides = scene_design(w->scene)->gap_sides;
-    memcpy(d->gap_side_m, design.gap, sizeof d->gap_side_m);
     for (int j = 0; j < n; j++) {
+        for (int s = 0; s < SIDES; s++)
+            d->gap_side_m[s][j] = design.gap[s][j] = design.gap[s][j] < DESIGN_OPEN_M ? design.gap[s][j] : INFINITY;
         d->storey_m[j] = scene_building(w->scene)->storey_m[j];
         d->gap_m[j] = design_gap(&design, j);
         d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);

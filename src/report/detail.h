@@ -31,6 +31,7 @@ typedef struct {
     double storey_m[FLOORS_MAX]; /* heights */
     double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX], bumper_n_m[FLOORS_MAX]; /* the last 0: steel on steel */
     GapSides gap_sides;
+    char protection[PROTECTION_MAX];
     double gap_side_m[SIDES][FLOORS_MAX]; /* right, left; INFINITY: nothing there; gap_m: the smaller */
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];

@@ -75,7 +75,7 @@ static double largest_of(int n, const double v[])
     return most;
 }
 
-void draw_devices(FILE *out, const Detail *d, const DesignSpace *space, const Design *design)
+void draw_devices(FILE *out, const Detail *d, const Design *design)
 {
     const double height = total_height(d), scale = HEIGHT / height, middle = 240, half = 34;
     const double wide = fmax(largest_of(d->n_floors, d->gap_side_m[0]), largest_of(d->n_floors, d->gap_side_m[1]));
@@ -97,7 +97,7 @@ void draw_devices(FILE *out, const Detail *d, const DesignSpace *space, const De
         label_floor(out, design, d, j, y);
         z += d->storey_m[j];
     }
-    if (space->n_mass > 0)
+    if (design->mass_kg > 0)
         fprintf(out,
                 "<text x=\"%.0f\" y=\"14\" text-anchor=\"middle\">tuned mass %.0f t, %.3g Hz, damping %.2g</text>\n",
                 middle, 1e-3 * design->mass_kg, design->mass_hz, design->mass_damping);

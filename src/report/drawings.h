@@ -8,7 +8,7 @@
 
 /* Section through tower and core, heights to scale, gaps in proportion to the largest finite one, walls to the largest
  * thickness; labels in mm. */
-void draw_devices(FILE *out, const Detail *d, const DesignSpace *space, const Design *design);
+void draw_devices(FILE *out, const Detail *d, const Design *design);
 
 enum { CURVES_SHOWN = 4 };
 

@@ -199,15 +199,15 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
                                               e->record, e->pga_g, e->scale, e->stretch,
                                               result_json(&e->with_core, order), result_json(&e->no_core, order)));
     }
-    json_t *o =
-        json_of("floor=%d storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-                "pga_g=%g scale=%g stretch=%g duration_s=%g loads=%p baselines=%p history_with_core=%p "
-                "history_no_core=%p forces=%p elsewhere=%p",
-                d->floor + 1, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m), json_numbers(n, d->thickness_m),
-                json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz), json_numbers(n, d->core_hz), d->record,
-                d->pga_g, d->scale, d->stretch, d->duration_s, json_of_loads(d), json_of_baselines(d->baseline, order),
-                json_of_history(&d->history[0], &d->spectrum[0]), json_of_history(&d->history[1], &d->spectrum[1]),
-                json_of_forces(&d->result[SCENE_IMPACT]), others);
+    json_t *o = json_of(
+        "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
+        "pga_g=%g scale=%g stretch=%g duration_s=%g loads=%p baselines=%p history_with_core=%p "
+        "history_no_core=%p forces=%p elsewhere=%p",
+        d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
+        json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
+        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, d->duration_s, json_of_loads(d),
+        json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
+        json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
     json_t *error = json_array();
     for (int k = 0; k < order->n_obj; k++)
         json_array_append_new(error, json_number(d->error[order->of[k]]));

@@ -35,6 +35,9 @@ static const Words WORDS[N_MEASURES] = {
     [MEASURE_PLASTIC_DRIFT] = {"plastic drift", "%", 100},
     [MEASURE_RESIDUAL_DRIFT] = {"residual drift", "%", 100},
     [MEASURE_HYSTERESIS] = {"hysteresis share", "%", 1},
+    [MEASURE_DEVICE_FORCE] = {"force of a link or tuned mass", "MN", 1e-6},
+    [MEASURE_DEVICE_STROKE] = {"stroke of a link or tuned mass", "m", 1},
+    [MEASURE_DEVICE_SHARE] = {"share of links and tuned mass", "%", 1},
     [MEASURE_LOSS] = {"repair cost", "%", 100},
 };
 

@@ -283,6 +283,20 @@ int design_put_mass(const DesignSpace *s, double kg, double hz, double damping, 
     return s->n_mass > 0 && put_words(s, FLOOR_NONE, ROOF_MASS, x);
 }
 
+const char *design_protection(const DesignSpace *s, const Design *d, char text[PROTECTION_MAX])
+{
+    const char *const WORDS[] = {"impacts", "links", "a tuned mass"};
+    int has[] = {0, 0, d->mass_kg > 0}, n = 0;
+    for (int j = 0; j < s->n_floors; j++) {
+        has[0] |= design_gap(d, j) < DESIGN_OPEN_M;
+        has[1] |= d->link[j] > 0;
+    }
+    snprintf(text, PROTECTION_MAX, "the core alone");
+    for (int i = 0; i < (int)N_OF(WORDS); i++)
+        n += has[i] ? snprintf(text + n, PROTECTION_MAX - (size_t)n, "%s%s", n ? " and " : "", WORDS[i]) : 0;
+    return text;
+}
+
 double design_gap(const Design *d, int j)
 {
     return fmin(d->gap[0][j], d->gap[1][j]);

@@ -93,6 +93,10 @@ void design_of(const DesignSpace *space, const double x[], Design *d);
 int design_put_links(const DesignSpace *space, double n_s_m, double x[]);
 int design_put_mass(const DesignSpace *space, double kg, double hz, double damping, double x[]);
 
+/* What stands between tower and core, "impacts and links and a tuned mass". */
+enum { PROTECTION_MAX = 40 };
+const char *design_protection(const DesignSpace *space, const Design *d, char text[PROTECTION_MAX]);
+
 /* The smaller gap of floor j = 0..n_floors-1 [m]. */
 double design_gap(const Design *d, int j);
 

@@ -70,6 +70,9 @@ void model_add_mass(SimModel *model, double mass);
 /* A device between its floor and the core beside it, or the tuned mass. */
 void model_add_device(SimModel *model, const Device *device, int on_mass);
 
+/* What the devices reached, peak (n_devices). */
+void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result);
+
 /* Of floor j on side s = 1, -1 where u_j - v_j is w [m]. */
 static inline double penetration(const SimModel *model, int j, int s, double w)
 {

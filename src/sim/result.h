@@ -57,6 +57,11 @@ typedef struct {
 
 enum { CHANCES_MAX = 4 };
 
+/* Of a link or the tuned mass: largest distance across it [m], largest force [N]. */
+typedef struct {
+    double stroke, force;
+} DevicePeak;
+
 typedef struct {
     RunOutcome outcome;
     char reason[160]; /* empty when outcome is RUN_OK */
@@ -91,6 +96,7 @@ typedef struct {
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
     double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one */
+    DevicePeak device[FLOORS_MAX + 1];          /* of every floor's link; the last: of the tuned mass */
     int n_devices;                              /* stops, links, tuned masses */
     double cost;                                /* of these and of the core, by DesignOptions.prices */
     double device_loss_j, ed_devices_pct;       /* dissipated by devices; of input_energy_j */

@@ -62,9 +62,14 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
     for (size_t i = 0; i < n; i++)
         tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = run_x(run, rows[i])};
     const Status status = n > 0 ? tower_simulate(tower, n, tasks, results, err) : STATUS_OK;
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        for (int j = 0; j < results[i].n_floors; j++)
+    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
+        Design d;
+        design_of(&run->schema.design, tasks[i].x, &d);
+        for (int j = 0; j < results[i].n_floors; j++) {
+            out->has_stop[j] |= design_gap(&d, j) < DESIGN_OPEN_M;
             out->closes[j] += results[i].closings[j] > 0;
+        }
+    }
     out->n_floors = n > 0 ? results[0].n_floors : 0;
     out->n_simulated = n;
     free(results);

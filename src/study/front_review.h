@@ -16,6 +16,7 @@ typedef struct {
     size_t at_smallest[SIDES * FLOORS_MAX],
         at_largest[SIDES * FLOORS_MAX]; /* (n_gaps) designs with this gap on that bound */
     size_t n_simulated, n_floors;       /* designs that were simulated again */
+    int has_stop[FLOORS_MAX];           /* (n_floors) any of them has one there */
     size_t closes[FLOORS_MAX];          /* (n_floors) of them those in which the floor's gap closes */
 } FrontReview;
 

@@ -80,13 +80,13 @@ function show(v) {
   if (v === null || v === undefined || !Number.isFinite(v)) return "\u2013";
   const size = Math.abs(v);
   if (v === 0) return "0";
-  if (size >= 1e6 || size < 1e-4) return v.toExponential(2).replace("e+", "e");
+  if (size >= 1e6 || size < 1e-6) return v.toExponential(2).replace(/e\+?/, "\u00b710^");
   return String(+v.toPrecision(size >= 1000 ? 4 : 3));
 }
 
 // The same with all its digits, for columns.
 function digits(v) {
-  return v === null || !Number.isFinite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-4 ? show(v) : v.toPrecision(3);
+  return v === null || !Number.isFinite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
 }
 
 // A value of design i with its likely error, where one is known.

@@ -11,9 +11,9 @@ function decimal(x, place) {
 }
 
 function figureParts(v, uncertain, word, place) {
-  const size = Math.max(Math.abs(v), uncertain), exponent = size > 0 && (size >= 1e7 || size < 1e-4) ? firstPlace(size, 4) : 0;
+  const size = Math.max(Math.abs(v), uncertain), exponent = size > 0 && (size >= 1e7 || size < 1e-6) ? firstPlace(size, 4) : 0;
   const scale = 10 ** exponent, text = decimal(v / scale, place - exponent) + (uncertain ? ` \u00b1 ${decimal(uncertain / scale, place - exponent)}` : "");
-  const power = exponent && `e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
+  const power = exponent && `\u00b710^${exponent}`;
   return (exponent ? (uncertain ? `(${text})` : text) + power : text) + (uncertain ? word : "");
 }
 

@@ -16,15 +16,15 @@ const storeys = (d) => `${d.gap_m.length} storeys, ${show(d.storey_m.reduce((a, 
 
 function change(value, before) {
   const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
-  if (pct === 0) return "the same";
+  if (pct === 0 || value === before) return "the same";
   return value > 2 * before ? (value > 50 * before ? `${show(before)} with` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
 }
 
-// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth; NaN: not known, or the
-// baseline has nothing of it (a core, say).
+// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth; NaN: not known, or of what
+// the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
 function verdict(raw, b, k) {
-  const before = b.raw[k], gain = objectives[k].sense * (before - raw[k]);
-  return !before || raw[k] === null ? NaN : Math.abs(gain) <= 1e-3 * Math.abs(before) ? 0 : Math.sign(gain);
+  const before = b.raw[k], { sense, name } = objectives[k], gain = sense * (before - raw[k]);
+  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : Math.abs(gain) <= 1e-3 * Math.abs(before) ? 0 : Math.sign(gain);
 }
 
 // The first objective that gains against the building alone, and the one that pays most.
@@ -41,7 +41,7 @@ function sentence(d) {
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)} is nearest to the best of every objective.`;
   const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, protected by impacts on a core inside: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
+  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, with a core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with
@@ -76,7 +76,7 @@ function boundWarning(d) {
   const many = Array.from({ length: n }, (_, i) => i).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
   const own = row === undefined ? [] : [[1, "largest"], [-1, "smallest"]].map(([side, word]) => [at(row, side), word]).filter(([list]) => list.length)
     .map(([list, word]) => `the ${word} (${withUnit(list[0], list[0].bounds[word === "largest" ? 1 : 0])}): ${listed(list.map((c) => c.title))}`);
-  const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits ? [] : [j + 1]));
+  const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits || (d.gap_m[j] ?? NO_STOP_M) >= NO_STOP_M ? [] : [j + 1]));
   return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front${own.length ? `; in this one at ${own.join("; at ")}` : ""}. A wider box may hold better designs, unless such a gap never closes.` : "",
     shut.length ? `Gaps that never close under this motion: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }

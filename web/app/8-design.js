@@ -239,7 +239,7 @@ function ladderPart(host, d) {
 function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
   const notes = d.baselines.filter((b) => BASELINE_NOTE[b.key]).map((b) => BASELINE_NOTE[b.key](b.device)).join(" ");
-  if (r.objectives) host.append(element("p", {}, `${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
+  if (r.objectives) host.append(element("p", {}, `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
   host.append(loadTable(d.loads), element("p", { class: "note" }, notes));
   const shape = host.appendChild(element("div", { class: "grid21" }));
   if (!isBeside) gapFigure(shape, d);
@@ -249,7 +249,7 @@ function detailParts(host, d, isBeside = false) {
     host.append(sceneLegend(scenes.slice(0, 3).map(([key]) => key)));
     const energy = host.appendChild(element("div", { class: "grid2" }));
     modeFigure(energy, scenes.slice(0, 3), "Energy dissipated by each mode", 
-      r.hysteresis_pct > 0 ? `Storeys that yield dissipate ${show(r.hysteresis_pct)} % of the input: ${DISSIPATED}.` : "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
+      r.hysteresis_pct > 0 ? `Storeys that yield dissipate ${show(r.hysteresis_pct)} % of the input: ${DISSIPATED}.` : !r.impacts ? null : "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
     shareFigure(energy, scenes);
     if (r.plastic_m) leftPart(host, scenes, d);
   }

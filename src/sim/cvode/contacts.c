@@ -47,13 +47,14 @@ static double add_devices(const SimModel *model, const double q[], const double 
     return power;
 }
 
-double devices_look(const SimModel *model, const double q[], const double v[], double *stroke, double *force)
+double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[])
 {
     double held = 0, power = 0;
     for (int e = 0; e < model->n_devices; e++) {
         const double d = apart(model, e, q);
-        *stroke = fmax(*stroke, fabs(d));
-        *force = fmax(*force, fabs(device_pull(model, e, q, v, &power)));
+        if (peak)
+            peak[e] = (DevicePeak){fmax(peak[e].stroke, fabs(d)),
+                                   fmax(peak[e].force, fabs(device_pull(model, e, q, v, &power)))};
         held += 0.5 * model->device[e].stiffness * d * d;
     }
     return held;

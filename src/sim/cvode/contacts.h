@@ -47,8 +47,8 @@ double relative_displacement(const SimModel *model, int j, const double q[]);
 /* Adds the modal forces R_ij f_j at the state q, q' to g, and those of the devices. */
 ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[]);
 
-/* [J] In the springs of the devices. *stroke, *force are raised to the largest distance [m] and force [N] of any. */
-double devices_look(const SimModel *model, const double q[], const double v[], double *stroke, double *force);
+/* [J] In the springs of the devices. peak (n_devices; NULL: none) is raised to what each reaches here. */
+double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[]);
 
 /* By overlap: the approach speed that a force on floor j, touching on side s, is to be computed with. */
 double contacts_speed(const Contacts *c, int j, int s);

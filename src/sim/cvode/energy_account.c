@@ -23,7 +23,7 @@ void energy_account_peaks(EnergyAccount *l, double t, const double q[], const do
     for (int j = 0; j < model->n; j++)
         point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j] - model->middle[j];
     peak_monitor_add(&l->peaks);
-    devices_look(model, q, v, &l->stroke, &l->device_force);
+    devices_look(model, q, v, l->device);
 }
 
 /* Returns sum gamma q'. */
@@ -59,10 +59,8 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
         result->kinetic_strain_j += 0.5 * (v[i] * v[i] + pow(model->omega[i] * q[i], 2));
     result->contact_stored_j = contacts_stored(c, q);
     result->device_loss_j = l->devices;
-    result->stroke_m = l->stroke;
-    result->dashpot_n = l->device_force;
-    double largest[2] = {0};
-    result->kinetic_strain_j += devices_look(model, q, v, &largest[0], &largest[1]);
+    model_report_devices(model, l->device, result);
+    result->kinetic_strain_j += devices_look(model, q, v, NULL);
     for (int j = 0; j < model->n && model->nc > 0; j++)
         result_add_approach(result, &model->contact[j], l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
     peak_monitor_report(&l->peaks, result);

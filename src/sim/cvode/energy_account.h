@@ -13,7 +13,7 @@ typedef struct {
     const SimModel *model;
     PeakMonitor peaks;
     double damped[MODES_MAX], input, lost, clamp, devices; /* [J] */
-    double stroke, device_force;                           /* [m], [N] largest */
+    DevicePeak device[FLOORS_MAX + 1];                     /* (n_devices) */
     long steps, evaluations;
 } EnergyAccount;
 

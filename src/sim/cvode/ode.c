@@ -298,7 +298,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
         s.input_j = y[3 * m];
         s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken_by_storeys(o, y);
         if (model->n_devices > 0)
-            s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, &o->account.stroke, &o->account.device_force);
+            s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, o->account.device);
     }
     o->options->sample(&s, o->options->sample_user);
 }

@@ -506,8 +506,7 @@ static void report_energies(FastWork *k, SimResult *r)
     const double held = held_by_devices(k);
     r->device_loss_j = k->device_taken - held;
     r->kinetic_strain_j += held;
-    r->stroke_m = k->stroke;
-    r->dashpot_n = k->device_force;
+    model_report_devices(k->model, k->device, r);
     const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
                                 k->device_taken - (k->yields ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);

@@ -201,8 +201,9 @@ typedef struct FastWork {
 
     /* energy account and counts */
     double contact_lost, contact_clamped;
-    double device_taken, stroke, device_force; /* [J], [m], [N] by and across devices, the largest */
-    double approach_max[FLOORS_PAD_MAX];       /* [m] deepest, of steel and bumper together */
+    double device_taken;                 /* [J] */
+    DevicePeak device[FLOORS_MAX + 1];   /* (n_devices) */
+    double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
     long closings[FLOORS_PAD_MAX];
     long impacts, v0_limited, steps, flights, forces;
 } FastWork;
