@@ -116,11 +116,13 @@ TEST(a_tuned_mass_of_a_design_alone_is_the_baseline)
     assert_alike(&r, &exact, 1e-3);
 }
 
-/* Some floors have links, all have gaps, storeys yield and a mass hangs at the roof. */
+/* Some floors have links, or friction links where the exponent is 0, all have gaps, storeys yield and a mass hangs at the
+ * roof. */
 static SimResult run_all(Engine engine, double exponent, double yield_drift)
 {
     Tower t;
-    tower_set(&t, "gaps, thickness, links, tuned_mass", engine, 0.003);
+    tower_set(&t, exponent > 0 ? "gaps, thickness, links, tuned_mass" : "gaps, thickness, friction, tuned_mass", engine,
+              0.003);
     t.settings.design.link_exponent = exponent;
     t.settings.building.yield_drift = yield_drift;
     t.settings.sim.duration_s = 8;
@@ -132,8 +134,8 @@ static SimResult run_all(Engine engine, double exponent, double yield_drift)
 
 TEST(both_engines_agree_on_devices_beside_impacts_and_yielding)
 {
-    static const double EXPONENT[] = {1, 0.3, 1}, YIELD[] = {0, 0, 0.002};
-    for (int i = 0; i < 3; i++) {
+    static const double EXPONENT[] = {1, 0.3, 1, 0}, YIELD[] = {0, 0, 0.002, 0.002};
+    for (int i = 0; i < 4; i++) {
         const SimResult fast = run_all(ENGINE_FAST, EXPONENT[i], YIELD[i]);
         const SimResult cvode = run_all(ENGINE_CVODE, EXPONENT[i], YIELD[i]);
         assert_true(fast.impacts > 20);
@@ -274,7 +276,9 @@ TEST(devices_are_refused_by_name)
                {"gaps, thickness, links", "gap, lnk", "lnk"},
                {"gaps, thickness, links", "gap, gap", "gap stands there twice"},
                {"gaps, thickness, links", "link", "link alone is no choice"},
-               {"gaps, thickness", "gap, bumper", "add bumper to design.variables"}};
+               {"gaps, thickness", "gap, bumper", "add bumper to design.variables"},
+               {"gaps, thickness, links", "gap, friction", "add friction to design.variables"},
+               {"gaps, thickness, links, friction", "all", "design.devices = link, friction chooses"}};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         DesignOptions o = scene_defaults().design;
         DesignSpace s;
@@ -293,27 +297,28 @@ TEST(kinds_of_the_variables_of_devices)
     Err err = {0};
     char name[TABLE_NAME_MAX];
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
-    snprintf(o.variables, sizeof o.variables, "gaps, thickness, links, tuned_mass");
-    snprintf(o.devices, sizeof o.devices, "gap, link, none");
+    snprintf(o.variables, sizeof o.variables, "gaps, thickness, links, friction, tuned_mass");
+    snprintf(o.devices, sizeof o.devices, "friction, link, none");
     o.gap_zones = o.link_zones = o.device_zones = 2;
     CHECK_OK(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), &err);
-    static const char *const NAMES[] = {"gap_zone_1_m",       "gap_zone_2_m",      "t_base_m",      "t_top_m",
-                                        "link_zone_1_n_s_m",  "link_zone_2_n_s_m", "tuned_mass_kg", "tuned_mass_hz",
-                                        "tuned_mass_damping", "device_zone_1",     "device_zone_2", "device_roof"};
-    assert_int_equal(s.n_var, 12);
+    static const char *const NAMES[] = {
+        "gap_zone_1_m",       "gap_zone_2_m",      "t_base_m",          "t_top_m",       "link_zone_1_n_s_m",
+        "link_zone_2_n_s_m",  "friction_zone_1_n", "friction_zone_2_n", "tuned_mass_kg", "tuned_mass_hz",
+        "tuned_mass_damping", "device_zone_1",     "device_zone_2",     "device_roof"};
+    assert_int_equal(s.n_var, 14);
     design_bounds(&s, &o, lower, upper);
     for (int j = 0; j < s.n_var; j++) {
         design_variable_name(&s, j, name);
         assert_string_equal(name, NAMES[j]);
-        assert_int_equal(design_word(&s, j, 0) != NULL, j >= 9);
-        assert_int_equal(design_is_log(&s, j), j >= 4 && j < 9);
+        assert_int_equal(design_word(&s, j, 0) != NULL, j >= 11);
+        assert_int_equal(design_is_log(&s, j), j >= 4 && j < 11);
         assert_less(lower[j], upper[j]);
-        if (j >= 9)
-            assert_true(lower[j] == 0 && upper[j] == (j < 11 ? 2 : 1));
+        if (j >= 11)
+            assert_true(lower[j] == 0 && upper[j] == (j < 13 ? 2 : 1));
     }
-    assert_string_equal(design_word(&s, 10, 1), "link");
-    assert_string_equal(design_word(&s, 11, 0), "tuned_mass");
-    assert_true(!design_word(&s, 10, 3) && !design_word(&s, 11, 2));
+    assert_string_equal(design_word(&s, 12, 1), "link");
+    assert_string_equal(design_word(&s, 13, 0), "tuned_mass");
+    assert_true(!design_word(&s, 12, 3) && !design_word(&s, 13, 2));
 }
 
 int main(void)

@@ -323,6 +323,46 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
     free(core);
 }
 
+/* Where a storey of frequency w turns next: around F / k beside its rest, without a loss else. */
+static double next_turn(double w, double slip, double u, double v)
+{
+    return hypot((v > 0 ? u : -u) + slip, v / w) - slip;
+}
+
+TEST(friction_takes_four_times_its_force_over_the_stiffness_from_every_cycle)
+{
+    enum { CYCLES = 5 };
+    static Status (*const ENGINES[])(const SimModel *, const Motion *, const EngineOptions *, SimResult *,
+                                     Err *) = {engine_fast, engine_cvode};
+    static const Accuracy ACCURACIES[] = {ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE, ACCURACY_FINE};
+    const double w = 2 * M_PI, force = 0.4, slip = force / (w * w);
+    const SceneOptions o = paper_scene();
+    double accel[141] = {0, 10, 10, 10, 10, 10}, turn[2];
+    const Motion motion = {.dt_s = 0.05, .n = 141, .accel = accel};
+    Frame f;
+    SimModel m;
+    SimResult r;
+    Err err = {0};
+    make_frame(&f, 1, w * w, 1, 0);
+    CHECK_OK(model_create(&m, 1, 1, &err), &err);
+    CHECK_OK(model_set(&m, &o, &f.b, NULL, NULL, &err), &err);
+    model_add_device(&m, &(Device){.damping = force}, 0);
+    for (int i = 0; i < 4; i++) {
+        double ended[2];
+        for (int late = 0; late < 2; late++) {
+            const EngineOptions run = {.duration = 1 + late * CYCLES, .accuracy = ACCURACIES[i], .end_state = ended};
+            memset(&r, 0, sizeof r);
+            CHECK_OK(ENGINES[i == 3](&m, &motion, &run, &r, &err), &err);
+            turn[late] = next_turn(w, slip, ended[0], ended[1]);
+        }
+        assert_close(turn[0] - turn[1], CYCLES * 4 * slip, 1e-3);
+        assert_close(r.dashpot_n, force, 1e-4);
+        assert_close(r.device_loss_j + 0.5 * (pow(w * ended[0], 2) + pow(ended[1], 2)), r.input_energy_j, 1e-3);
+        assert_less(r.energy_balance_error, 5e-4);
+    }
+    model_free(&m);
+}
+
 TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection)
 {
     SceneOptions o = paper_scene();

@@ -196,17 +196,20 @@ static void list_devices(const Dossier *o, const Design *design)
     snprintf(link, sizeof link, "link [MN (s/m)^%g]", o->s->design.link_exponent);
     for (int j = 0; j < d->n_floors; j++) {
         const char *const columns[] = {
-            "gap right [mm]",  "gap left [mm]",   "bumper [MN/m]", "contact force [MN]", link,
-            "link force [MN]", "link stroke [mm]"};
+            "gap right [mm]", "gap left [mm]",   "bumper [MN/m]",   "contact force [MN]", link,
+            "friction [MN]",  "link force [MN]", "link stroke [mm]"};
         const int has_stop = d->gap_m[j] < INFINITY;
         const double values[] = {1e3 * d->gap_side_m[0][j],
                                  1e3 * d->gap_side_m[1][j],
                                  has_stop * 1e-6 * d->bumper_n_m[j],
                                  1e-6 * fmax(r->forces.contact_force_n[0][j], r->forces.contact_force_n[1][j]),
                                  1e-6 * design->link[j],
+                                 1e-6 * design->friction[j],
                                  1e-6 * r->device[j].force,
                                  1e3 * r->device[j].stroke};
-        json_t *row = has_stop || design->link[j] > 0 ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
+        json_t *row = has_stop || design->link[j] + design->friction[j] > 0
+                          ? json_put(figures_row(table), "floor=%d", j + 1)
+                          : NULL;
         for (size_t k = 0; row && k < N_OF(values); k++)
             if (values[k] > 0 && isfinite(values[k]))
                 figures_put(row, columns[k], values[k], NAN, NAN);

@@ -4,12 +4,20 @@
 
 /* -- variables ----------------------------------------------------------------------------------------------------- */
 
-enum { HAS_GAPS = 1, HAS_THICKNESS = 2, HAS_BUMPER = 4, HAS_SIDE = 8, HAS_LINKS = 16, HAS_MASS = 32 };
+enum {
+    HAS_GAPS = 1,
+    HAS_THICKNESS = 2,
+    HAS_BUMPER = 4,
+    HAS_SIDE = 8,
+    HAS_LINKS = 16,
+    HAS_MASS = 32,
+    HAS_FRICTION = 64
+};
 
 /* The words of design.variables as a set. */
 static Status take_words(const char *list, unsigned *set, Err *err)
 {
-    static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side", "links", "tuned_mass"};
+    static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side", "links", "tuned_mass", "friction"};
     enum { N = N_OF(WORDS) };
     char word[64];
     *set = 0;
@@ -34,16 +42,22 @@ static Status take_words(const char *list, unsigned *set, Err *err)
                : bad_data(err, "design.variables: gaps and thickness are always there; add to them");
 }
 
-static const char *const FLOOR_WORDS[] = {
-    [FLOOR_GAP] = "gap", [FLOOR_BUMPER] = "bumper", [FLOOR_LINK] = "link", [FLOOR_NONE] = "none"};
+static const char *const FLOOR_WORDS[] = {[FLOOR_GAP] = "gap",
+                                          [FLOOR_BUMPER] = "bumper",
+                                          [FLOOR_LINK] = "link",
+                                          [FLOOR_FRICTION] = "friction",
+                                          [FLOOR_NONE] = "none"};
 enum { ROOF_MASS, ROOF_NONE, N_ROOF_DEVICES };
 static const char *const ROOF_WORDS[] = {[ROOF_MASS] = "tuned_mass", [ROOF_NONE] = "none"};
 
 /* The words of design.devices, in their order. */
 static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set, Err *err)
 {
-    static const unsigned NEEDS[] = {
-        [FLOOR_GAP] = 0, [FLOOR_BUMPER] = HAS_BUMPER, [FLOOR_LINK] = HAS_LINKS, [FLOOR_NONE] = 0};
+    static const unsigned NEEDS[] = {[FLOOR_GAP] = 0,
+                                     [FLOOR_BUMPER] = HAS_BUMPER,
+                                     [FLOOR_LINK] = HAS_LINKS,
+                                     [FLOOR_FRICTION] = HAS_FRICTION,
+                                     [FLOOR_NONE] = 0};
     char word[64] = "";
     unsigned seen = 0;
     s->n_words = 0;
@@ -58,12 +72,17 @@ static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set,
             return bad_data(err, "design.devices: %s stands there twice", word);
         if ((set & NEEDS[k]) != NEEDS[k])
             return bad_data(err, "design.devices: %s: add %s to design.variables, which says how large it is", word,
-                            k == FLOOR_LINK ? "links" : "bumper");
+                            k == FLOOR_LINK     ? "links"
+                            : k == FLOOR_BUMPER ? "bumper"
+                                                : "friction");
         seen |= 1U << k;
         s->word[s->n_words++] = (FloorDevice)k;
     }
     if (s->n_words == 1)
         return bad_data(err, "design.devices: %s alone is no choice; name two or more, or all", word);
+    if (s->n_words == 0 && set & HAS_LINKS && set & HAS_FRICTION)
+        return bad_data(err,
+                        "design.variables: a floor has links or friction; design.devices = link, friction chooses");
     return STATUS_OK;
 }
 
@@ -83,8 +102,7 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection
     const int has_bumper = (set & HAS_BUMPER) != 0;
     if (has_bumper)
         TRY(check_zones("design.bumper_zones", o->bumper_zones, n_floors, err));
-    const int has_links = (set & HAS_LINKS) != 0;
-    if (has_links)
+    if (set & (HAS_LINKS | HAS_FRICTION))
         TRY(check_zones("design.link_zones", o->link_zones, n_floors, err));
     *space = (DesignSpace){.n_floors = n_floors,
                            .n_walls = section == CORE_EFFECTIVE ? 0 : 2,
@@ -102,9 +120,11 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection
     space->n_choices = space->n_words == 0 ? 0 : space->device_zones ? space->device_zones : n_floors;
     space->n_gaps = (space->gap_sides == GAPS_EACH ? SIDES : 1) * (space->gap_zones ? space->gap_zones : n_floors);
     space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
-    space->n_links = !has_links ? 0 : space->link_zones ? space->link_zones : n_floors;
+    const int n_links = space->link_zones ? space->link_zones : n_floors;
+    space->n_links = set & HAS_LINKS ? n_links : 0;
+    space->n_slips = set & HAS_FRICTION ? n_links : 0;
     space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side + space->n_links +
-                   space->n_mass + space->n_choices + space->has_roof;
+                   space->n_slips + space->n_mass + space->n_choices + space->has_roof;
     return STATUS_OK;
 }
 
@@ -114,8 +134,8 @@ int design_space_floors(const DesignOptions *o, CoreSection section, int n_var)
     Err unused;
     for (int n = 1; n <= FLOORS_MAX; n++)
         if (design_space_make(&s, o, section, n, &unused) == STATUS_OK && s.n_var == n_var)
-            return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) && (s.n_links == 0 || s.link_zones) &&
-                           (s.n_choices == 0 || s.device_zones)
+            return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) &&
+                           (s.n_links + s.n_slips == 0 || s.link_zones) && (s.n_choices == 0 || s.device_zones)
                        ? 0
                        : n;
     return 0;
@@ -142,12 +162,12 @@ static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *
 }
 
 /* The variables in their order. */
-typedef enum { GAP, WALL, BUMPER, SIDE, LINK, MASS, DEVICE, ROOF } Group;
+typedef enum { GAP, WALL, BUMPER, SIDE, LINK, SLIP, MASS, DEVICE, ROOF } Group;
 
 /* Of variable j, which becomes its number in the group. */
 static Group group_of(const DesignSpace *s, int *j)
 {
-    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers, s->has_side, s->n_links, s->n_mass, s->n_choices};
+    const int n[] = {s->n_gaps, s->n_walls, s->n_bumpers, s->has_side, s->n_links, s->n_slips, s->n_mass, s->n_choices};
     Group group = GAP;
     for (; group < ROOF && *j >= n[group]; group++)
         *j -= n[group];
@@ -165,6 +185,8 @@ void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX]
         zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j);
     } else if (group == LINK) {
         zoned_name(name, "link", "n_s_m", s->link_zones, j);
+    } else if (group == SLIP) {
+        zoned_name(name, "friction", "n", s->link_zones, j);
     } else if (group == DEVICE) {
         snprintf(name, TABLE_NAME_MAX, s->device_zones ? "device_zone_%d" : "device_%02d", j + 1);
     } else if (group == ROOF) {
@@ -187,7 +209,7 @@ const char *design_word(const DesignSpace *s, int j, double x)
 int design_share_zone(const DesignSpace *s, int a, int b, int zones)
 {
     const Group group = group_of(s, &a);
-    const int n[] = {s->n_gaps, 1, s->n_bumpers, 1, s->n_links, 1, s->n_choices, 1};
+    const int n[] = {s->n_gaps, 1, s->n_bumpers, 1, s->n_links, s->n_slips, 1, s->n_choices, 1};
     const int per_side = s->gap_sides == GAPS_EACH && group == GAP ? n[GAP] / SIDES : n[group];
     return group_of(s, &b) == group && n[group] > 1 && a / per_side == b / per_side &&
            a % per_side * zones / per_side == b % per_side * zones / per_side;
@@ -196,12 +218,12 @@ int design_share_zone(const DesignSpace *s, int a, int b, int zones)
 int design_is_log(const DesignSpace *s, int j)
 {
     const Group group = group_of(s, &j);
-    return group == LINK || group == MASS;
+    return group == LINK || group == SLIP || group == MASS;
 }
 
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
 {
-    const NumberList *const lists[] = {&o->gap_m,      &o->thickness_m, &o->bumper_n_m, &o->width_m,
+    const NumberList *const lists[] = {&o->gap_m,      &o->thickness_m, &o->bumper_n_m, &o->width_m,     &o->link_n_s_m,
                                        &o->link_n_s_m, &o->mass_kg,     &o->mass_hz,    &o->mass_damping};
     for (int j = 0; j < s->n_var; j++) {
         int i = j;
@@ -222,10 +244,12 @@ static int zone_of(int count, int n_floors, int j)
 /* What floor j does not have by its word. */
 static void leave_out(FloorDevice word, int j, Design *d)
 {
-    if (word == FLOOR_LINK || word == FLOOR_NONE)
+    if (word >= FLOOR_LINK)
         d->gap[0][j] = d->gap[1][j] = INFINITY;
     if (word != FLOOR_LINK)
         d->link[j] = 0;
+    if (word != FLOOR_FRICTION)
+        d->friction[j] = 0;
     if (word == FLOOR_GAP)
         d->bumper[j] = 0;
 }
@@ -234,7 +258,7 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
 {
     const int per_side = s->gap_sides == GAPS_EACH ? s->n_gaps / SIDES : s->n_gaps;
     const double *bumper = x + s->n_gaps + s->n_walls, *link = bumper + s->n_bumpers + s->has_side;
-    const double *mass = link + s->n_links, *choice = mass + s->n_mass;
+    const double *slip = link + s->n_links, *mass = slip + s->n_slips, *choice = mass + s->n_mass;
     const int has_mass = s->n_mass > 0 && (!s->has_roof || choice[s->n_choices] == ROOF_MASS);
     for (int j = 0; j < s->n_floors; j++) {
         const double gap = x[zone_of(per_side, s->n_floors, j)];
@@ -244,6 +268,7 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
         d->gap[1][j] = s->gap_sides == GAPS_RIGHT ? INFINITY : gap;
         d->bumper[j] = s->n_bumpers ? pow(10, bumper[zone_of(s->n_bumpers, s->n_floors, j)]) : -1;
         d->link[j] = s->n_links ? link[zone_of(s->n_links, s->n_floors, j)] : 0;
+        d->friction[j] = s->n_slips ? slip[zone_of(s->n_slips, s->n_floors, j)] : 0;
         if (s->n_choices)
             leave_out(s->word[(int)choice[zone_of(s->n_choices, s->n_floors, j)]], j, d);
     }
@@ -279,7 +304,8 @@ int design_put_links(const DesignSpace *s, double n_s_m, double x[])
 int design_put_mass(const DesignSpace *s, double kg, double hz, double damping, double x[])
 {
     const double mass[] = {kg, hz, damping};
-    memcpy(x + s->n_gaps + s->n_walls + s->n_bumpers + s->has_side + s->n_links, mass, s->n_mass * sizeof *mass);
+    memcpy(x + s->n_gaps + s->n_walls + s->n_bumpers + s->has_side + s->n_links + s->n_slips, mass,
+           s->n_mass * sizeof *mass);
     return s->n_mass > 0 && put_words(s, FLOOR_NONE, ROOF_MASS, x);
 }
 
@@ -338,6 +364,7 @@ Status design_check(const DesignSpace *space, int j, double value, const char *w
         [BUMPER] = "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m",
         [SIDE] = "it must be above 0",
         [LINK] = "a dashpot is not negative; 0: there is none",
+        [SLIP] = "a force is not negative; 0: there is none",
         [MASS] = "it must be above 0",
         [DEVICE] = "it is the place, from 0, of a word of design.devices",
         [ROOF] = "it is 0 for a tuned mass, 1 for none",
@@ -346,9 +373,9 @@ Status design_check(const DesignSpace *space, int j, double value, const char *w
     design_variable_name(space, j, name);
     const int is_word = design_word(space, j, value) && value == floor(value);
     const Group group = group_of(space, &j);
-    if (group >= DEVICE                 ? is_word
-        : group == GAP || group == LINK ? value >= 0
-                                        : value > 0 && (group != BUMPER || value < 15))
+    if (group >= DEVICE                                  ? is_word
+        : group == GAP || group == LINK || group == SLIP ? value >= 0
+                                                         : value > 0 && (group != BUMPER || value < 15))
         return STATUS_OK;
     return bad_data(err, "%s: %s is %g; %s", where, name, value, MUST[group]);
 }

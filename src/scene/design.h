@@ -10,13 +10,15 @@
  *                  bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
  *   ..., links     design.link_zones = 0              link_01_n_s_m.. of dashpots between floors and core
+ *   ..., friction  design.link_zones = 0              friction_01_n.. of friction links between floors and core
  *   ..., tuned_mass                                   tuned_mass_kg, tuned_mass_hz, tuned_mass_damping, at the roof
  *   design.devices = gap, link, none                  device_01.. : one of these words for every floor, or, with
  *                                                     design.device_zones = 4, device_zone_1..; with tuned_mass among
  *                                                     the variables device_roof too: tuned_mass or none
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
- * Of a floor, gap is a stop, bumper one with a bumper, link a dashpot without a stop, none nothing at all; variables of
+ * Of a floor, gap is a stop, bumper one with a bumper, link a dashpot and friction a friction link without a stop, none
+ * nothing at all; variables of
  * what a floor or the roof does not have do nothing there. x has the place of the word, from 0. Without design.devices
  * every floor has all that design.variables name.
  *
@@ -39,15 +41,15 @@
 
 static const double DESIGN_OPEN_M = 10.0; /* [m] a gap as wide stands for no stop: wider than any building sways */
 
-enum { DESIGN_VARIABLES_MAX = (SIDES + 3) * FLOORS_MAX + 6 };
+enum { DESIGN_VARIABLES_MAX = (SIDES + 4) * FLOORS_MAX + 6 };
 
 /* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides,
- * n_links links, the tuned mass (n_mass = 3), n_choices choices of n_words devices, has_roof choices of a tuned mass or
- * none. */
-typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
+ * n_links links, n_slips friction links, the tuned mass (n_mass = 3), n_choices choices of n_words devices, has_roof
+ * choices of a tuned mass or none. */
+typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_FRICTION, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
 
 typedef struct {
-    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_mass, n_choices, n_words, has_roof;
+    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_slips, n_mass, n_choices, n_words, has_roof;
     FloorDevice word[N_FLOOR_DEVICES];                     /* (n_words) */
     int gap_zones, bumper_zones, link_zones, device_zones; /* 0: a variable per floor */
     GapSides gap_sides;
@@ -84,6 +86,7 @@ typedef struct {
     double t_base, t_top;                  /* [m]; 0: there are none */
     double side;                           /* [m]; 0: as core.width_m says */
     double link[FLOORS_MAX];               /* [N (s/m)^exponent]; 0: none */
+    double friction[FLOORS_MAX];           /* [N]; 0: none */
     double mass_kg, mass_hz, mass_damping; /* of the tuned mass; 0: none */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);

@@ -221,7 +221,8 @@ static const Option OPTIONS[] = {
     TEXT(
         design.variables, "gaps, thickness",
         "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box), links "
-        "(dashpots between floors and core), tuned_mass (at the roof: mass, frequency, damping ratio)"),
+        "(dashpots between floors and core), friction (links of a constant force), tuned_mass (at the roof: mass, "
+        "frequency, damping ratio)"),
     CHOICE(
         design.gap_sides, GapSides, CHOICE_WORDS(GAP_SIDES_LIST), "both",
         "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
@@ -239,22 +240,24 @@ static const Option OPTIONS[] = {
     BOUNDS(design.width_m, "m", "6, 15", 0.1, 200,
            "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
     TEXT(design.devices, "all",
-         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, none; the roof's tuned mass is "
+         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, friction, none; the roof's "
+         "tuned mass is "
          "one then too, and the search begins with links and a tuned mass that are tuned alone; all: no choice, every "
          "floor has what design.variables name"),
     WHOLE(design.device_zones, "0", 0, 128,
           "0: a choice for every floor; else one for each of so many zones of floors"),
-    WHOLE(design.link_zones, "0", 0, 128, "0: a link for every floor; else links of so many zones of floors differ"),
+    WHOLE(design.link_zones, "0", 0, 128,
+          "0: a link for every floor; else links (friction links) of so many zones of floors differ"),
     REAL(design.link_exponent, "", "1", 0.1, 2,
-         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold, 0.1: nearly the constant force c of "
-         "friction; "
-         "c is then in N (s/m)^a"),
-    BOUNDS(design.link_n_s_m, "N s/m", "1e4, 1e7", 1e-3, 1e12, "bounds of the search: c of a link"),
+         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold; c is then in N (s/m)^a"),
+    BOUNDS(design.link_n_s_m, "N s/m", "1e4, 1e7", 1e-3, 1e12,
+           "bounds of the search: c of a link; force of a friction link, in N"),
     BOUNDS(design.mass_kg, "kg", "1e4, 5e5", 1e-3, 1e9, "bounds of the search: tuned mass"),
     BOUNDS(design.mass_hz, "Hz", "0.1, 2", 1e-3, 1e3, "bounds of the search: frequency of the tuned mass"),
     BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
     SHARES(design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4",
-           "of cost: of a stop, of its bumper, of a link, of a tonne of tuned mass and of the core; the default is an "
+           "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core; "
+           "the default is an "
            "example, in thousands of euros, no quotation"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",

@@ -3,7 +3,7 @@
  *   d = B . q [m] how far the points are apart,  F = k d + c d' (d'^2 + v_r^2)^((a - 1) / 2)
  *
  * F pulls them together. a = 1: a linear dashpot; else F = c |d'|^a but for rates below v_r = 1 mm/s, where that has no
- * slope; a near 0: friction of the force c.
+ * slope; a = 0: friction of the force c, with v_r = 1 cm/s: what sticks creeps, at 1 mm/s under c / 10.
  *
  * Energy  int F d' dt = k d^2 / 2 (held) + lost
  *
@@ -24,8 +24,9 @@ typedef struct {
 /* The part of the rate v [m/s]; *slope: dF/dv. */
 static inline double device_viscous(const Device *e, double v, double *slope)
 {
-    const double square = v * v + 1e-6, power = e->exponent == 1 ? 1 : pow(square, 0.5 * (e->exponent - 1));
-    *slope = e->damping * power * (e->exponent * v * v + 1e-6) / square;
+    const double turn = e->exponent == 0 ? 1e-4 : 1e-6, square = v * v + turn;
+    const double power = e->exponent == 1 ? 1 : pow(square, 0.5 * (e->exponent - 1));
+    *slope = e->damping * power * (e->exponent * v * v + turn) / square;
     return e->damping * power * v;
 }
 

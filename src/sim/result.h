@@ -97,7 +97,7 @@ typedef struct {
     int contact_yields;                         /* it begins to yield below the surface */
     double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one */
     DevicePeak device[FLOORS_MAX + 1];          /* of every floor's link; the last: of the tuned mass */
-    int n_devices;                              /* stops, links, tuned masses */
+    int n_devices;                              /* stops, links of both kinds, tuned masses */
     double cost;                                /* of these and of the core, by DesignOptions.prices */
     double device_loss_j, ed_devices_pct;       /* dissipated by devices; of input_energy_j */
     long steps, force_evaluations;              /* what the run cost */

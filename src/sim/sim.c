@@ -171,10 +171,10 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     return status;
 }
 
-/* A link on every floor, the tuned mass. */
+/* A link or friction link on every floor, the tuned mass. */
 static int sim_devices_max(const DesignSpace *s)
 {
-    return (s->n_links > 0 ? s->n_floors : 0) + (s->n_mass > 0);
+    return (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0);
 }
 
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
@@ -435,8 +435,12 @@ static void add_devices(SimWorker *w, const Design *d, double exponent)
     if (d->mass_kg > 0)
         model_add_mass(model, d->mass_kg);
     for (int j = 0; j < w->core.top; j++)
-        if (d->link[j] > 0)
-            model_add_device(model, &(Device){.floor = j, .damping = d->link[j], .exponent = exponent}, 0);
+        if (d->link[j] + d->friction[j] > 0) /* one of them at most */
+            model_add_device(model,
+                             &(Device){.floor = j,
+                                       .damping = d->link[j] + d->friction[j],
+                                       .exponent = d->friction[j] > 0 ? 0 : exponent},
+                             0);
     if (d->mass_kg > 0)
         model_add_device(model,
                          &(Device){.floor = model->n - 1,
@@ -474,6 +478,7 @@ static void replace_stops(const SimWorker *w, SceneKind kind, Design *d)
     for (int j = 0; j < w->model.n; j++) {
         d->gap[0][j] = d->gap[1][j] = INFINITY;
         d->link[j] = kind == SCENE_LINKS ? w->device.link_ns_m : 0;
+        d->friction[j] = 0;
     }
 }
 
@@ -485,7 +490,7 @@ static void count_devices(const SimWorker *w, const Design *d, SimResult *result
         const int is_stop = design_gap(d, j) < DESIGN_OPEN_M;
         stops += is_stop;
         bumpers += is_stop && d->bumper[j] > 0;
-        links += d->link[j] > 0;
+        links += d->link[j] + d->friction[j] > 0;
     }
     result->n_devices = stops + links + (d->mass_kg > 0);
     result->cost =

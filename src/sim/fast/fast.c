@@ -220,6 +220,9 @@ static void end_state(const FastWork *work, double state[])
     }
 }
 
+/* Of the solver with friction: with less what sticks chatters, and steps become short. */
+static const double FRICTION_TOLERANCE = 1e-4;
+
 /* At ACCURACY_FINE the other tolerances are at rounding: EngineOptions.tolerance sets the steps alone. */
 static FastTolerances tolerances_of(const EngineOptions *options)
 {
@@ -243,7 +246,10 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
         TRY(fast_create(&own, model->n, model->nb, model->yields, model->n_devices, err));
     if (!work)
         work = own;
-    const FastTolerances tolerances = tolerances_of(options);
+    FastTolerances tolerances = tolerances_of(options);
+    for (int e = 0; e < model->n_devices; e++)
+        if (model->device[e].exponent == 0)
+            tolerances.solver_tolerance = fmin(tolerances.solver_tolerance, FRICTION_TOLERANCE);
     fast_run(work, model, motion, options, &tolerances, result);
     if (options->end_state)
         end_state(work, options->end_state);
