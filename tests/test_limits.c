@@ -125,6 +125,54 @@ static void see_progress(const StudyProgress *p, void *user)
     simulated_shown = p->progress.simulated;
 }
 
+/* Of the front how far its best design is behind f1 0.2, f2 0.2, f3 0.6 of whichever it is most behind: on the unit sphere
+ * (0.2 + t)^2 + (0.2 + t)^2 + (0.6 + t)^2 = 1 gives t = 0.21235. */
+static double most_behind(const char *name)
+{
+    char file[64];
+    snprintf(file, sizeof file, "%s/front.csv", name);
+    Table t = table_of(file);
+    double best = INFINITY;
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *f = t.values + i * t.n_cols + table_column(&t, "f1");
+        best = fmin(best, fmax(fmax(f[0] - 0.2, f[1] - 0.2), f[2] - 0.6));
+    }
+    table_free(&t);
+    return best;
+}
+
+TEST(a_search_with_levels_comes_near_them_in_150_evaluations_and_without_they_are_passed_by)
+{
+    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\n");
+    free(output_of("optimize @/plain.ini --out @/wished --max-evals 150 --set 'search.aspire=f1 0.2, f2 0.2,f3 0.6'"));
+    free(output_of("optimize @/plain.ini --out @/plain --max-evals 150"));
+    assert_less(most_behind("wished"), 0.21235 + 0.011);
+    assert_less(0.21235, most_behind("wished"));
+    assert_less(0.21235 + 0.02, most_behind("plain"));
+}
+
+TEST(levels_leave_limits_as_they_are_and_are_the_same_bytes_at_any_number_of_threads)
+{
+    write_in_place("levels.ini", "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n[search]\nmax_evals = 120\n"
+                                 "aspire = f1 0.5,f2 0.1\nlimits = f1<=0.3\n");
+    free(output_of("optimize @/levels.ini --out @/one --threads 1"));
+    free(output_of("optimize @/levels.ini --out @/three --threads 3"));
+    char *one = read_in_place("one/front.csv"), *three = read_in_place("three/front.csv");
+    assert_string_equal(one, three);
+    Table t = table_of("one/front.csv");
+    assert_less(5, t.n_rows);
+    for (size_t i = 0; i < t.n_rows; i++)
+        assert_at_most(t.values[i * t.n_cols + table_column(&t, "f1")], 0.3);
+    table_free(&t);
+    free(one);
+    free(three);
+    expect(65, "search.aspire: item 2 of 'f1 0.5,f2' is not NAME NUMBER",
+           "optimize @/levels.ini --out @/no --set 'search.aspire=f1 0.5,f2'");
+    expect(65, "search.aspire: f4 is no objective", "optimize @/levels.ini --out @/no --set 'search.aspire=f4 0.5'");
+    expect(65, "search.aspire: f1 is given twice",
+           "optimize @/levels.ini --out @/no --set 'search.aspire=f1 0.5,f1 0.2'");
+}
+
 TEST(a_run_without_a_front_says_why_there_is_none)
 {
     const Settings s = settings_of(UNMET, "begun");

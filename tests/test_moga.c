@@ -282,7 +282,7 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
     Err err = {0};
     directions_choose(M, KEEP, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
-    CHECK_OK(selection_create(&s, N, &d, &err), &err);
+    CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (uint32_t seed = 0; seed < 50; seed++) {
         sphere_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++)
@@ -321,7 +321,7 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     Selection *s;
     Err err = {0};
     CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
-    CHECK_OK(selection_create(&s, N, &d, &err), &err);
+    CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
         F[i * M] = (double)i;
         F[i * M + 1] = i < 20 ? -(double)i : 100.0 - (double)i;
@@ -358,7 +358,7 @@ TEST(thousands_of_designs_are_selected_in_seconds)
     }
     directions_choose(M, WANTED, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
-    CHECK_OK(selection_create(&s, N, &d, &err), &err);
+    CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     const clock_t begun = clock();
     assert_int_equal(selection_select(s, N, F, NULL, WANTED, &r, selected), WANTED);
     const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
@@ -530,7 +530,7 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     Infill *q;
     Err err = {0};
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
-    CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, NULL, &err), &err);
     infill_measure(q, 3, rows, front);
     assert_same_number(infill_distance(q, front), 0.0);
     assert_less(0.0, infill_distance(q, offered + 6));
@@ -571,8 +571,8 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
             allowed[i] = random_below(&r, 8) > 0;
         }
         CHECK_OK(directions_create(&d, M, 5, 0, &err), &err);
-        CHECK_OK(infill_create(&lazy, (InfillKind)(seed % 2), N, &d, &err), &err);
-        CHECK_OK(infill_create(&anew, (InfillKind)(seed % 2), N, &d, &err), &err);
+        CHECK_OK(infill_create(&lazy, (InfillKind)(seed % 2), N, &d, NULL, &err), &err);
+        CHECK_OK(infill_create(&anew, (InfillKind)(seed % 2), N, &d, NULL, &err), &err);
         infill_measure(lazy, 5, rows, F);
         infill_offer(lazy, N, F, violation, uncertainty, NULL);
         for (size_t k = 0, n = 0; k < N; k++) {
@@ -635,7 +635,7 @@ TEST(the_lengths_of_rays_measure_the_hypervolume)
     Infill *q;
     Err err = {0};
     CHECK_OK(directions_spread(&d, 3, 300, &err), &err);
-    CHECK_OK(infill_create(&q, INFILL_HYPERVOLUME, 2, &d, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_HYPERVOLUME, 2, &d, NULL, &err), &err);
     infill_measure(q, 3, (const size_t[]){0, 1, 2}, front);
     double unused[3], ratio = 0.0;
     for (size_t r = 3; r < d.n; r++) {
@@ -664,7 +664,7 @@ TEST(the_slope_of_pbi_equals_differences)
     Infill *q;
     Err err = {0};
     CHECK_OK(directions_spread(&d, M, 12, &err), &err);
-    CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, NULL, &err), &err);
     infill_measure(q, ROWS, rows, F);
     for (size_t direction = 0; direction < d.n; direction++) {
         double f[M], unused[M];

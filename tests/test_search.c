@@ -567,7 +567,7 @@ static void test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit
     double x[8], likely = 0.0, likely_good = 0.0, unlikely = 0.0, unlikely_good = 0.0;
     fill_archive(&a, &r);
     CHECK_OK(directions_spread(&vectors, 2, 20, &err), &err);
-    CHECK_OK(infill_create(&near, INFILL_PBI, 4, &vectors, &err), &err);
+    CHECK_OK(infill_create(&near, INFILL_PBI, 4, &vectors, NULL, &err), &err);
     infill_measure(near, a.n_front, a.front, a.F);
     CHECK_OK(surrogate_create(&s, &here.problem, 200, CHANCE_ASKED, &err), &err);
     CHECK_OK(surrogate_fit(s, &a, near, &err), &err);

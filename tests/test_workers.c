@@ -167,6 +167,47 @@ TEST(a_design_without_input_fails_in_a_search_and_in_a_simulation_alike)
                    "--set search.objectives=j1_m,j3_g")); /* known at rest */
 }
 
+static const char ISOLATED[] =
+    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n"
+    "[sim]\nduration_s = 20\n[search]\nmax_evals = 80\npolish = 0\nthreads = 2\n[run]\nisolate = yes\n";
+
+TEST(processes_of_their_own_change_no_byte)
+{
+    write_in_place("isolated.ini", ISOLATED);
+    free(output_of("optimize @/isolated.ini --out @/apart"));
+    free(output_of("optimize @/isolated.ini --out @/here --set run.isolate=no --threads 1"));
+    char *apart = read_in_place("apart/front.csv"), *here = read_in_place("here/front.csv");
+    assert_string_equal(apart, here);
+    free(apart);
+    free(here);
+}
+
+/* Five processes are shot while they simulate, or before their next design, which another one then gets. */
+TEST(a_simulation_that_crashes_ends_its_design_alone)
+{
+    char command[128];
+    write_in_place("isolated.ini", ISOLATED);
+    const pid_t pid = start("isolated.ini", "shot");
+    snprintf(command, sizeof command, "kill -SEGV $(pgrep -P %d | tail -1) 2>/dev/null", (int)pid);
+    for (int n = 0; n < 5 && kill(pid, 0) == 0;) {
+        rest(0.02);
+        n += system(command) == 0;
+    }
+    const int status = wait_end(pid);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    char *all = all_of("shot");
+    size_t n_lost = 0, n = 0;
+    for (const char *at = all; (at = strchr(at, '\n')); at++, n++) {
+        const char *lost = strstr(at, "its process ended");
+        n_lost += lost && lost < strchrnul(at + 1, '\n');
+    }
+    assert_int_equal(n, 81);
+    assert_true(n_lost >= 1 && n_lost <= 5);
+    assert_non_null(strstr(all, "its process ended: Segmentation fault"));
+    free(all);
+}
+
 int main(void)
 {
     return RUN_TESTS(prepare, clear_place);

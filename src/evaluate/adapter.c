@@ -7,6 +7,7 @@
 struct Adapter {
     Schema schema;
     Limits limits;
+    double aspire[OBJECTIVES_MAX];
     Problem problem;
     int threads;
     size_t *order; /* (n_parts) of adapter_order; NULL: none */
@@ -81,6 +82,8 @@ static Status describe(Adapter *a, const Settings *s, Err *err)
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
+    TRY(aspirations_read(a->aspire, &a->schema, s->search.aspire, err));
+    a->problem.aspire = strcmp(s->search.aspire, "none") != 0 ? a->aspire : NULL;
     a->problem.n_con = a->limits.n + (t ? 0 : a->schema.n_extra);
     a->problem.judge = judge;
     a->problem.user = a;

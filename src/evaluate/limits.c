@@ -87,3 +87,22 @@ void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, doubl
         g[c] = l->sign * (value - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
     }
 }
+
+Status aspirations_read(double level[], const Schema *schema, const char *list, Err *err)
+{
+    char text[128], *end;
+    for (size_t k = 0; k < schema->n_obj; k++)
+        level[k] = NAN;
+    for (size_t i = 0, k; strcmp(list, "none") != 0 && i < list_count(list); i++) {
+        char *blank = list_item(list, i, text, sizeof text) ? strrchr(text, ' ') : NULL;
+        const double value = blank ? strtod(blank, &end) : NAN;
+        if (!blank || *end || !isfinite(value))
+            return bad_data(err, "search.aspire: item %zu of '%.60s' is not NAME NUMBER", i + 1, list);
+        *blank = 0;
+        TRY(schema_pick_objective(schema, "search.aspire", text, STATUS_BAD_DATA, &k, err));
+        if (!isnan(level[k]))
+            return bad_data(err, "search.aspire: %s is given twice", text);
+        level[k] = schema_objective(schema, k)->sense * value;
+    }
+    return STATUS_OK;
+}

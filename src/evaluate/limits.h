@@ -2,6 +2,8 @@
  *
  *   g = (value - limit) / |limit| for <=, the negative of it for >=; limit 0 counts as 1
  *
+ * And the levels that are wished for (search.aspire = j1_m 0.5,j3_g 3).
+ *
  * Threads  limits_apply reads only
  * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both, or one
  *          that is given twice, or one that excludes what is better and has none on the other side */
@@ -26,3 +28,6 @@ Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
 
 /* g (n) of an evaluation with so many objectives. */
 void limits_apply(const Limits *l, size_t n_obj, const Evaluation *e, double g[]);
+
+/* level (n_obj): of the minimised objectives; NAN: none of that one. */
+Status aspirations_read(double level[], const Schema *schema, const char *list, Err *err);

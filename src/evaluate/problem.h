@@ -91,11 +91,12 @@ struct Problem {
     size_t n_var, n_obj, n_con, n_extra;
     const double *lower, *upper; /* (n_var) whole ones of whole numbers; of a choice 0 and the last word */
     const VariableKind *kind;    /* (n_var) NULL: all are real */
-    const Steps *steps; /* (n_var) of those that are VARIABLE_STEPPED, whose bounds are the ends; NULL: none is */
-    RepairFn repair;    /* NULL: the box is all */
-    JudgeFn judge;      /* NULL: f as it is, and no g */
-    const void *user;   /* of judge */
-    int is_noisy;       /* the same design evaluated again gives another answer */
+    const Steps *steps;   /* (n_var) of those that are VARIABLE_STEPPED, whose bounds are the ends; NULL: none is */
+    RepairFn repair;      /* NULL: the box is all */
+    JudgeFn judge;        /* NULL: f as it is, and no g */
+    const void *user;     /* of judge */
+    const double *aspire; /* (n_obj) minimised values that are wished for, NAN: of that objective none; NULL: of none */
+    int is_noisy;         /* the same design evaluated again gives another answer */
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;

@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "evaluate/device.h"
+#include "evaluate/isolated.h"
 #include "evaluate/tasks.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
@@ -48,6 +49,7 @@ struct Tower {
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
     size_t recipe_size;
     Recipe *recipe;
+    Isolated *isolated; /* NULL: simulated in this process */
 };
 
 /* -- scenes -------------------------------------------------------------------------------------------------------- */
@@ -199,7 +201,7 @@ static Status find_device(Tower *t, size_t worker, const Task *task, Err *err)
     return device_find(&t->plan, n, at, (SceneKind)(task->variant.kind - FIND), task->x, &m->device, err);
 }
 
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+static Status simulate_here(void *self, size_t worker, const Task *task, Err *err)
 {
     Tower *t = self;
     const Settings *s = &t->recipe->settings;
@@ -227,6 +229,23 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
         measures_settle(result, t->judged);
     *(Measured *)task->result = measured(result);
     ((Measured *)task->result)->device = device;
+    return STATUS_OK;
+}
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Tower *t = self;
+    int how;
+    if (!t->isolated)
+        return simulate_here(self, worker, task, err);
+    TRY(isolated_run(t->isolated, worker, task, &how, err));
+    if (how != 0) {
+        SimResult lost = {.outcome = RUN_ENGINE_FAILED};
+        snprintf(lost.reason, sizeof lost.reason, "its process ended: %s", how > 0 ? strsignal(how) : "no answer");
+        *(Measured *)task->result = measured(&lost);
+        if (task->size >= sizeof(Whole))
+            ((Whole *)task->result)->result = lost;
+    }
     return STATUS_OK;
 }
 
@@ -260,6 +279,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
 static void tower_close(void *self)
 {
     Tower *t = self;
+    isolated_close(t->isolated);
     for (size_t i = 0; t->worker && i < t->n_places * t->n_workers; i++)
         leave(t, i / t->n_workers, i % t->n_workers);
     for (size_t i = 0; t->place && i < t->n_places; i++)
@@ -461,6 +481,8 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->judged = status == STATUS_OK ? order.judged : 0;
     if (status == STATUS_OK)
         status = prepare(t, err);
+    if (status == STATUS_OK && s->run.isolate == SWITCH_ON)
+        status = isolated_open(&t->isolated, t->n_workers, &(IsolatedWork){simulate_here, t, t->design.n_var}, err);
     if (status != STATUS_OK) {
         tower_close(t);
         return status;

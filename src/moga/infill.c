@@ -22,6 +22,7 @@ struct Infill {
     double *value;                                  /* (n, n_dir) of the candidates */
     double *gain;                                   /* (n) */
     const double *violation, *uncertainty, *chance; /* (n) */
+    const double *aspire;                           /* (n_obj) or NULL */
 };
 
 static void layout(void *infill, Carve *c)
@@ -40,14 +41,18 @@ static void layout(void *infill, Carve *c)
     CARVE(c, q->gain, q->n_max);
 }
 
-Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)
+Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors,
+                     const double aspire[], Err *err)
 {
     const size_t n_obj = vectors->n_obj;
-    Infill plain = {kind, n_obj, vectors->n, candidates_max, .normalisation.n_obj = n_obj};
+    Infill plain = {aspire ? INFILL_HYPERVOLUME : kind, n_obj,           vectors->n, candidates_max,
+                    .normalisation.n_obj = n_obj,       .aspire = aspire};
     Infill *q = *out = carve_object(layout, &plain, sizeof plain);
     if (!q)
         return fail_memory(err, candidates_max, "candidates of infill");
     directions_unit(vectors, q->unit);
+    for (size_t i = 0; aspire && i < q->n_dir * n_obj; i++)
+        q->unit[i] = exp2(2.0 * (q->unit[i] - 0.5));
     for (size_t r = 0; r < q->n_dir; r++)
         for (size_t k = 0; k < q->n_obj; k++) {
             q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k];
@@ -56,19 +61,28 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     return STATUS_OK;
 }
 
-/* Minus the length of every ray that f dominates. */
+/* Of f (n_obj) objective k, from the reference point of the rays. */
+static double off(const Infill *q, size_t k, const double f[])
+{
+    return q->aspire ? normalised_behind(&q->normalisation, k, q->aspire[k], f[k])
+                     : normalised(&q->normalisation, k, f[k]) - RAY_START;
+}
+
+/* Minus the length of every ray that f dominates; from levels on it may also be behind. */
 CLONED_V3 static void ray_values(const Infill *q, const double f[], double value[])
 {
     for (size_t r = 0; r < q->n_dir; r++)
         value[r] = -DBL_MAX;
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double off = normalised(&q->normalisation, k, f[k]) - RAY_START, *over = q->over + k * q->n_dir;
+        const double from = off(q, k, f), *over = q->over + k * q->n_dir;
 #pragma omp simd
         for (size_t r = 0; r < q->n_dir; r++) {
-            const double end = off * over[r];
+            const double end = from * over[r];
             value[r] = MAX_OF(end, value[r]);
         }
     }
+    if (q->aspire)
+        return;
 #pragma omp simd
     for (size_t r = 0; r < q->n_dir; r++)
         value[r] = MIN_OF(value[r], 0.0);
@@ -133,7 +147,7 @@ static double ray_slope(const Infill *q, const double w[], const double f[], dou
 {
     double length = -DBL_MAX, sum = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
-        slope[k] = (normalised(&q->normalisation, k, f[k]) - RAY_START) / fmax(w[k], LEAST);
+        slope[k] = off(q, k, f) / fmax(w[k], LEAST);
         length = fmax(length, slope[k]);
     }
     for (size_t k = 0; k < q->n_obj; k++) {
@@ -147,19 +161,19 @@ static double ray_slope(const Infill *q, const double w[], const double f[], dou
 
 static double pbi_slope(const Infill *q, const double w[], const double f[], double slope[])
 {
-    double along = 0.0, off = 0.0;
+    double along = 0.0, aside = 0.0;
     for (size_t k = 0; k < q->n_obj; k++)
         along += normalised(&q->normalisation, k, f[k]) * w[k];
     for (size_t k = 0; k < q->n_obj; k++) {
         const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
-        off += side * side;
+        aside += side * side;
     }
-    off = sqrt(off);
-    for (size_t k = 0; k < q->n_obj; k++) { /* the side is at right angles to w, so d off / d z_k = side_k / off */
+    aside = sqrt(aside);
+    for (size_t k = 0; k < q->n_obj; k++) { /* the side is at right angles to w, so d aside / d z_k = side_k / aside */
         const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
-        slope[k] = (w[k] + (off > 0.0 ? PBI_THETA * side / off : 0.0)) / q->normalisation.width[k];
+        slope[k] = (w[k] + (aside > 0.0 ? PBI_THETA * side / aside : 0.0)) / q->normalisation.width[k];
     }
-    return along + PBI_THETA * off;
+    return along + PBI_THETA * aside;
 }
 
 double infill_length(const Infill *q, const double f[])
@@ -182,8 +196,8 @@ double infill_distance(Infill *q, const double f[])
     values_of(q, f, q->row);
 #pragma omp simd reduction(min : nearest)
     for (size_t r = 0; r < q->n_dir; r++) {
-        const double off = q->row[r] - q->best_value[r];
-        nearest = MIN_OF(off, nearest);
+        const double more = q->row[r] - q->best_value[r];
+        nearest = MIN_OF(more, nearest);
     }
     return nearest;
 }

@@ -4,6 +4,8 @@
  *   value     INFILL_PBI          d1 + 5 d2: d1 along w from the ideal, d2 off it, in normalised objectives
  *             INFILL_HYPERVOLUME  minus the length that f dominates of the ray from behind the worst of the front along
  *                                 -w: the lengths of many rays add up to the hypervolume, whatever the front's shape
+ *             with levels that are wished for, in the place of both: max_k (f_k - level_k) / width_k / u_k, where every
+ *             vector has a u of its own between 0.5 and 2
  *   best_w    smallest value of the front
  *   chance    where there is a front: a gain counts with the probability that the design succeeds and keeps every
  *             limit, as in Schonlau, Welch and Jones, IMS Lecture Notes 34 (1998) 11-25
@@ -17,7 +19,8 @@
  * Threads     one Infill per thread
  * Sources     Zhang and Li, IEEE Trans. Evol. Comput. 11 (2007) 712-731 (PBI)
  *             Zhang and Golovin, Random hypervolume scalarizations for provable multi-objective black box optimization,
- *             ICML 2020 (rays) */
+ *             ICML 2020 (rays)
+ *             Wierzbicki, The use of reference objectives in multiobjective optimization, 1980 (levels) */
 #pragma once
 
 #include "moga/directions.h"
@@ -26,7 +29,9 @@ typedef struct Infill Infill;
 
 typedef enum { INFILL_PBI, INFILL_HYPERVOLUME, INFILL_KINDS } InfillKind;
 
-Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err);
+/* aspire (n_obj): levels, NAN where there is none, borrowed; NULL: nothing is wished for. */
+Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors,
+                     const double aspire[], Err *err);
 
 /* Normalises by the rows front[0..n) of F and takes their values as best_w. */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);

@@ -8,6 +8,7 @@
  * Source   Deb and Jain (see moga/search.h), section IV.C. */
 #pragma once
 
+#include <math.h>
 #include <stddef.h>
 
 typedef struct {
@@ -26,4 +27,10 @@ void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], co
 static inline double normalised(const Normalisation *q, size_t k, double f)
 {
     return (f - q->ideal[k]) / q->width[k];
+}
+
+/* How far f is behind a level that is wished for, in widths; NAN: no level is, and nothing is behind it. */
+static inline double normalised_behind(const Normalisation *q, size_t k, double level, double f)
+{
+    return isnan(level) ? -INFINITY : (f - level) / q->width[k];
 }

@@ -18,6 +18,7 @@ struct Selection {
     size_t *candidates; /* (n_dir) that are left in the layer which does not fit */
     size_t *ties;       /* (n_dir or n_max) */
     unsigned char *taken;
+    const double *aspire; /* (n_obj) or NULL */
 };
 
 static void layout(void *selection, Carve *c)
@@ -41,10 +42,10 @@ static void layout(void *selection, Carve *c)
     CARVE(c, s->taken, n);
 }
 
-Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err)
+Status selection_create(Selection **out, size_t n_max, const Directions *directions, const double aspire[], Err *err)
 {
     const size_t n_obj = directions->n_obj;
-    Selection plain = {n_max, n_obj, directions->n, .normalisation.n_obj = n_obj};
+    Selection plain = {n_max, n_obj, directions->n, .normalisation.n_obj = n_obj, .aspire = aspire};
     Selection *s = *out = carve_object(layout, &plain, sizeof plain);
     if (!s)
         return fail_memory(err, n_max, "designs to select from");
@@ -123,6 +124,36 @@ static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *rand
     }
 }
 
+typedef struct {
+    const double *violation, *behind; /* violation NULL: none */
+} Wish;
+
+static int compare_wished(const void *first, const void *second, void *wish)
+{
+    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
+    const Wish *w = wish;
+    const double violated = w->violation ? w->violation[a] - w->violation[b] : 0.0;
+    const double more = violated != 0.0 ? violated : w->behind[a] - w->behind[b];
+    return more != 0.0 ? (more > 0.0 ? 1 : -1) : (a > b) - (a < b);
+}
+
+/* Those that are least behind the levels, of whichever is most behind. */
+static void take_wished(Selection *s, size_t n, const double F[], const double violation[], size_t keep)
+{
+    nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
+    normalisation_fit_range(&s->normalisation, rows_of_layer(s, n, 0), s->list, F);
+    for (size_t i = 0; i < n; i++) {
+        s->list[i] = i;
+        s->distance[i] = -INFINITY;
+        for (size_t k = 0; k < s->n_obj; k++)
+            s->distance[i] =
+                fmax(s->distance[i], normalised_behind(&s->normalisation, k, s->aspire[k], F[i * s->n_obj + k]));
+    }
+    qsort_r(s->list, n, sizeof *s->list, compare_wished, &(Wish){violation, s->distance});
+    for (size_t i = 0; i < n && i < keep; i++)
+        s->taken[s->list[i]] = 1;
+}
+
 /* Takes whole layers, then fills the niches from the one that does not fit. */
 static void take_layers(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random)
 {
@@ -152,7 +183,10 @@ size_t selection_select(Selection *s, size_t n, const double F[], const double v
 {
     size_t n_selected = 0;
     memset(s->taken, 0, n);
-    take_layers(s, n, F, violation, keep, random);
+    if (s->aspire)
+        take_wished(s, n, F, violation, keep);
+    else
+        take_layers(s, n, F, violation, keep, random);
     for (size_t i = 0; i < n; i++)
         if (s->taken[i])
             selected[n_selected++] = i;

@@ -5,6 +5,8 @@
  *     to it
  *   3 from the layer that does not fit, designs are taken for the directions with the fewest members
  *
+ * Where levels are wished for (search.aspire) the designs that are least behind them, after those that violate less.
+ *
  * Nothing is kept from one call to the next.
  *
  * Life cycle  selection_create -> selection_select ... -> free
@@ -18,8 +20,8 @@
 
 typedef struct Selection Selection;
 
-/* Borrows the directions. */
-Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err);
+/* Borrows the directions, and the levels (n_obj), NAN where there is none; NULL: nothing is wished for. */
+Status selection_create(Selection **out, size_t n_max, const Directions *directions, const double aspire[], Err *err);
 
 /* Selects min(n, keep) of F (n, n_obj), violation (n) or NULL; selected holds their rows in ascending order. */
 size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,

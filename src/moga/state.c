@@ -45,7 +45,7 @@ static Status create_criteria(Search *s, size_t n_pool, Err *err)
     Criteria *q = &s->criteria;
     TRY(directions_spread(&q->vectors, s->common.problem->n_obj, n_vectors(&s->common), err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
-        TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, err));
+        TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, s->common.problem->aspire, err));
     return STATUS_OK;
 }
 
@@ -55,7 +55,7 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
     size_t outer, inner;
     directions_choose(n_obj, s->common.config->population, &outer, &inner);
     TRY(directions_create(&s->directions, n_obj, outer, inner, err));
-    return selection_create(&s->selection, n_pool, &s->directions, err);
+    return selection_create(&s->selection, n_pool, &s->directions, s->common.problem->aspire, err);
 }
 
 /* Asynchronous: the workers and a part of a batch. */

@@ -54,11 +54,12 @@ typedef struct {
     long stop_after;        /* evaluations without gain; 0: any number */
     long failures_max;      /* evaluations in a row that fail; 0: any number */
     long polish;            /* designs at the end */
-    char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
+    char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX], aspire[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
 } SearchOptions;
 
 typedef struct {
+    Switch isolate;
     char out[OPTION_TEXT_MAX]; /* the run's folder */
 } RunOptions;
 

@@ -322,7 +322,13 @@ static const Option OPTIONS[] = {
          "those of them that the building has; also p(NAME>NUMBER), the probability that one is exceeded"),
     TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
          .flags = SETTING_BASIC),
+    TEXT(search.aspire, "none",
+         "levels that are wished for, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
+         "to them, or is beyond them (docs/search.md); none"),
 
+    CHOICE(run.isolate, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+           "on: the tower is simulated in processes of their own: one that crashes ends its design alone",
+           .flags = SETTING_FREE),
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),
 };
 
@@ -431,7 +437,7 @@ static Status assign_choice(Settings *s, const Option *o, const char *value, Err
 {
     double number = 0;
     const int is_switch = strcmp(o->words, CHOICE_WORDS(SWITCH_LIST)) == 0; /* as TOML writes it */
-    int i = is_switch ? word_index("off|on|false|true", value) % 2 : word_index(o->words, value);
+    int i = is_switch ? word_index("off|on|false|true|no|yes", value) % 2 : word_index(o->words, value);
     if (i < 0 && !(o->number && strchr("0123456789.", value[0])))
         return unknown_word(o, value, err);
     if (i < 0) {

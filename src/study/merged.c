@@ -155,8 +155,10 @@ static Status read_all(Run *to, size_t n, const char *const folders[], Run run[]
         count(to, &run[k], step);
     }
     take_head(to, &run[0]);
-    for (size_t k = 1, at = strlen(to->folder); k < n && at < sizeof to->folder; k++)
-        at += (size_t)snprintf(to->folder + at, sizeof to->folder - at, " + %s", basename(folders[k]));
+    for (size_t k = 1; k < n; k++) {
+        const size_t at = strlen(to->folder);
+        snprintf(to->folder + at, sizeof to->folder - at, " + %s", basename(folders[k]));
+    }
     return join(to, n, run, *step, err);
 }
 
