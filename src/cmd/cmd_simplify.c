@@ -55,7 +55,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
             return misused(err, "--keep: %s may lose %g of its value; give 0 or more",
                            schema_objective(schema, k)->name, c->slack[k]);
     long zones;
-    TRY(args_whole(args, "--zones", 1, FLOORS_MAX, 0, &zones, err));
+    TRY(args_whole(args, "--zones", 1, MAX_OF(schema->design.n_floors, 1), 0, &zones, err));
     c->zones = (int)zones;
     if (args_has(args, "--gap-step"))
         TRY(take_mm("--gap-step", args_value(args, "--gap-step"), &c->gap_step, err));
@@ -106,21 +106,22 @@ static void show_design(const Work *w, const double x[])
             printf("%-20s %g\n", schema_variable(s, j)->name, x[j]);
 }
 
-/* Whether the end of the path is another design than its start, and keeps what is to be kept. */
+/* Whether the end of the path is a design that the run does not have, and keeps what is to be kept. */
 static Status check_end(const Work *w, Err *err)
 {
     const Simplified *r = &w->result;
+    const EvaluationTable *has = &w->run->table;
     if (r->loss[r->n - 1] > 1.0)
         return fail(err, STATUS_UNMET,
                     "%s: not stored: on these steps it loses more than may be lost, or violates limits: finer steps, "
                     "more plates or another --keep",
                     w->run->folder);
-    return memcmp(r->designs.row[r->n - 1].x, r->designs.row[0].x, w->run->schema.n_var * sizeof(double)) == 0
-               ? fail(err, STATUS_UNMET,
-                      "%s: not stored: the design is as simple as it can be "
-                      "(steps, idle stops, --keep)",
-                      w->run->folder)
-               : STATUS_OK;
+    for (size_t i = 0; i < has->n; i++)
+        if (memcmp(r->designs.row[r->n - 1].x, has->row[i].x, w->run->schema.n_var * sizeof(double)) == 0)
+            return fail(err, STATUS_UNMET,
+                        "%s: not stored: it is design %ld, as simple as it can be (steps, idle stops, --keep)",
+                        w->run->folder, has->row[i].id);
+    return STATUS_OK;
 }
 
 static Status simplify(const Args *args, Work *w, Err *err)

@@ -38,7 +38,8 @@ typedef struct {
     void *user;
     int is_first; /* round: something comes of every session, however short */
     Run run;
-    SimOptions sim[LEVELS + 1]; /* of each level; 0: as the run is set */
+    SimOptions sim[LEVELS + 1];         /* of each level; 0: as the run is set */
+    RunSimulator simulator[LEVELS + 1]; /* open where its level was wanted, so that records are not read again */
     size_t n;
     Named named[TOGETHER], *asked[TOGETHER]; /* asked: whose designs are in X */
     double *X;                               /* (COPIES n, n_var) */
@@ -102,12 +103,10 @@ static int may_go_on(void *work)
 /* The first n designs in X. */
 static Status simulate(Work *w, size_t level, size_t n, Err *err)
 {
-    RunSimulator r = {0};
-    Status status = run_simulator_open(&r, w->used, &w->sim[level], may_go_on, w, err);
-    if (status == STATUS_OK)
-        status = ask_all(w, r.queue, n, err);
-    run_simulator_close(&r);
-    return status;
+    RunSimulator *r = &w->simulator[level];
+    if (!r->queue)
+        TRY(run_simulator_open(r, w->used, &w->sim[level], may_go_on, w, err));
+    return ask_all(w, r->queue, n, err);
 }
 
 static double answer(const Evaluation *e, const Schema *s, size_t k)
@@ -297,6 +296,8 @@ Status named_simulate(RunStore *store, const Settings *used, int (*go_on)(void *
         status = round_of_names(w, err);
         w->is_first = 0;
     }
+    for (size_t level = 0; level <= LEVELS; level++)
+        run_simulator_close(&w->simulator[level]);
     free(w);
     return status;
 }

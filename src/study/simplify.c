@@ -57,8 +57,7 @@ static size_t n_left(const Simplify *s)
 /* Variable k moves with variable j. */
 static int moves_with(const Simplify *s, size_t j, size_t k)
 {
-    return k == j || (s->config->zones > 0 && design_share_zone(s->space, (int)j, (int)k, s->config->zones) &&
-                      ((int)k >= s->space->n_gaps || is_stop(s, k)));
+    return k == j || (s->config->zones > 0 && design_share_zone(s->space, (int)j, (int)k, s->config->zones));
 }
 
 /* The first variable of those that move together. */
@@ -179,33 +178,36 @@ static Status drop_idle_stops(Simplify *s, Err *err)
     return note(s, SIMPLIFY_CLOSING, err);
 }
 
-/* The mean of what moves with variable j; of words the most frequent one, of equals the first. */
+/* The mean of what moves with variable j, of gaps that are stops; of words the most frequent one, of equals the
+ * first. */
 static double middle_of(const Simplify *s, size_t j)
 {
     double sum = 0.0, word = s->x[j];
     size_t n = 0, most = 0;
     for (size_t k = 0; k < s->n_var; k++) {
         size_t alike = 0;
-        for (size_t i = 0; i < s->n_var && moves_with(s, j, k); i++)
+        if (!moves_with(s, j, k) || ((int)k < s->space->n_gaps && !is_stop(s, k)))
+            continue;
+        for (size_t i = 0; i < s->n_var; i++)
             alike += moves_with(s, j, i) && s->x[i] == s->x[k];
         if (alike > most) {
             most = alike;
             word = s->x[k];
         }
-        sum += alike > 0 ? s->x[k] : 0.0;
-        n += alike > 0;
+        sum += s->x[k];
+        n++;
     }
-    return design_word(s->space, (int)j, 0) ? word : sum / (double)n;
+    return n == 0 || design_word(s->space, (int)j, 0) ? word : sum / (double)n;
 }
 
 static Status merge_zones(Simplify *s, Err *err)
 {
     for (size_t j = 0; j < s->n_var && s->config->zones > 0; j++) {
-        if (!leads(s, j) || ((int)j < s->space->n_gaps && !is_stop(s, j)))
-            continue;
         s->n = 0;
-        add(s, j, middle_of(s, j));
-        memcpy(s->x, s->X, s->n_var * sizeof *s->x);
+        if (leads(s, j))
+            add(s, j, middle_of(s, j));
+        if (s->n > 0)
+            memcpy(s->x, s->X, s->n_var * sizeof *s->x);
     }
     return note(s, SIMPLIFY_ZONES, err);
 }
