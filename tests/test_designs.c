@@ -141,6 +141,27 @@ TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set sim.uncertain=damping=0.1");
 }
 
+TEST(chances_are_among_all_numbers_and_deviations_are_named_by_what_varies)
+{
+#define SUITE                                                                                                          \
+    "simulate configs/quick.ini --design @/run:knee --set motion.records=builtin:sylmar-like --set "                   \
+    "'search.objectives=j1_m,p(drift_ratio>0.003)' --set sim.robust=mean_plus_sd " SHORT
+    json_t *o = json_of(SUITE "--json");
+    const json_t *all = json_object_get(o, "replicates");
+    assert_true(json_is_number(json_object_get(o, "p(drift_ratio>0.003)")));
+    assert_true(json_is_number(json_object_get(json_object_get(all, "mean"), "p(drift_ratio>0.003)")));
+    assert_true(json_is_null(json_object_get(json_object_get(all, "standard_error"), "ductility")));
+    assert_string_equal(json_string_value(json_object_get(all, "spread")), "over records");
+    json_decref(o);
+    char *said = output_of(SUITE "--csv -");
+    assert_non_null(strstr(said, ",p(drift_ratio>0.003)_mean,"));
+    free(said);
+    said = output_of(SUITE);
+    assert_non_null(strstr(said, " se "));
+    assert_null(strstr(said, " sd "));
+    free(said);
+}
+
 TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee)
 {
     char words[2][400];

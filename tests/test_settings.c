@@ -296,6 +296,12 @@ TEST(a_number_that_is_none_is_refused_with_the_unit_that_is_wanted)
     refused("core.width_m=1000", STATUS_BAD_DATA, "core.width_m: 1000 is outside 0.1..200 m");
 }
 
+TEST(a_price_is_a_number_that_is_given_once)
+{
+    refused("design.prices=gap=3 gap=4", STATUS_BAD_DATA, "design.prices: gap stands there twice");
+    refused("design.prices=", STATUS_BAD_DATA, "design.prices: is empty");
+}
+
 TEST(the_rules_between_settings_hold_without_a_file)
 {
     Settings s;

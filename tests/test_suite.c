@@ -158,6 +158,14 @@ TEST(what_is_wrong_in_a_suite_is_said_with_its_file_and_line)
            "spectrum @/bad_list.txt");
     write_in_place("odd_list.txt", "builtin:kobe-like factor=1 twice\n");
     expect(65, "'twice' is neither channel=NAME nor factor=NUMBER", "spectrum @/odd_list.txt");
+    write_in_place("misspelt_list.txt", "builtin:kobe-like\nshort.csv facter=2\n");
+    expect(65, "short.csv: 'facter=2' is neither channel=NAME nor factor=NUMBER", "spectrum @/misspelt_list.txt");
+    write_in_place("twice_list.txt", "builtin:kobe-like factor=2 factor=3\n");
+    expect(65, "twice_list.txt:1: builtin:kobe-like: 'factor=3': give it once", "spectrum @/twice_list.txt");
+    expect(65, "did you mean builtin:suite?", "simulate configs/quick.ini --design none --record builtin:suit");
+    expect(65, "did you mean builtin:kobe-like?", "simulate configs/quick.ini --design none --record builtin:kobe");
+    expect(66, "kobe.ini:25:10: motion.record: kobe_jma_ns.csv: there is no such file or folder; give one by --record",
+           "simulate configs/kobe.ini --design none");
     write_in_place("empty_list.txt", "# nothing\n");
     expect(65, "empty_list.txt: names no record", "spectrum @/empty_list.txt");
     expect(66, "list.txt: there is no folder", "spectrum @/none/list.txt");

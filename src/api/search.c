@@ -135,6 +135,10 @@ static Status take_numbers(imtet_search *s, const imtet_search_options *o, Err *
         s->upper[j] = o->upper ? o->upper[j] : 1.0;
     }
     TRY(api_check_finite("start", o->starts * n, o->start, "give designs to begin with", err));
+    for (size_t i = 0; i < o->starts * n; i++)
+        if (kinds_are_whole(s->settings.problem.kinds, i % n) && o->start[i] != floor(o->start[i]))
+            return misused(err, "start: variable %zu of design %zu is %g; it is a whole number (kinds)", i % n + 1,
+                           i / n + 1, o->start[i]);
     if (o->starts > 0)
         memcpy(s->given, o->start, o->starts * n * sizeof *o->start);
     return handle_open(s, err);

@@ -123,7 +123,11 @@ enum { BEGINNING_MIN = 2 }; /* characters that a beginning has to have */
 const char *nearest_word(const char *word, const char *const list[], int n)
 {
     const char *nearest = NULL;
-    int least = INT_MAX;
+    const size_t length = strlen(word);
+    int least = 2 + (int)length / 3;
+    for (int i = 0; i < n && length >= BEGINNING_MIN; i++)
+        if (strncmp(word, list[i], length) == 0)
+            return list[i];
     for (int i = 0; i < n; i++) {
         const int d = edit_distance(word, list[i]);
         if (d < least) {
@@ -131,13 +135,7 @@ const char *nearest_word(const char *word, const char *const list[], int n)
             nearest = list[i];
         }
     }
-    const size_t length = strlen(word);
-    if (least <= 1 + (int)length / 3)
-        return nearest;
-    for (int i = 0; i < n && length >= BEGINNING_MIN; i++)
-        if (strncmp(word, list[i], length) == 0)
-            return list[i];
-    return NULL;
+    return nearest;
 }
 
 Status fail_no_word(Err *err, Status code, const char *where, const char *word, const char *noun,

@@ -180,7 +180,9 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
         json_put(o, "sa_g=%g", level_of(e, run));
     for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
         if (evaluated_has(e, run, c))
-            json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
+            json_object_set_new(
+                o, EVALUATION_CASES[c].key,
+                json_result(tower_measures(tower_of(&e->tower)), EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_has(e, run, EVALUATED_TMD))
         json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
                  run->device[EVALUATED_TMD].device.tmd_damping);
@@ -189,7 +191,7 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
     if (run->error_known)
         put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
-        json_put(o, "replicates=%p", json_replicates(&run->replicates));
+        json_put(o, "replicates=%p", json_replicates(tower_measures(tower_of(&e->tower)), &run->replicates));
     return o;
 }
 
@@ -227,6 +229,7 @@ static json_t *begin_row(json_t *table, const Evaluations *e, const char *record
 static void add_rows(json_t *table, const Evaluations *e, size_t i)
 {
     const EvaluatedRun *run = &e->run[i];
+    const MeasureOrder *order = tower_measures(tower_of(&e->tower));
     for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++) {
         if (run->record->readable != STATUS_OK || !evaluated_has(e, run, c))
             continue;
@@ -234,9 +237,9 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
         const double level = e->level ? level_of(e, run) : NAN;
         const double motion[] = {level, e->level && !is_spectral(e) ? level : run->pga_g, run->scale, run->stretch};
         json_t *row = begin_row(table, e, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
-        put_measures(row, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
+        put_measures(row, order, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
-            put_replicates(row, c == EVALUATED_DESIGN ? &run->replicates : NULL);
+            put_replicates(row, order, c == EVALUATED_DESIGN ? &run->replicates : NULL);
     }
 }
 
@@ -247,7 +250,7 @@ static void add_fractiles(json_t *table, const Evaluations *e, size_t level, Eva
     for (int i = 0; i < IDA_FRACTILES; i++) {
         for (int k = 0; k < N_MEASURES; k++)
             values[k] = ida_fractile(e, level, which, k, IDA_FRACTILE[i]);
-        put_measures(begin_row(table, e, IDA_FRACTILE_WORD[i], which, "", motion), "", values, NULL, NULL);
+        put_measures(begin_row(table, e, IDA_FRACTILE_WORD[i], which, "", motion), NULL, "", values, NULL, NULL);
     }
 }
 

@@ -95,38 +95,39 @@ static const double *row_of(const double *all, size_t i)
     return all ? all + i * N_MEASURES : NULL;
 }
 
-static json_t *describe(const Job *job, size_t i, const Motion *m)
+static json_t *describe(const Job *job, size_t i, const Tower *t)
 {
+    const Motion *m = &tower_record(t, 0)->motion;
     json_t *o =
         json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", design_number(&job->designs, i),
                 m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed);
-    json_object_update_new(o, json_result(job->kind, &job->results[i]));
+    json_object_update_new(o, json_result(tower_measures(t), job->kind, &job->results[i]));
     if (job->error)
         put_errors(o, row_of(job->error, i), row_of(job->sd, i));
     if (job->has_parts)
-        json_put(o, "replicates=%p", json_replicates(&job->summary[i]));
+        json_put(o, "replicates=%p", json_replicates(tower_measures(t), &job->summary[i]));
     return o;
 }
 
-static Status print_json(const Job *job, const Motion *m, Err *err)
+static Status print_json(const Job *job, const Tower *t, Err *err)
 {
     if (job->n == 1)
-        return show_json(describe(job, 0, m), err);
+        return show_json(describe(job, 0, t), err);
     json_t *all = json_array();
     for (size_t i = 0; i < job->n; i++)
-        json_array_append_new(all, describe(job, i, m));
+        json_array_append_new(all, describe(job, i, t));
     return show_json(all, err);
 }
 
-static Status write_csv(const Job *job, const char *path, Err *err)
+static Status write_csv(const Job *job, const MeasureOrder *order, const char *path, Err *err)
 {
     json_t *table = json_array();
     for (size_t i = 0; i < job->n; i++) {
         const Measured m = measured(&job->results[i]);
         json_t *row = json_put(figures_row(table), "design=%ld", design_number(&job->designs, i));
-        put_measures(row, "", m.value, NULL, NULL);
+        put_measures(row, order, "", m.value, NULL, NULL);
         if (job->has_parts)
-            put_replicates(row, &job->summary[i]);
+            put_replicates(row, order, &job->summary[i]);
         json_put(row, "outcome=%s", outcome_word(measure_outcome(m.outcome)));
     }
     return figures_csv(table, path, err);
@@ -160,9 +161,9 @@ static Status print(const Args *args, const Job *job, const Settings *s, const T
     if (m->warning[0] && (args_has(args, "--csv") || args_has(args, "--json"))) /* where no table says it */
         fprintf(stderr, "%s: warning: %s\n", m->name, m->warning);
     if (args_has(args, "--csv"))
-        TRY(write_csv(job, args_value(args, "--csv"), err));
+        TRY(write_csv(job, tower_measures(t), args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
-        return print_json(job, m, err);
+        return print_json(job, t, err);
     if (!args_has(args, "--csv") && !outputs_standard(args, 0))
         print_table(args, job, s, t);
     return STATUS_OK;
@@ -216,7 +217,7 @@ static Status print_horizon_json(const Horizon *h, const ReplicateSummary *r, Er
 {
     return show_json(json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h->end_s,
                              json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), json_numbers(HORIZON_LEVELS, h->reached_s),
-                             h->distance_at_end, json_replicates(r)),
+                             h->distance_at_end, json_replicates(NULL, r)),
                      err);
 }
 
@@ -283,7 +284,7 @@ static json_t *rows_of(size_t n, const Sensitivity list[])
     for (size_t i = 0; i < n; i++) {
         json_t *row =
             json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
-        put_measures(row, "_slope", list[i].slope, "_error", list[i].error);
+        put_measures(row, NULL, "_slope", list[i].slope, "_error", list[i].error);
     }
     return table;
 }

@@ -38,13 +38,13 @@ static json_t *describe(const Job *job, size_t i)
     json_t *o = json_object(), *of_reduced = json_object();
     for (int k = 0; k < N_MEASURES; k++)
         error[k] = relative(measure_value(reduced, k), measure_value(full, k));
-    put_measures(of_reduced, "", error, NULL, NULL);
+    put_measures(of_reduced, NULL, "", error, NULL, NULL);
     if (job->designs.x)
         json_put(o, "design=%ld", design_number(&job->designs, i));
     return json_put(o, "record=%s pga_g=%g scale=%g stretch=%g degrees_of_freedom=%p reduced=%p full=%p error=%p",
                     m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch,
                     json_of("reduced=%d full=%d", job->found.dofs[REDUCED], job->found.dofs[FULL]),
-                    json_result(job->kind, reduced), json_result(job->kind, full), of_reduced);
+                    json_result(NULL, job->kind, reduced), json_result(NULL, job->kind, full), of_reduced);
 }
 
 static void add_design(json_t *table, const Job *job, const char *word, size_t i)

@@ -378,7 +378,7 @@ static json_t *json_damage(const SimResult *r)
     return o;
 }
 
-json_t *json_result(SceneKind kind, const SimResult *r)
+json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r)
 {
     static const char *const SCENES[N_SCENES] = {[SCENE_IMPACT] = "impact",
                                                  [SCENE_NO_CORE] = "no_core",
@@ -393,8 +393,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
                          (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
     json_t *o =
         json_of("scene=%s outcome=%s reason=%s", SCENES[kind], outcome_word(measure_outcome(r->outcome)), r->reason);
-    for (int k = 0; k < MEASURES_LISTED; k++)
-        json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
+    put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
     for (size_t i = 0; i < N_OF(FIELDS); i++)
@@ -403,13 +402,14 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
 }
 
-void put_measures(json_t *o, const char *end, const double values[], const char *other, const double others[])
+void put_measures(json_t *o, const MeasureOrder *order, const char *end, const double values[], const char *other,
+                  const double others[])
 {
     char name[64];
-    for (int k = 0; k < MEASURES_LISTED; k++) {
-        snprintf(name, sizeof name, "%s%s", measure(k)->name, end);
+    for (int k = 0; k < (order ? N_MEASURES : MEASURES_LISTED) && *measures_name(order, k); k++) {
+        snprintf(name, sizeof name, "%s%s", measures_name(order, k), end);
         json_object_set_new(o, name, json_number(values ? values[k] : NAN));
-        snprintf(name, sizeof name, "%s%s", measure(k)->name, other ? other : "");
+        snprintf(name, sizeof name, "%s%s", measures_name(order, k), other ? other : "");
         if (other)
             json_object_set_new(o, name, json_number(others ? others[k] : NAN));
     }
@@ -433,24 +433,24 @@ void put_errors(json_t *o, const double likely[], const double sd[])
              json_of("likely=%p bound=%p sd_gaps_1_um=%p", json_known(likely, 1), bound, json_known(sd, 1)));
 }
 
-json_t *json_replicates(const ReplicateSummary *r)
+json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r)
 {
     json_t *mean = json_object(), *sd = json_object(), *error = json_object();
-    put_measures(error, "", r->n_failed ? NULL : r->error, NULL, NULL);
-    put_measures(mean, "", r->n_failed ? NULL : r->mean, NULL, NULL);
-    put_measures(sd, "", r->n_failed ? NULL : r->sd, NULL, NULL);
+    put_measures(error, order, "", r->n_failed ? NULL : r->error, NULL, NULL);
+    put_measures(mean, order, "", r->n_failed ? NULL : r->mean, NULL, NULL);
+    put_measures(sd, order, "", r->n_failed ? NULL : r->sd, NULL, NULL);
     return json_of("n=%ld records=%ld failed=%ld spread=%s rule=%s mean=%p sd=%p standard_error=%p", r->n_replicates,
                    r->n_records, r->n_failed, r->spread, r->rule, mean, sd, error);
 }
 
-void put_replicates(json_t *row, const ReplicateSummary *r)
+void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r)
 {
     const int known = r && !r->n_failed;
     json_put(row, "records=%p replicates=%p rule=%p spread=%p",
              r ? json_integer((json_int_t)r->n_records) : json_null(),
              r ? json_integer((json_int_t)r->n_replicates) : json_null(), r ? json_string(r->rule) : json_null(),
              r ? json_string(r->spread) : json_null());
-    put_measures(row, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
+    put_measures(row, order, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
 void show_motion(FILE *out, const Motion *m, double duration_s)
@@ -476,13 +476,17 @@ const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
     return text;
 }
 
-/* What there is of errors and deviations; NULL: nothing. */
+/* What there is of errors and deviations; NULL: nothing. word: what the deviation is, in the place of "sd". */
 static void put_objectives(json_t *row, const MeasureOrder *order, const double value[], const double error[],
-                           const double sd[])
+                           const double sd[], const char *word)
 {
     for (int i = 0; i < order->n_obj; i++) {
         const int k = order->of[i];
-        figures_put(row, measures_name(order, k), value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
+        const char *name = measures_name(order, k);
+        figures_put(row, name, value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
+        const char *text = json_string_value(json_object_get(row, name)), *end = strstr(text, " sd");
+        if (end)
+            json_object_set_new(row, name, json_sprintf("%.*s %s", (int)(end - text), text, word));
     }
 }
 
@@ -491,7 +495,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 {
     char note[NOTE_MAX] = "";
     json_t *row = json_put(figures_row(table), "=%s", label);
-    put_objectives(row, order, measured(r).value, error, sd);
+    put_objectives(row, order, measured(r).value, error, sd, "sd 1 um");
     json_put(row, "impacts=%ld", r->impacts);
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
@@ -529,8 +533,8 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
     json_put(row, "=%s", label);
     if (r->n_failed)
         return;
-    put_objectives(row, order, r->mean, error, sd);
-    figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, sd ? sd[MEASURE_IMPACTS] : NAN);
+    put_objectives(row, order, r->mean, error, sd, by_replicates ? "sd" : "se");
+    figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, by_replicates ? sd[MEASURE_IMPACTS] : NAN);
 }
 
 void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],

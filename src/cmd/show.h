@@ -33,29 +33,30 @@ Status show_json(json_t *all, Err *err);
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-json_t *json_result(SceneKind kind, const SimResult *r);
+json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r);
 
-/* A cell for every measure, its name before `end`, and behind each the one of `others` before `other`, unless that is
+/* A cell for every measure, and for the chances of `order` unless that is NULL, its name before `end`, and behind each the one of `others` before `other`, unless that is
  * NULL. Values NULL: empty ones. */
-void put_measures(json_t *o, const char *end, const double values[], const char *other, const double others[]);
+void put_measures(json_t *o, const MeasureOrder *order, const char *end, const double values[], const char *other,
+                  const double others[]);
 
 /* error: likely and bound of every measure that has one (analysis/estimate.h), likely (N_MEASURES) given;
  * estimated_error: the bound. */
 void put_errors(json_t *o, const double likely[], const double sd[]);
 
 /* replicates, failed, mean {}, sd {} */
-json_t *json_replicates(const ReplicateSummary *r);
+json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r);
 
 /* Cells of a row: records, replicates of each, rule, spread, then mean and standard deviation of every measure. NULL:
  * all empty. */
-void put_replicates(json_t *row, const ReplicateSummary *r);
+void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r);
 
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling; lines of what
  * was done to the samples and of what does not fit, where there is any. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
-/* A simulation: label, objectives with their likely errors and standard deviations (N_MEASURES; analysis/estimate.h) or
- * NULL, impacts, and a note where it failed or left the contact law. Returns its row. */
+/* A simulation: label, objectives with their likely errors and standard deviations, of gaps 1 um off (N_MEASURES;
+ * analysis/estimate.h), or NULL, impacts, and a note where it failed or left the contact law. Returns its row. */
 json_t *figures_result(json_t *table, const char *label, const MeasureOrder *order, const SimResult *r,
                        const double error[], const double sd[]);
 
@@ -64,7 +65,7 @@ enum { NOTE_MAX = 200 };
 /* Of a foundation that lifts (sim/result.h), in text; returns it. */
 const char *uplift_words(const SimResult *r, char text[NOTE_MAX]);
 
-/* A row of means and standard deviations of the objectives; without them where a replicate failed. error: likely ones
+/* A row of means and standard deviations of the objectives, under one replicate of several records standard errors; without them where a replicate failed. error: likely ones
  * of the integration (N_MEASURES), which every replicate has; NULL: not known. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[]);
 

@@ -53,6 +53,9 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
                             other->bound);
         if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
             return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
+        if (l->sign > 0 && l->bound >= 1 && schema->order.of[l->result] >= MEASURES_LISTED)
+            return bad_data(err, "search.limits: %s<=%g: no probability is above 1; give less than 1", c->name,
+                            l->bound);
         if (!other && l->sign * c->sense < 0)
             return bad_data(
                 err,

@@ -146,7 +146,7 @@ void measures_chances(const MeasureOrder *order, SimResult *r)
 }
 
 /* "p(NAME>NUMBER)" to *k, a measure of the order; another text says so. */
-static Status take_chance(MeasureOrder *o, const char *text, int *k, Err *err)
+static Status take_chance(MeasureOrder *o, const char *key, const char *text, int *k, Err *err)
 {
     Chance c = {0};
     size_t length = 0;
@@ -158,13 +158,14 @@ static Status take_chance(MeasureOrder *o, const char *text, int *k, Err *err)
     c.of = relation ? find(name, (size_t)(relation - name)) : MEASURES_LISTED;
     c.bound = relation ? strtod(relation + 1, &end) : NAN;
     if (c.of == MEASURES_LISTED || end == relation + 1 || strcmp(end, ")") != 0 || !isfinite(c.bound))
-        return bad_data(err, "search.objectives or search.limits: '%.60s' is no p(NAME>NUMBER) with a column as NAME",
-                        text);
+        return bad_data(err, "%s: '%.60s' is no p(NAME>NUMBER) with a column as NAME", key, text);
+    if (c.bound < 0 || (c.bound == 0 && *relation == '<'))
+        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c.name);
     c.sign = *relation == '>' ? 1 : -1;
     for (*k = 0; *k < CHANCES_MAX && o->chance[*k].name[0] && strcmp(o->chance[*k].name, c.name) != 0;)
         ++*k;
     if (*k == CHANCES_MAX)
-        return bad_data(err, "search.objectives and search.limits: more than %d probabilities", CHANCES_MAX);
+        return bad_data(err, "%s: with those of search.objectives more than %d probabilities", key, CHANCES_MAX);
     o->chance[*k] = c;
     o->judged |= (MeasureSet)1 << c.of;
     *k += MEASURES_LISTED;
@@ -189,7 +190,7 @@ static Status take_objective(MeasureOrder *o, const char *name, Err *err)
     for (int i = 0; i < MEASURES_LISTED; i++)
         names[i] = MEASURES[i].name;
     if (is_chance(name))
-        TRY(take_chance(o, name, &k, err));
+        TRY(take_chance(o, "search.objectives", name, &k, err));
     if (k == MEASURES_LISTED && !is_chance(name))
         return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, MEASURES_LISTED);
     if (o->objectives >> k & 1)
@@ -209,7 +210,7 @@ static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
         int k = find(text, n);
         text[n] = 0;
         if (is_chance(text))
-            TRY(take_chance(o, text, &k, err));
+            TRY(take_chance(o, "search.limits", text, &k, err));
         o->limited |= k == MEASURES_LISTED && !is_chance(text) ? 0 : (MeasureSet)1 << k;
     }
     return STATUS_OK;

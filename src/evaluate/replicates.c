@@ -174,9 +174,10 @@ void replicates_errors(const ReplicatePlan *plan, const void *parts, size_t size
             squares[k] += (value - out->mean[k]) * (value - out->mean[k]);
         }
     }
-    for (int k = 0; k < N_MEASURES; k++)
-        out->error[k] =
-            plan->n_records > 1 ? sqrt(fmax(squares[k] - sum[k] * sum[k] / BOOTSTRAP, 0) / (BOOTSTRAP - 1)) : NAN;
+    for (int k = 0; k < N_MEASURES; k++) {
+        const double square = (squares[k] - sum[k] * sum[k] / BOOTSTRAP) / (BOOTSTRAP - 1);
+        out->error[k] = plan->n_records > 1 ? sqrt(square < 0 ? 0 : square) : NAN;
+    }
 }
 
 void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
@@ -185,7 +186,7 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
     const int is_mean = plan->rule == ROBUST_WORST && plan->n_records == 1;
     Sample sample = {.plan = plan, .parts = parts, .size = size};
     *out = (ReplicateSummary){.rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
-                              .spread = plan->spread,
+                              .spread = plan->n_records > 1 && plan->rule > ROBUST_MEAN ? "over records" : plan->spread,
                               .n_records = plan->n_records,
                               .n_replicates = plan->n_replicates};
     for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {

@@ -177,7 +177,7 @@ static Status make_of_table(Motion *m, const char *source, int k, Err *err)
 
 Status builtin_motion(Motion *m, const char *source, Err *err)
 {
-    static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
+    static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD) SUITE_SOURCE};
     const size_t of_suite = number_in_suite(source);
     int k = 0;
     while (k < N_MOTIONS && strcmp(source, NAMES[k]) != 0)
@@ -187,7 +187,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
         return bad_data(err, "motion.record: %s is a suite of motion.records; its motions are %s-01 to -%02d", source,
                         source, SUITE_MOTIONS);
     if (k == N_MOTIONS && of_suite == 0)
-        return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, k);
+        return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, k + 1);
     TRY(of_suite > 0 ? synthetic_motion(m, of_suite - 1, err) : make_of_table(m, source, k, err));
     m->is_corrected = of_suite > 0; /* its ground ends where it began */
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);

@@ -28,19 +28,31 @@ Status source_read(const char *text, Source *out, Err *err)
 {
     const size_t length = source_path_length(text);
     char words[OPTION_TEXT_MAX], *rest = words, *end;
+    unsigned seen = 0;
     *out = (Source){.factor = 1};
     snprintf(out->path, sizeof out->path, "%.*s", (int)length, text);
+    const char *last = strrchr(out->path, ' '); /* of a path that is there, or of a misspelt word behind one */
+    if (last && strchr(last, '=') && access(out->path, F_OK) != 0)
+        return bad_data(err, "%.*s: '%s' is neither channel=NAME nor factor=NUMBER", (int)(last - out->path), out->path,
+                        last + 1);
     snprintf(words, sizeof words, "%s", text + length);
     for (char *word; (word = strsep(&rest, " \t"));) {
         const char *value = strchr(word, '=');
-        if (strncmp(word, CHANNEL + 1, sizeof CHANNEL - 2) == 0 && strlen(value) > 1)
-            snprintf(out->channel, sizeof out->channel, "%s", value + 1);
-        else if (strncmp(word, FACTOR + 1, sizeof FACTOR - 2) == 0) {
-            out->factor = strtod(value + 1, &end);
-            if (end == value + 1 || *end || !(out->factor > 0 && isfinite(out->factor)))
-                return bad_data(err, "%s: '%s': a factor is a number above 0", out->path, word);
-        } else if (*word)
+        const int is_factor = strncmp(word, FACTOR + 1, sizeof FACTOR - 2) == 0;
+        if (!*word)
+            continue;
+        if (!is_factor && (strncmp(word, CHANNEL + 1, sizeof CHANNEL - 2) != 0 || strlen(value) < 2))
             return bad_data(err, "%s: '%s' is neither channel=NAME nor factor=NUMBER", out->path, word);
+        if (seen >> is_factor & 1)
+            return bad_data(err, "%s: '%s': give it once", out->path, word);
+        seen |= 1U << is_factor;
+        if (!is_factor) {
+            snprintf(out->channel, sizeof out->channel, "%s", value + 1);
+            continue;
+        }
+        out->factor = strtod(value + 1, &end);
+        if (end == value + 1 || *end || !(out->factor > 0 && isfinite(out->factor)))
+            return bad_data(err, "%s: '%s': a factor is a number above 0", out->path, word);
     }
     return STATUS_OK;
 }

@@ -455,6 +455,9 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
 {
     char copy[OPTION_TEXT_MAX], *rest = copy;
     double shares[SHARES_MAX] = {0};
+    unsigned seen = 0;
+    if (!value[0])
+        return bad_data(err, "%s: is empty", o->key);
     snprintf(copy, sizeof copy, "%s", strcmp(value, "none") == 0 ? "" : value);
     for (char *item; (item = strsep(&rest, " ,"));) {
         char *equals = strchr(item, '=');
@@ -466,6 +469,9 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
         double number;
         if (i < 0)
             return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item, o->words);
+        if (seen >> i & 1)
+            return bad_data(err, "%s: %s stands there twice", o->key, item);
+        seen |= 1U << i;
         TRY(parse_number(o, equals + 1, &number, err));
         shares[i] = number;
     }
