@@ -147,6 +147,9 @@ class Search:
         upper = np.ascontiguousarray(upper, dtype=np.float64).ravel()
         if lower.size != upper.size:
             raise ValueError(f"lower has {lower.size} numbers, upper {upper.size}")
+        for what, number in (("objectives", objectives), ("constraints", constraints)):
+            if not isinstance(number, (int, np.integer)) or number < (what == "objectives"):
+                raise ValueError(f"{what} is {number!r}, wanted a whole number of {int(what == 'objectives')} or more")
         start = None if start is None else _matrix("start", start, lower.size)
         settings = _list(_assignments("search", {"seed": seed, "max_evals": evaluations, **settings}))
         options = _Options(ctypes.sizeof(_Options), lower.size, objectives, constraints, _pointer(lower),
@@ -316,12 +319,12 @@ class Result:
 
     def history(self, every=0.0):
         """The same response over time, simulated once more: a Result of t_s (n,), floor_m, accel_g, core_m, contact_n
-        (n, floors) and energies. every: seconds between rows at most; 0: the step of the motion."""
+        (n, floors) and energies. every: seconds between rows at most; None or 0: the step of the motion."""
         if self._scene is None:
             raise ValueError("this result is no response")
         kind, x = self._question
         return self._scene._ask("imtet_scene_history", kind, _pointer(x), 0 if x is None else x.size,
-                                ctypes.c_double(every))
+                                ctypes.c_double(every or 0))
 
 
 class Scene:
@@ -421,7 +424,7 @@ class Run:
     def __init__(self, path):
         name = os.path.join(path, "run.sqlite")
         if not os.path.exists(name):
-            raise FileNotFoundError(f"{path}: no run is there (run.sqlite)")
+            raise FileNotFoundError(f"{path}: " + ("no run is there (run.sqlite)" if os.path.isdir(path) else "there is no such folder"))
         db = sqlite3.connect(f"file:{os.path.abspath(name)}?mode=ro", uri=True)
         try:
             self._read(db)
@@ -474,6 +477,8 @@ class Run:
 
     def design(self, number):
         """Row of the design of that id."""
+        if not isinstance(number, (int, np.integer)):
+            raise KeyError(f"{number!r} is no id, a whole number of run.designs.id or run.front.id")
         rows = self.designs[self.designs.id == number]
         if len(rows) == 0:
             raise KeyError(f"no design has the id {number}")

@@ -52,7 +52,7 @@ static Status take_weights(const Choice *c, const char *list, double weights[], 
     return weights_check(&c->run->schema, "--weights", weights, err);
 }
 
-/* NAN where nothing is wished for. */
+/* NAN where the point has no value. */
 static Status take_reference(const Choice *c, const char *list, double reference[], Err *err)
 {
     for (size_t k = 0; k < c->run->schema.n_obj; k++)
@@ -70,7 +70,7 @@ static double weighted_cost(const Choice *c, size_t row, const double weights[])
     return sum;
 }
 
-/* To a point in natural signs, NAN where nothing is wished for; NULL: the ideal one. */
+/* To a point in natural signs, NAN where the point has no value; NULL: the ideal one. */
 static double distance_cost(const Choice *c, size_t row, const double point[])
 {
     double sum = 0;

@@ -134,6 +134,10 @@ class Searching(unittest.TestCase):
             search(populaton=3)
         with self.assertRaisesRegex(imtet.ImtetError, "is no saved search"):
             imtet.Search.load(__file__)
+        with self.assertRaisesRegex(ValueError, "objectives is -1, wanted a whole number of 1 or more"):
+            imtet.Search([0], [1], objectives=-1)
+        with self.assertRaisesRegex(imtet.ImtetError, "start: variable 2 of design 1 is 3.5; it is a whole number"):
+            imtet.Search([0, 0], [1, 5], 2, kinds="real,int", start=[[0.5, 3.5]])
 
     def test_a_driver_that_is_killed_at_random_moments_loses_nothing(self):
         state = os.path.join(PLACE, "killed.search")
@@ -215,8 +219,12 @@ class Simulating(unittest.TestCase):
         self.assertEqual(again.mcore_kg, row.mcore_kg)
         with self.assertRaisesRegex(KeyError, "no design has the id 100000"):
             run.design(100000)
+        with self.assertRaisesRegex(KeyError, "'knee' is no id"):
+            run.simulate("knee")
         with self.assertRaisesRegex(FileNotFoundError, "no run is there"):
             imtet.open_run(PLACE)
+        with self.assertRaisesRegex(FileNotFoundError, "nowhere: there is no such folder"):
+            imtet.open_run(os.path.join(PLACE, "nowhere"))
 
     def test_fronts_of_runs_of_one_problem_are_merged_and_of_two_refused(self):
         def run(name, *more):

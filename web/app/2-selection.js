@@ -17,7 +17,7 @@ const state = {
   theme: ownTheme,
   trials: "", // kept of the what-if, as the address has them
   weights: new Map(), // column -> weight of the choice
-  wishes: new Map(), // column -> value wished for, in the units of the eye
+  reference: new Map(), // column -> value of the reference point, in the units of the eye
   hovered: undefined, // row under the pointer
 };
 
@@ -204,7 +204,7 @@ function addressOf() {
   const all = {
     axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), percent: names([...state.percent]), in: rangesText(state.ranges),
     steps: state.steps.map(({ keep, ranges }) => (keep ? "+" : "-") + rangesText(ranges)).join(";"), x: state.x.name, y: state.y.name,
-    colour: state.colour.name, theme: state.theme, kept: state.trials, weights: pairsText(state.weights), wish: pairsText(state.wishes), mark: state.marked === undefined ? "" : String(ids[state.marked]),
+    colour: state.colour.name, theme: state.theme, kept: state.trials, weights: pairsText(state.weights), reference: pairsText(state.reference), mark: state.marked === undefined ? "" : String(ids[state.marked]),
   };
   return new URLSearchParams(Object.entries(all).filter(([key, v]) => v !== "" && v !== standard?.[key])).toString();
 }
@@ -254,7 +254,7 @@ function readAddress() {
   for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];
   state.marked = rowOf.get(+all.mark) ?? state.marked;
   state.trials = all.kept ?? "";
-  [state.weights, state.wishes] = [all.weights, all.wish].map(pairsFrom);
+  [state.weights, state.reference] = [all.weights, all.reference].map(pairsFrom);
   findScores();
   state.theme = all.theme === "dark" ? "dark" : "light";
   findKept();

@@ -119,7 +119,7 @@ function frontPart() {
   }
   const maps = grid.appendChild(element("div"));
   for (const family of families.values()) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
-  if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or wishes"));
+  if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or a reference point"));
   if (objectives.length > 1) {
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
     matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
