@@ -99,6 +99,9 @@ Status ida_levels(const char *option, const char *text, double levels[IDA_LEVELS
 /* Measure k of a run; INFINITY: it failed. */
 double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k);
 
+enum { IDA_FRACTILES = 3 }; /* that are shown */
+static const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
+
 /* Of measure k over the records at intensity l; INFINITY: too many failed. */
 double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p);
 

@@ -30,8 +30,7 @@ typedef struct {
 
 /* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
 
-enum { IDA_FRACTILES = 3, IDA_SHOWN = 3 };
-static const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
+enum { IDA_SHOWN = 3 };
 static const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
 
 static int is_spectral(const Evaluations *e)
@@ -39,28 +38,17 @@ static int is_spectral(const Evaluations *e)
     return e->level && strcmp(e->intensity, "sa_g") == 0;
 }
 
-static int n_shown(const MeasureOrder *order)
-{
-    return order->n_obj < IDA_SHOWN ? order->n_obj : IDA_SHOWN;
-}
-
 static void ida_print(const Evaluations *e, const MeasureOrder *order)
 {
-    char text[3 * FIGURE_MAX + 16], value[IDA_FRACTILES][FIGURE_MAX];
     for (int c = 0; c < N_EVALUATED; c++) {
         json_t *table = json_array();
-        const int is_one = e->n_read == 1;
-        printf(is_one ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", EVALUATION_CASES[c].word,
-               e->n_read);
+        printf(e->n_read == 1 ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n",
+               EVALUATION_CASES[c].word, e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
             json_t *row = figures_row(table);
             json_object_set_new(row, e->intensity, json_number(e->level[l]));
-            for (int i = 0; i < n_shown(order); i++) {
-                for (int f = 0; f < IDA_FRACTILES; f++)
-                    figure_text(ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]), NAN, NAN, value[f]);
-                snprintf(text, sizeof text, is_one ? "%s" : "%s (%s to %s)", value[1], value[0], value[2]);
-                json_object_set_new(row, measures_name(order, order->of[i]), json_string(text));
-            }
+            for (int i = 0; i < MIN_OF(order->n_obj, IDA_SHOWN); i++)
+                put_fractiles(row, measures_name(order, order->of[i]), e, l, c, order->of[i], 1);
         }
         figures_print(table);
         putchar('\n');
@@ -104,7 +92,7 @@ static void write_block(FILE *script, const Picture *p, size_t r, int which, int
     const Evaluations *e = p->e;
     for (size_t l = 0; l < e->n_levels; l++) {
         fprintf(script, "%.6g ", e->level[l]);
-        for (int k = 0; k < n_shown(p->order); k++)
+        for (int k = 0; k < MIN_OF(p->order->n_obj, IDA_SHOWN); k++)
             gnuplot_number(script, fractile < 0
                                        ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
                                        : ida_fractile(e, l, which, p->order->of[k], IDA_FRACTILE[fractile]));
@@ -159,8 +147,9 @@ static void write_script(FILE *script, const void *user)
             "set ylabel '%s'\n"
             "set multiplot layout 1,%d margins 0.06,0.98,0.13,0.82 spacing 0.07,0\n"
             "set key at screen 0.5,0.98 center top horizontal\n",
-            is_spectral(p->e) ? "spectral acceleration [g]" : "peak ground acceleration [g]", n_shown(p->order));
-    for (int k = 0; k < n_shown(p->order); k++)
+            is_spectral(p->e) ? "spectral acceleration [g]" : "peak ground acceleration [g]",
+            MIN_OF(p->order->n_obj, IDA_SHOWN));
+    for (int k = 0; k < MIN_OF(p->order->n_obj, IDA_SHOWN); k++)
         write_panel(script, p, k);
     fputs("unset multiplot\n", script);
 }

@@ -62,14 +62,6 @@ static Status take_options(const Args *args, Work *w, Err *err)
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-static double measure_of(const Schema *s, const Evaluation *e, MeasureId id)
-{
-    size_t k = 0;
-    while (k < s->n_obj + s->n_extra && s->order.of[k] != (int)id)
-        k++;
-    return k < s->n_obj ? e->f[k] : e->extra[k - s->n_obj];
-}
-
 static void show_path(const Work *w)
 {
     static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",
@@ -81,8 +73,9 @@ static void show_path(const Work *w)
         const Evaluation *e = &r->designs.row[i];
         if (i == SIMPLIFY_ZONES && w->config.zones == 0)
             continue;
-        snprintf(label, sizeof label, "%s: %g, %.4g", WORDS[i], measure_of(&w->run->schema, e, MEASURE_DEVICES),
-                 measure_of(&w->run->schema, e, MEASURE_COST));
+        snprintf(label, sizeof label, "%s: %g, %.4g", WORDS[i],
+                 schema_value(&w->run->schema, MEASURE_DEVICES, e->f, e->extra),
+                 schema_value(&w->run->schema, MEASURE_COST, e->f, e->extra));
         figures_design(table, label, 0, &w->run->schema, e->f, r->error[i], e->sd, e->extra);
     }
     figures_print(table);
@@ -94,16 +87,14 @@ static void show_design(const Work *w, const double x[])
 {
     const Schema *s = &w->run->schema;
     putchar('\n');
-    char word[KIND_WORD_MAX];
-    for (size_t j = 0; j < s->n_var; j++)
-        if (schema_word(s, j, x[j], word))
-            printf("%-20s %s\n", schema_variable(s, j)->name, word);
-        else if ((int)j < s->design.n_gaps && x[j] >= DESIGN_OPEN_M)
-            printf("%-20s no stop\n", schema_variable(s, j)->name);
-        else if ((int)j < s->design.n_gaps + s->design.n_walls)
-            printf("%-20s %g mm\n", schema_variable(s, j)->name, 1e3 * x[j]);
-        else
-            printf("%-20s %g\n", schema_variable(s, j)->name, x[j]);
+    char text[KIND_WORD_MAX];
+    for (size_t j = 0; j < s->n_var; j++) {
+        const int is_length = (int)j < s->design.n_gaps + s->design.n_walls;
+        if (!schema_word(s, j, x[j], text))
+            snprintf(text, sizeof text, is_length ? "%g mm" : "%g", is_length ? 1e3 * x[j] : x[j]);
+        printf("%-20s %s\n", schema_variable(s, j)->name,
+               (int)j < s->design.n_gaps && x[j] >= DESIGN_OPEN_M ? "no stop" : text);
+    }
 }
 
 /* Whether the end of the path is a design that the run does not have, and keeps what is to be kept. */

@@ -396,7 +396,7 @@ void figures_of_run(json_t *table, const Run *run, const char *label, size_t row
     const Evaluation *e = &run->table.row[row];
     double error[OBJECTIVES_MAX];
     run_likely(run, row, error);
-    figures_design(table, label, e->id, &run->schema, run_f(run, row), error, e->sd, e->extra);
+    json_t *shown = figures_design(table, label, e->id, &run->schema, run_f(run, row), error, e->sd, e->extra);
     if (run_is_unpredictable(run, row))
-        json_put(json_array_get(table, json_array_size(table) - 1), " =unpredictable");
+        json_put(shown, " =unpredictable");
 }

@@ -55,11 +55,19 @@ static void add_line(json_t *table, const char *what, const char *text)
     put_text(json_put(figures_row(table), "=%s", what), " ", text);
 }
 
-static void put_named(json_t *row, MeasureId k, double value, double error, double sd)
+enum { HEAD_MAX = 80 };
+
+static Words head_of(MeasureId k, char head[HEAD_MAX])
 {
     const Words w = words_of_measure(k);
-    char head[80];
-    snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+    snprintf(head, HEAD_MAX, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+    return w;
+}
+
+static void put_named(json_t *row, MeasureId k, double value, double error, double sd)
+{
+    char head[HEAD_MAX];
+    const Words w = head_of(k, head);
     figures_put(row, head, w.factor * value, w.factor * error, w.factor * sd);
 }
 
@@ -87,20 +95,6 @@ static void say(const Dossier *o, const char *text)
     fputs("</p>\n", o->out);
 }
 
-/* Of what the design has: "a contact 3 MN, a link or tuned mass 1 MN". */
-static void list_forces(const Dossier *o)
-{
-    static const char *const WORDS[] = {"a contact", "a link or tuned mass"};
-    const SimResult *r = &o->d->result[SCENE_IMPACT];
-    const double force_n[] = {r->forces.contact_force_max_n, r->dashpot_n};
-    const char *comma = "";
-    for (int k = 0; k < 2; k++)
-        if (force_n[k] > 0) {
-            fprintf(o->out, "%s%s <b>%.3g MN</b>", comma, WORDS[k], 1e-6 * force_n[k]);
-            comma = ", ";
-        }
-}
-
 static void put_lines(json_t *table, const char *what, const char *format, double value)
 {
     char text[64];
@@ -126,22 +120,21 @@ static void write_summary(const Dossier *o)
             program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
             o->r->run->n_front);
     add_response(table, "this design", own, d->error);
-    add_response(table, "no core", &d->result[SCENE_NO_CORE], NULL);
-    add_response(table, "rigidly connected", &d->result[SCENE_RIGID], NULL);
-    add_response(table, "tuned mass damper", &d->result[SCENE_TMD], NULL);
-    add_response(table, "viscous links", &d->result[SCENE_LINKS], NULL);
+    for (int k = 0; k < N_BASELINES; k++)
+        add_response(table, baseline_words(k), &d->baseline[k].first, NULL);
     figures_html(o->out, table);
     say(o, "Under the first record of the study. Behind the sign stands the likely error of the integration. The other "
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
     fputs("<p class=\"lines\">", o->out);
     show_verdicts(o->out, &o->r->run->schema, o->x, run_f(o->r->run, o->r->chosen), d->baseline);
-    fputs("</p>\n<p>Largest force: ", o->out);
-    list_forces(o);
-    fprintf(o->out,
-            ". Largest bending stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall. "
-            "Nothing here is designed for them.</p>\n",
-            1e-6 * own->forces.core_stress_pa, own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
+    fprintf(
+        o->out,
+        "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>, of a link or tuned mass: <b>%.3g MN</b>. Largest bending "
+        "stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall. Nothing here is "
+        "designed for them.</p>\n",
+        1e-6 * own->forces.contact_force_max_n, 1e-6 * own->dashpot_n, 1e-6 * own->forces.core_stress_pa,
+        own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
 }
 
 static void write_building(const Dossier *o)
@@ -218,9 +211,7 @@ static void list_devices(const Dossier *o, const Design *design)
     }
     figures_html(o->out, table);
     if (design->mass_kg > 0)
-        fprintf(o->out,
-                "<p>Tuned mass at the roof: %.4g t, %.3g Hz, damping %.3g; force %.3g MN, stroke %.3g mm.</p>\n",
-                1e-3 * design->mass_kg, design->mass_hz, design->mass_damping, 1e-6 * r->device[FLOORS_MAX].force,
+        fprintf(o->out, "<p>Tuned mass: force %.3g MN, stroke %.3g mm.</p>\n", 1e-6 * r->device[FLOORS_MAX].force,
                 1e3 * r->device[FLOORS_MAX].stroke);
 }
 
@@ -344,12 +335,11 @@ static void write_demand(const Dossier *o)
     json_t *table = json_array();
     heading(o, "Forces and stresses, with their limits");
     for (size_t i = 0; i < N_OF(DEMAND); i++) {
-        const Words w = words_of_measure(DEMAND[i]);
+        char head[HEAD_MAX];
+        const Words w = head_of(DEMAND[i], head);
         const double value = measure_value(r, DEMAND[i]);
-        char head[80];
         if (!isfinite(value) || (value <= 0 && DEMAND[i] != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
             continue;
-        snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
         json_t *row = json_put(figures_row(table), "=%s", head);
         figures_put(row, "value", w.factor * value, w.factor * o->d->error[DEMAND[i]], NAN);
         put_limit(o, row, DEMAND[i], value);
@@ -362,11 +352,12 @@ static void write_demand(const Dossier *o)
         if (r->closings[j] == 0 && o->d->gap_m[j] < INFINITY)
             fprintf(o->out, "%s%d", n++ ? ", " : "", j + 1);
     fprintf(o->out, "%s.</p>\n<figure>", n ? "" : "none");
-    const int first = f->contact_force_max_n > 0 ? 0 : SIDES, end = (int)N_OF(panels) - !f->stress_known;
-    if (r->forces_known && first < end)
-        draw_profiles(o->out, o->d, NAMES, end - first, panels + first);
-    fprintf(o->out, "<figcaption>%sargest bending stress by storey.</figcaption></figure>\n",
-            first ? "L" : "Largest forces of the contacts by side of the core, l");
+    const size_t first = f->contact_force_max_n > 0 ? 0 : SIDES;
+    if (r->forces_known)
+        draw_profiles(o->out, o->d, NAMES, N_OF(panels) - !f->stress_known - first, panels + first);
+    fputs("<figcaption>Largest forces of contacts by side of the core, where there are any; largest bending stress by "
+          "storey.</figcaption></figure>\n",
+          o->out);
 }
 
 static void write_ladder(const Dossier *o)
@@ -422,12 +413,9 @@ static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exc
     for (size_t k = 0; k < N_OF(SHOWN); k++)
         for (size_t c = 0; c < N_OF(CASES); c++) {
             const Words w = words_of_measure(SHOWN[k]);
-            char head[96], cell[3][FIGURE_MAX];
+            char head[96];
             snprintf(head, sizeof head, "%s [%s]%s", w.title, w.unit, c ? ", no core" : "");
-            for (int q = 0; q < 3; q++)
-                snprintf(cell[q], sizeof cell[q], q == 1 ? "%.3g" : "%.2g",
-                         w.factor * ida_fractile(e, l, CASES[c], SHOWN[k], (const double[]){0.16, 0.5, 0.84}[q]));
-            json_object_set_new(row, head, json_sprintf("%s (%s to %s)", cell[1], cell[0], cell[2]));
+            put_fractiles(row, head, e, l, CASES[c], SHOWN[k], w.factor);
         }
     for (size_t r = 0; r < e->n_records; r++)
         *exceeded += e->record[r].readable == STATUS_OK &&
@@ -558,9 +546,10 @@ static void write_not_covered(const Dossier *o)
                 ? ", and the bare wall would buckle: stiffeners are needed, "
                   "and their mass is missing here and in every objective"
                 : "");
-    fputs("<li>Connections, at the largest force: ", o->out);
-    list_forces(o);
-    fputs(". Stops, bearings, floors as diaphragms, local stresses and fatigue are not designed.</li>\n", o->out);
+    fputs("<li>Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
+          "floors "
+          "as diaphragms, local stresses and fatigue are not designed.</li>\n",
+          o->out);
     if (strcmp(s->core.foundation, "fixed") == 0)
         fprintf(o->out,
                 "<li>The core is clamped: its foundation bears %.3g MN and %.4g MN m without giving way.</li>\n",

@@ -433,14 +433,19 @@ void put_errors(json_t *o, const double likely[], const double sd[])
              json_of("likely=%p bound=%p sd_gaps_1_um=%p", json_known(likely, 1), bound, json_known(sd, 1)));
 }
 
+static json_t *json_measures(const MeasureOrder *order, const double values[])
+{
+    json_t *o = json_object();
+    put_measures(o, order, "", values, NULL, NULL);
+    return o;
+}
+
 json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r)
 {
-    json_t *mean = json_object(), *sd = json_object(), *error = json_object();
-    put_measures(error, order, "", r->n_failed ? NULL : r->error, NULL, NULL);
-    put_measures(mean, order, "", r->n_failed ? NULL : r->mean, NULL, NULL);
-    put_measures(sd, order, "", r->n_failed ? NULL : r->sd, NULL, NULL);
+    const int known = !r->n_failed;
     return json_of("n=%ld records=%ld failed=%ld spread=%s rule=%s mean=%p sd=%p standard_error=%p", r->n_replicates,
-                   r->n_records, r->n_failed, r->spread, r->rule, mean, sd, error);
+                   r->n_records, r->n_failed, r->spread, r->rule, json_measures(order, known ? r->mean : NULL),
+                   json_measures(order, known ? r->sd : NULL), json_measures(order, known ? r->error : NULL));
 }
 
 void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r)
@@ -451,6 +456,17 @@ void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSumma
              r ? json_integer((json_int_t)r->n_replicates) : json_null(), r ? json_string(r->rule) : json_null(),
              r ? json_string(r->spread) : json_null());
     put_measures(row, order, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
+}
+
+void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, EvaluatedCase c, int k,
+                   double factor)
+{
+    char value[IDA_FRACTILES][FIGURE_MAX];
+    for (int f = 0; f < IDA_FRACTILES; f++)
+        figure_text(factor * ida_fractile(e, level, c, k, IDA_FRACTILE[f]), NAN, NAN, value[f]);
+    json_object_set_new(row, column,
+                        e->n_read == 1 ? json_string(value[1])
+                                       : json_sprintf("%s (%s to %s)", value[1], value[0], value[2]));
 }
 
 void show_motion(FILE *out, const Motion *m, double duration_s)
@@ -537,8 +553,8 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
     figures_put(row, "impacts", r->mean[MEASURE_IMPACTS], NAN, by_replicates ? sd[MEASURE_IMPACTS] : NAN);
 }
 
-void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
-                    const double error[], const double sd[], const double extra[])
+json_t *figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
+                       const double error[], const double sd[], const double extra[])
 {
     json_t *row = json_put(figures_row(table), "=%s design=%p", label, id > 0 ? json_integer(id) : json_string("-"));
     for (size_t k = 0; k < schema->n_obj; k++)
@@ -546,6 +562,7 @@ void figures_design(json_t *table, const char *label, long id, const Schema *sch
     for (size_t k = 0; k < schema->n_limited; k++)
         figures_put(row, schema_extra(schema, schema->limited[k])->name, extra ? extra[schema->limited[k]] : NAN, NAN,
                     NAN);
+    return row;
 }
 
 json_t *json_review(const FrontReview *r)
@@ -591,11 +608,10 @@ void show_verdicts(FILE *out, const Schema *schema, const double x[], const doub
     char device[DEVICE_TEXT_MAX], has[PROTECTION_MAX];
     Design design;
     design_of(&schema->design, x, &design);
-    design_protection(&schema->design, &design, has);
     for (int k = 0; k < N_BASELINES; k++) {
         baseline_device_text(k, &baseline[k].device, device);
         fprintf(out, "against %s%s%s%s: with %s ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "",
-                has);
+                design_protection(&schema->design, &design, has));
         print_better(out, "better in ", schema, 1, natural, &baseline[k]);
         print_better(out, "; worse in ", schema, -1, natural, &baseline[k]);
         fputc('\n', out);

@@ -9,6 +9,7 @@
 #define IMTET_CMD_SHOW_H
 
 #include "analysis/baselines.h"
+#include "analysis/evaluations.h"
 #include "base/json.h"
 #include "evaluate/schema.h"
 #include "scene/design.h"
@@ -35,8 +36,8 @@ Status show_json(json_t *all, Err *err);
 
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r);
 
-/* A cell for every measure, and for the chances of `order` unless that is NULL, its name before `end`, and behind each the one of `others` before `other`, unless that is
- * NULL. Values NULL: empty ones. */
+/* A cell for every measure, and for the chances of `order` unless that is NULL, its name before `end`, and behind each
+ * the one of `others` before `other`, unless that is NULL. Values NULL: empty ones. */
 void put_measures(json_t *o, const MeasureOrder *order, const char *end, const double values[], const char *other,
                   const double others[]);
 
@@ -50,6 +51,10 @@ json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r);
 /* Cells of a row: records, replicates of each, rule, spread, then mean and standard deviation of every measure. NULL:
  * all empty. */
 void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r);
+
+/* "median (16 % to 84 %)" of measure k at an intensity, times factor; of one record its value. */
+void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, EvaluatedCase c, int k,
+                   double factor);
 
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling; lines of what
  * was done to the samples and of what does not fit, where there is any. */
@@ -65,14 +70,15 @@ enum { NOTE_MAX = 200 };
 /* Of a foundation that lifts (sim/result.h), in text; returns it. */
 const char *uplift_words(const SimResult *r, char text[NOTE_MAX]);
 
-/* A row of means and standard deviations of the objectives, under one replicate of several records standard errors; without them where a replicate failed. error: likely ones
- * of the integration (N_MEASURES), which every replicate has; NULL: not known. */
+/* A row of means and standard deviations of the objectives (standard errors, where every one of several records has one
+ * replicate); without them where a replicate failed. error: likely ones of the integration (N_MEASURES), which every
+ * replicate has; NULL: not known. */
 void figures_replicates(json_t *table, const MeasureOrder *order, const ReplicateSummary *r, const double error[]);
 
 /* A design: label, number (0: none), objectives with their likely errors and standard deviations (n_obj) or NULL, and
- * what is limited of the further results (n_extra) or NULL. */
-void figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
-                    const double error[], const double sd[], const double extra[]);
+ * what is limited of the further results (n_extra) or NULL. Returns its row. */
+json_t *figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
+                       const double error[], const double sd[], const double extra[]);
 
 /* Of a front: designs beyond the contact law; by floor those whose gap is on a bound of the search; floors whose gap
  * closes in none of the designs that were simulated again, where some were. */

@@ -81,8 +81,7 @@ static Status describe(Adapter *a, const Settings *s, Err *err)
 {
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
-    if ((a->schema.order.objectives >> MEASURE_DEVICES & 1) && a->schema.design.n_choices == 0 &&
-        s->design.gap_m.at[1] < DESIGN_OPEN_M)
+    if ((a->schema.order.objectives >> MEASURE_DEVICES & 1) && a->schema.design.n_choices == 0)
         return bad_data(err, "search.objectives: all designs have the same devices: set design.devices");
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
     TRY(aspirations_read(a->aspire, &a->schema, s->search.aspire, err));

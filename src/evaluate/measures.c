@@ -191,7 +191,7 @@ static Status take_objective(MeasureOrder *o, const char *name, Err *err)
         names[i] = MEASURES[i].name;
     if (is_chance(name))
         TRY(take_chance(o, "search.objectives", name, &k, err));
-    if (k == MEASURES_LISTED && !is_chance(name))
+    else if (k == MEASURES_LISTED)
         return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, MEASURES_LISTED);
     if (o->objectives >> k & 1)
         return bad_data(err, "search.objectives: %s stands there twice", name);
@@ -211,7 +211,9 @@ static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
         text[n] = 0;
         if (is_chance(text))
             TRY(take_chance(o, "search.limits", text, &k, err));
-        o->limited |= k == MEASURES_LISTED && !is_chance(text) ? 0 : (MeasureSet)1 << k;
+        else if (k == MEASURES_LISTED)
+            continue;
+        o->limited |= (MeasureSet)1 << k;
     }
     return STATUS_OK;
 }

@@ -170,6 +170,14 @@ Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, d
     return status;
 }
 
+double schema_value(const Schema *schema, int m, const double f[], const double extra[])
+{
+    for (size_t k = 0; k < schema->n_obj + schema->n_extra; k++)
+        if (schema->order.of[k] == m)
+            return k < schema->n_obj ? f[k] : extra[k - schema->n_obj];
+    return NAN;
+}
+
 size_t schema_find_objective(const Schema *schema, const char *name)
 {
     size_t k = 0;

@@ -45,6 +45,9 @@ const Column *schema_variable(const Schema *schema, size_t j);
 const Column *schema_objective(const Schema *schema, size_t k);
 const Column *schema_extra(const Schema *schema, size_t k);
 
+/* Measure m of a design with those objectives and further results; NAN: it has none. */
+double schema_value(const Schema *schema, int m, const double f[], const double extra[]);
+
 /* The word that stands for x where variable j is a choice; else 0. */
 int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MAX]);
 

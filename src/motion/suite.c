@@ -11,14 +11,16 @@
 
 /* -- a source ------------------------------------------------------------------------------------------------------ */
 
-static const char CHANNEL[] = " channel=", FACTOR[] = " factor=";
+enum { CHANNEL, FACTOR, N_WORDS };
+static const char *const WORDS[N_WORDS] = {[CHANNEL] = " channel=", [FACTOR] = " factor="};
 
 size_t source_path_length(const char *text)
 {
     size_t n = strlen(text);
-    const char *channel = strstr(text, CHANNEL), *factor = strstr(text, FACTOR);
-    n = channel ? MIN_OF(n, (size_t)(channel - text)) : n;
-    n = factor ? MIN_OF(n, (size_t)(factor - text)) : n;
+    for (int k = 0; k < N_WORDS; k++) {
+        const char *at = strstr(text, WORDS[k]);
+        n = at ? MIN_OF(n, (size_t)(at - text)) : n;
+    }
     while (n > 1 && text[n - 1] == ' ')
         n--;
     return n;
@@ -27,7 +29,7 @@ size_t source_path_length(const char *text)
 Status source_read(const char *text, Source *out, Err *err)
 {
     const size_t length = source_path_length(text);
-    char words[OPTION_TEXT_MAX], *rest = words, *end;
+    char words[OPTION_TEXT_MAX], *rest = words, *end = words;
     unsigned seen = 0;
     *out = (Source){.factor = 1};
     snprintf(out->path, sizeof out->path, "%.*s", (int)length, text);
@@ -37,21 +39,22 @@ Status source_read(const char *text, Source *out, Err *err)
                         last + 1);
     snprintf(words, sizeof words, "%s", text + length);
     for (char *word; (word = strsep(&rest, " \t"));) {
+        int k = 0;
+        while (k < N_WORDS && strncmp(word, WORDS[k] + 1, strlen(WORDS[k]) - 1) != 0)
+            k++;
         const char *value = strchr(word, '=');
-        const int is_factor = strncmp(word, FACTOR + 1, sizeof FACTOR - 2) == 0;
         if (!*word)
             continue;
-        if (!is_factor && (strncmp(word, CHANNEL + 1, sizeof CHANNEL - 2) != 0 || strlen(value) < 2))
+        if (k == N_WORDS || !value[1])
             return bad_data(err, "%s: '%s' is neither channel=NAME nor factor=NUMBER", out->path, word);
-        if (seen >> is_factor & 1)
+        if (seen >> k & 1)
             return bad_data(err, "%s: '%s': give it once", out->path, word);
-        seen |= 1U << is_factor;
-        if (!is_factor) {
+        seen |= 1U << k;
+        if (k == CHANNEL)
             snprintf(out->channel, sizeof out->channel, "%s", value + 1);
-            continue;
-        }
-        out->factor = strtod(value + 1, &end);
-        if (end == value + 1 || *end || !(out->factor > 0 && isfinite(out->factor)))
+        else
+            out->factor = strtod(value + 1, &end);
+        if (k == FACTOR && (*end || !(out->factor > 0 && isfinite(out->factor))))
             return bad_data(err, "%s: '%s': a factor is a number above 0", out->path, word);
     }
     return STATUS_OK;

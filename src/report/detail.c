@@ -49,7 +49,8 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     d->gap_sides = scene_design(w->scene)->gap_sides;
     for (int j = 0; j < n; j++) {
         for (int s = 0; s < SIDES; s++)
-            d->gap_side_m[s][j] = design.gap[s][j] = design.gap[s][j] < DESIGN_OPEN_M ? design.gap[s][j] : INFINITY;
+            if ((d->gap_side_m[s][j] = design.gap[s][j]) >= DESIGN_OPEN_M)
+                d->gap_side_m[s][j] = design.gap[s][j] = INFINITY;
         d->storey_m[j] = scene_building(w->scene)->storey_m[j];
         d->gap_m[j] = design_gap(&design, j);
         d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);

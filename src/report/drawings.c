@@ -51,7 +51,7 @@ static void label_floor(FILE *out, const Design *design, const Detail *d, int j,
 {
     const double gap = d->gap_m[j];
     fprintf(out, "<text x=\"8\" y=\"%.1f\">%d</text><text x=\"460\" y=\"%.1f\">", y + 4, j + 1, y + 4);
-    if (isinf(d->gap_side_m[0][j]) && isinf(d->gap_side_m[1][j]))
+    if (isinf(gap))
         fputs("no stop", out);
     else if (d->gap_sides == GAPS_EACH)
         fprintf(out, "%.1f | %.1f mm", 1e3 * d->gap_side_m[1][j], 1e3 * d->gap_side_m[0][j]);

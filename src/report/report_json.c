@@ -262,12 +262,11 @@ static json_t *json_of_beyond_law(const Report *r)
 {
     const Run *run = r->run;
     json_t *ids = json_array();
-    for (size_t e = 0; r->has_detail && e < run->schema.n_extra; e++)
-        for (size_t i = 0; i < r->n_shown; i++) {
-            const Evaluation *row = &run->table.row[r->shown[i]];
-            if (run->schema.order.of[run->schema.n_obj + e] == MEASURE_BEYOND_LAW && row->extra[e] > 0)
-                json_array_append_new(ids, json_integer(row->id));
-        }
+    for (size_t i = 0; r->has_detail && i < r->n_shown; i++) {
+        const Evaluation *row = &run->table.row[r->shown[i]];
+        if (schema_value(&run->schema, MEASURE_BEYOND_LAW, row->f, row->extra) > 0)
+            json_array_append_new(ids, json_integer(row->id));
+    }
     return ids;
 }
 
@@ -297,16 +296,6 @@ json_t *growth_json(const Run *run)
     return json_of("simulated=%p volume=%p error=%p", simulated, volume, error);
 }
 
-/* What the run knows of measure m of a design; NAN: nothing. */
-static double stored(const Run *run, size_t row, int m)
-{
-    const Schema *s = &run->schema;
-    for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
-        if (s->order.of[k] == m)
-            return k < s->n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - s->n_obj];
-    return NAN;
-}
-
 /* The best designs of each objective, by what they have to bear. */
 static json_t *json_of_named(const Report *r)
 {
@@ -315,7 +304,8 @@ static json_t *json_of_named(const Report *r)
         const size_t row = run_best(r->run, k);
         double values[N_LOADS];
         for (int i = 0; i < N_LOADS; i++)
-            values[i] = words_of_measure(LOADS[i]).factor * stored(r->run, row, LOADS[i]);
+            values[i] = words_of_measure(LOADS[i]).factor *
+                        schema_value(&r->run->schema, LOADS[i], run_f(r->run, row), r->run->table.row[row].extra);
         json_array_append_new(rows,
                               json_of("id=%ld values=%p", r->run->table.row[row].id, json_numbers(N_LOADS, values)));
     }

@@ -311,15 +311,15 @@ int design_put_mass(const DesignSpace *s, double kg, double hz, double damping, 
 
 const char *design_protection(const DesignSpace *s, const Design *d, char text[PROTECTION_MAX])
 {
-    const char *const WORDS[] = {"impacts", "links", "a tuned mass"};
-    int has[] = {0, 0, d->mass_kg > 0}, n = 0;
+    int stops = 0, links = 0;
     for (int j = 0; j < s->n_floors; j++) {
-        has[0] |= design_gap(d, j) < DESIGN_OPEN_M;
-        has[1] |= d->link[j] > 0;
+        stops |= design_gap(d, j) < DESIGN_OPEN_M;
+        links |= d->link[j] > 0;
     }
-    snprintf(text, PROTECTION_MAX, "the core alone");
-    for (int i = 0; i < (int)N_OF(WORDS); i++)
-        n += has[i] ? snprintf(text + n, PROTECTION_MAX - (size_t)n, "%s%s", n ? " and " : "", WORDS[i]) : 0;
+    const char *mass = d->mass_kg > 0 ? "a tuned mass" : "";
+    snprintf(text, PROTECTION_MAX, "%s%s%s%s%s", stops ? "impacts" : "", stops && links ? " and " : "",
+             links ? "links" : "", stops + links && *mass ? " and " : "",
+             stops + links || *mass ? mass : "the core alone");
     return text;
 }
 

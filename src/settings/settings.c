@@ -456,7 +456,7 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
     char copy[OPTION_TEXT_MAX], *rest = copy;
     double shares[SHARES_MAX] = {0};
     unsigned seen = 0;
-    if (!value[0])
+    if (!*value)
         return bad_data(err, "%s: is empty", o->key);
     snprintf(copy, sizeof copy, "%s", strcmp(value, "none") == 0 ? "" : value);
     for (char *item; (item = strsep(&rest, " ,"));) {

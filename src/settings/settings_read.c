@@ -307,10 +307,11 @@ void settings_place(const char *path, SettingGivenFn is_given, const void *user,
         const int by_key = begins(was.text, key, ":");
         if (!r.seen[i].line || !(by_key || strcmp(named.key, key) == 0) || is_given(user, key))
             continue;
-        const int has_none = was.code == STATUS_MISSING && strcmp(key, "motion.record") == 0;
         fail_sub(err, was.code, was.sub, "%s:%d:%d: %s%s%s%s", path, r.seen[i].line, r.seen[i].column,
                  by_key ? "" : key, by_key ? "" : ": ", was.text,
-                 has_none ? "; give one by --record FILE or take --record builtin:kobe-like" : "");
+                 was.code == STATUS_MISSING && strcmp(key, "motion.record") == 0
+                     ? "; give one by --record FILE or take --record builtin:kobe-like"
+                     : "");
         return;
     }
 }

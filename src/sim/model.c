@@ -149,8 +149,7 @@ void model_add_device(SimModel *model, const Device *device, int on_mass)
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result)
 {
     for (int e = 0; e < model->n_devices; e++) {
-        const int is_mass = model->has_mass && e + 1 == model->n_devices;
-        result->device[is_mass ? FLOORS_MAX : model->device[e].floor] = peak[e];
+        result->device[model->has_mass && e + 1 == model->n_devices ? FLOORS_MAX : model->device[e].floor] = peak[e];
         result->stroke_m = fmax(result->stroke_m, peak[e].stroke);
         result->dashpot_n = fmax(result->dashpot_n, peak[e].force);
     }

@@ -16,15 +16,6 @@ static int is_gap(const Run *run, size_t j)
     return run->schema.order.n_obj > 0 && strncmp(schema_variable(&run->schema, j)->name, "gap_", 4) == 0;
 }
 
-/* NAN: not known. */
-static double measure_of(const Run *run, size_t row, MeasureId id)
-{
-    size_t k = 0;
-    while (run->schema.order.of[k] != (int)id)
-        k++;
-    return run_result(run, row, k);
-}
-
 static void count_bounds(const Run *run, size_t row, FrontReview *r)
 {
     const DesignOptions *o = &run->settings->design;
@@ -46,7 +37,8 @@ FrontReview front_review(const Run *run)
     FrontReview r = {.n_front = run->n_front};
     for (size_t i = 0; i < run->n_front && run->schema.order.n_obj > 0; i++) {
         count_bounds(run, run->front[i], &r);
-        r.n_beyond += measure_of(run, run->front[i], MEASURE_BEYOND_LAW) > 0.0;
+        r.n_beyond += schema_value(&run->schema, MEASURE_BEYOND_LAW, run_f(run, run->front[i]),
+                                   run->table.row[run->front[i]].extra) > 0.0;
     }
     return r;
 }

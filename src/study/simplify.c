@@ -79,10 +79,10 @@ static void add(Simplify *s, size_t j, double value)
             x[k] = value;
 }
 
-/* ... without its device. */
-static void add_without(Simplify *s, size_t j)
+/* Of variable j where its device has gone. */
+static double gone(const Simplify *s, size_t j)
 {
-    add(s, j, none_of(s, j) >= 0 ? none_of(s, j) : DESIGN_OPEN_M);
+    return none_of(s, j) >= 0 ? none_of(s, j) : DESIGN_OPEN_M;
 }
 
 /* Above 1 where limits are violated by more than at the start. */
@@ -163,16 +163,15 @@ static Status drop_idle_stops(Simplify *s, Err *err)
     s->n = 0;
     for (size_t j = 0; j < s->n_var; j++)
         if (is_device(s, j)) {
-            add_without(s, j);
-            double *x = s->X + (s->n - 1) * s->n_var; /* alone */
-            for (size_t k = 0; k < s->n_var; k++)
-                x[k] = k == j ? x[k] : s->x[k];
+            double *x = s->X + s->n++ * s->n_var; /* alone */
+            memcpy(x, s->x, s->n_var * sizeof *x);
+            x[j] = gone(s, j);
         }
     TRY(simulate_round(s, err));
     for (size_t j = 0, i = 0; j < s->n_var; j++)
         if (is_device(s, j)) { /* design i of the round does not have it */
             if (s->ok[i] && is_same(s, s->F + i * s->n_obj))
-                s->x[j] = s->X[i * s->n_var + j];
+                s->x[j] = gone(s, j);
             i++;
         }
     return note(s, SIMPLIFY_CLOSING, err);
@@ -246,10 +245,9 @@ static void add_neighbours(Simplify *s)
             continue;
         } else if (is_wall(s, j) && c->n_plates > 0) {
             const size_t at = nearest_plate(c, s->x[j]);
-            if (at > 0)
-                add(s, j, c->plate[at - 1]);
-            if (at + 1 < c->n_plates)
-                add(s, j, c->plate[at + 1]);
+            for (size_t next = at - 1; next != at + 3; next += 2) /* before the first one it is too large */
+                if (next < c->n_plates)
+                    add(s, j, c->plate[next]);
         } else if (is_stop(s, j) && c->gap_step > 0.0) {
             const double steps = round(s->x[j] / c->gap_step);
             add(s, j, (steps + 1.0) * c->gap_step);
@@ -280,7 +278,7 @@ static Status drop_what_earns_little(Simplify *s, Err *err)
         s->n = 0;
         for (size_t j = 0; j < s->n_var; j++)
             if (is_device(s, j) && leads(s, j))
-                add_without(s, j);
+                add(s, j, gone(s, j));
         TRY(simulate_round(s, err));
         const size_t least = find_least(s, &loss);
         if (!(loss <= 1.0))
