@@ -206,8 +206,11 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     const size_t n_first = n;
     for (size_t i = 0; i < b.n_front; i++) {
         int is_twice = 0;
-        for (size_t j = 0; j < a.n_front; j++)
-            is_twice |= memcmp(run_x(&a, a.front[j]), run_x(&b, b.front[i]), 4 * sizeof(double)) == 0;
+        for (size_t j = 0, d; j < a.n_front; j++) {
+            for (d = 0; d < 4 && run_x(&a, a.front[j])[d] == run_x(&b, b.front[i])[d];)
+                d++;
+            is_twice |= d == 4;
+        }
         n += !is_twice && !is_dominated(&b, b.front[i], &a);
     }
     assert_less(0, n_first);
