@@ -149,7 +149,7 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 
 /* ---- modes ---------------------------------------------------------------------------------------------------- */
 
-static void layout(void *model, Carve *c)
+void building_model_layout(void *model, Carve *c)
 {
     BuildingModel *m = model;
     const size_t n = m->n;
@@ -166,7 +166,7 @@ static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *fro
 {
     const size_t bytes = from->n * from->n * sizeof(double);
     m->n = from->n;
-    *store = carve_all(layout, m);
+    *store = carve_all(building_model_layout, m);
     if (!*store)
         return fail_memory(err, m->n, "degrees of freedom");
     memcpy(m->K, from->K, bytes);

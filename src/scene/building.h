@@ -37,6 +37,7 @@
  * Ownership  building_load allocates, building_free releases (an empty Building is fine). Threads  read-only after. */
 #pragma once
 
+#include "base/carve.h"
 #include "base/status.h"
 #include "scene/core_beam.h"
 #include "scene/options.h"
@@ -82,6 +83,9 @@ double building_floor_mass(const Building *b, int floor);
 /* The damping ratios once more, by these options. */
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);
+
+/* Room for a BuildingModel of model->n degrees of freedom (base/carve.h). */
+void building_model_layout(void *model, Carve *c);
 
 /* K and M (m, m) of the building's model with the core rigidly connected to its floors. */
 void building_join_core(const CoreBeam *c, const BuildingModel *building, double K[], double M[]);

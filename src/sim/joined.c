@@ -1,6 +1,5 @@
 #include "sim/joined.h"
 
-#include "base/carve.h"
 #include "base/linalg.h"
 #include "scene/reduction.h"
 #include "sim/energy_balance.h"
@@ -8,16 +7,8 @@
 static void layout(void *joined, Carve *c)
 {
     Joined *j = joined;
-    BuildingModel *both = &j->building.model;
-    const size_t m = (size_t)j->m;
-    CARVE(c, both->K, m * m);
-    CARVE(c, both->M, m * m);
-    CARVE(c, both->phi, m * m);
-    CARVE(c, both->omega, m);
-    CARVE(c, both->gamma, m);
-    CARVE(c, both->zeta, m);
-    CARVE(c, both->like, m);
-    CARVE(c, j->P, (m + (size_t)j->n) * m);
+    building_model_layout(&j->building.model, c);
+    CARVE(c, j->P, (size_t)((j->m + j->n) * j->m));
 }
 
 /* Rows first.. of P: phi' M psi, of the first `size` degrees of freedom; gamma = P' (that of the part). */

@@ -41,6 +41,7 @@ static void layout_storeys(StoreyScratch *s, Carve *c, size_t modes, size_t floo
 {
     CARVE_EACH(c, floors, &s->per_yield, &s->stiff, &s->slope, &s->bend, &s->work, &s->work_next, &s->beside);
     CARVE_EACH(c, modes, &s->load, &s->bubble);
+    CARVE_EACH(c, floors * KINKS_MAX, &s->kink);
 }
 
 static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)

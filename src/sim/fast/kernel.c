@@ -345,7 +345,7 @@ static double twice_energy_about_rest(const FastWork *k)
 }
 
 /* Bouc-Wen flows at any drift: of what the drifts still move, no more than this share is left out. */
-static const double SETTLED_FLOW = 1e-3;
+static const double SETTLED_FLOW = 0.05;
 
 /* Can a storey yield once more with so much energy [J] about rest? |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
 static int storeys_may_yield(FastWork *k, double energy)

@@ -86,6 +86,9 @@ typedef struct {
     int may_rise[3];                  /* [u, drift, acceleration] may this step raise a peak? */
 } ContactScratch;
 
+/* Of the three monotone pieces of a storey's path each may have one edge and one end. */
+enum { PIECES = 3, KINKS_MAX = 2 * PIECES };
+
 /* Storeys that yield (n_pad), in a step where some may. */
 typedef struct {
     vec *per_yield, *stiff; /* [1/m]; [N/m] of what is not linear, 0: the storey stays elastic */
@@ -93,6 +96,7 @@ typedef struct {
     vec *work, *work_next;  /* [m2] int z d' dt of a storey, at both ends of the step */
     vec *beside;            /* [J] int c k p dd, less the same of the parabola of its end and mean */
     vec *load, *bubble;     /* (m_pad) modal load of their forces */
+    vec *kink;              /* (n_pad / LANES, KINKS_MAX) shares of the step where their forces bend, else 0 */
 } StoreyScratch;
 
 /* Certified free intervals: the largest that modes (m_pad) and floors (n_pad) can reach. */

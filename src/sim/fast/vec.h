@@ -238,14 +238,20 @@ INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A,
             Y[r][first + b] = sum[r][b];
 }
 
-/* All blocks, three at a time: twenty floors are three vectors of eight. */
-INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
+/* The first blocks, `wanted` of them, three at a time: twenty floors are three vectors of eight. */
+INLINE void rows_times_first(const int n_rhs, const vec *A, int blocks, int wanted, int count, const double *const X[],
+                             vec *const Y[])
 {
     int b = 0;
-    for (; b + 3 <= blocks; b += 3)
+    for (; b + 3 <= wanted; b += 3)
         rows_times_blocks(n_rhs, 3, A, blocks, b, count, X, Y);
-    for (; b < blocks; b++)
+    for (; b < wanted; b++)
         rows_times_blocks(n_rhs, 1, A, blocks, b, count, X, Y);
+}
+
+INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
+{
+    rows_times_first(n_rhs, A, blocks, blocks, count, X, Y);
 }
 
 #endif
