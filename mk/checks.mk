@@ -39,8 +39,9 @@ torture: $(PROGRAM) $(BUILD)/tests/test_torture ## kill -9 at random moments, ev
 	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/test_torture
 
 FAULTS ?= 800
-faults: $(PROGRAM) $(BUILD)/tests/test_faults ## memory and writes refused one after the other; FAULTS=800 of each kind
+faults: $(PROGRAM) $(BUILD)/tests/test_faults $(BUILD)/tests/test_store_faults ## memory and writes refused one after the other; FAULTS=800 of each kind
 	@IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/test_faults
+	@IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/test_store_faults
 
 # LLVM's OpenMP: its tool reports to ThreadSanitizer what a parallel region orders; with gcc's, ThreadSanitizer reports
 # races that are none. First a race that it must find.

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <time.h>
 #include <cmocka.h>
 
 /* The sanitized pass looks for faults of memory and arithmetic: where a test repeats the same code for accuracy's sake, it
@@ -58,6 +59,18 @@ static inline void comparison_failed(const char *what, double left, double right
 #define assert_less(left, right)        CHECK_COMPARISON(left, <, right)
 #define assert_at_most(left, right)     CHECK_COMPARISON(left, <=, right)
 #define assert_same_number(left, right) CHECK_COMPARISON(left, ==, right)
+
+static inline double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static inline void rest(double seconds)
+{
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
+}
 
 static inline void check_ok(Status status, const Err *err, const char *what, const char *file, int line)
 {

@@ -8,7 +8,6 @@
 #include <limits.h>
 #include <omp.h>
 #include <spawn.h>
-#include <time.h>
 
 #include "settings/settings.h"
 #include "store/export.h"
@@ -84,18 +83,6 @@ static inline void assert_same_run(const char *a, const char *b)
     assert_string_equal(first, second);
     free(first);
     free(second);
-}
-
-static inline double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static inline void rest(double seconds)
-{
-    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
 }
 
 /* `imtet optimize` in the background, what it says in @/said. */

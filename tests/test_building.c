@@ -793,7 +793,7 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
         char command[512];
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                 "builtin:kobe-like --set sim.duration_s=30 --set sim.accuracy=fine --set sim.engine=%s --json",
+                 "builtin:kobe-like --set sim.duration_s=24 --set sim.accuracy=fine --set sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
     }

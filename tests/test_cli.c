@@ -498,7 +498,7 @@ static void write_five_floors(double k, double m)
     write_in_place("five/M.csv", mass);
     write_in_place("five.ini", "[building]\nmodel = five\nheights_m = 4, 3\n[core]\nwidth_m = 5\n"
                                "[motion]\npga_g = 0.3\n[sim]\nduration_s = 15\n"
-                               "[search]\ninitial = 20\npopulation = 12\nmax_evals = 30\n");
+                               "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\n");
     write_in_place("five.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,t_top_m\n"
                                "0.01,0.02,0.03,0.04,0.05,0.012,0.0064\n");
 }

@@ -6,7 +6,6 @@
 #include <omp.h>
 #include <signal.h>
 #include <spawn.h>
-#include <time.h>
 
 #include "mpi/message.h"
 
@@ -24,18 +23,6 @@ static const char *program(void)
     if (!name || system("command -v mpirun >/dev/null") != 0)
         skip();
     return name;
-}
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
 }
 
 static pid_t spawn(const char *command)

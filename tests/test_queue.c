@@ -4,7 +4,6 @@
 
 #include <stdatomic.h>
 #include <string.h>
-#include <time.h>
 
 #include "base/random.h"
 #include "evaluate/queue.h"
@@ -23,11 +22,6 @@ typedef struct {
     size_t n_heard;
     long heard[DESIGNS];
 } Bench;
-
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){0, (long)(1e9 * seconds)}, NULL);
-}
 
 static Status simulate(void *self, size_t worker, const Task *t, Err *err)
 {

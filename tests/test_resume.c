@@ -128,7 +128,7 @@ static void assert_same_search(const World *w, const Seen *a, const Seen *b)
 }
 
 static World here;
-static Seen whole, rest;
+static Seen whole, resumed;
 static EvaluationTable before; /* of the moment that was asked for last */
 
 static SearchStart moment(const Seen *s, size_t k)
@@ -146,10 +146,10 @@ static void check_every_moment(const SearchConfig *c, size_t step)
     assert_less(step + 1, whole.moments.n);
     for (size_t k = 0; k + 1 < whole.moments.n; k += step) {
         const SearchStart start = moment(&whole, k);
-        run(&here, c, &start, &rest);
-        assert_int_equal(rest.first_generation, k + 1);
-        assert_same_search(&here, &whole, &rest);
-        forget(&rest);
+        run(&here, c, &start, &resumed);
+        assert_int_equal(resumed.first_generation, k + 1);
+        assert_same_search(&here, &whole, &resumed);
+        forget(&resumed);
     }
     forget(&whole);
 }
@@ -217,10 +217,10 @@ TEST(the_number_of_threads_may_change_in_between)
     run(&here, &c, NULL, &whole);
     omp_set_num_threads(3);
     const SearchStart start = moment(&whole, whole.moments.n / 2);
-    run(&here, &c, &start, &rest);
+    run(&here, &c, &start, &resumed);
     omp_set_num_threads(threads);
-    assert_same_search(&here, &whole, &rest);
-    forget(&rest);
+    assert_same_search(&here, &whole, &resumed);
+    forget(&resumed);
     forget(&whole);
 }
 
@@ -230,20 +230,20 @@ TEST(more_simulations_than_planned_go_on_where_the_plan_ended)
     world(&here, 6, 3, 0);
     SearchConfig c = config(0, 40);
     c.planned_evals = 40;
-    run(&here, &c, NULL, &rest);
-    assert_int_equal(rest.reason, STOP_EVALUATIONS);
+    run(&here, &c, NULL, &resumed);
+    assert_int_equal(resumed.reason, STOP_EVALUATIONS);
     c.max_evals = 64;
     run(&here, &c, NULL, &whole);
     assert_int_equal(whole.n, 64);
-    assert_memory_equal(rest.X, whole.X, rest.n * here.problem.n_var * sizeof *rest.X);
+    assert_memory_equal(resumed.X, whole.X, resumed.n * here.problem.n_var * sizeof *resumed.X);
 
     static Seen longer;
-    const SearchStart start = moment(&rest, rest.moments.n - 1);
+    const SearchStart start = moment(&resumed, resumed.moments.n - 1);
     run(&here, &c, &start, &longer);
     assert_int_equal(longer.n, 64);
-    assert_memory_equal(rest.X, longer.X, rest.n * here.problem.n_var * sizeof *rest.X);
+    assert_memory_equal(resumed.X, longer.X, resumed.n * here.problem.n_var * sizeof *resumed.X);
     forget(&longer);
-    forget(&rest);
+    forget(&resumed);
     forget(&whole);
 }
 
@@ -253,9 +253,9 @@ TEST(a_search_at_its_limit_simulates_nothing_more)
     const SearchConfig c = config(20, 32);
     run(&here, &c, NULL, &whole);
     const SearchStart end = moment(&whole, whole.moments.n - 1);
-    run(&here, &c, &end, &rest);
-    assert_int_equal(rest.reason, STOP_EVALUATIONS);
-    assert_int_equal(rest.moments.n, 0);
+    run(&here, &c, &end, &resumed);
+    assert_int_equal(resumed.reason, STOP_EVALUATIONS);
+    assert_int_equal(resumed.moments.n, 0);
     forget(&whole);
 }
 
@@ -263,9 +263,9 @@ static void refuse(const SearchConfig *c, const SearchStart *start)
 {
     Err err = {0};
     StopReason reason;
-    assert_int_equal(search_resume(&here.problem, c, start, observe, &rest, &reason, &err), STATUS_BAD_DATA);
+    assert_int_equal(search_resume(&here.problem, c, start, observe, &resumed, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "does not fit"));
-    assert_int_equal(rest.moments.n, 0);
+    assert_int_equal(resumed.moments.n, 0);
 }
 
 TEST(a_state_that_is_cut_short_or_of_another_search_is_refused)
@@ -273,7 +273,7 @@ TEST(a_state_that_is_cut_short_or_of_another_search_is_refused)
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 32);
     run(&here, &c, NULL, &whole);
-    memset(&rest, 0, sizeof rest);
+    memset(&resumed, 0, sizeof resumed);
     SearchStart start = moment(&whole, 1);
     for (size_t n = 0; n < start.n_state; n += 1 + n / 16) {
         SearchStart cut = start;
@@ -298,13 +298,13 @@ TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
     run(&here, &c, NULL, &whole);
     assert_int_equal(whole.reason, STOP_CONVERGED);
     const SearchStart end = moment(&whole, whole.moments.n - 1);
-    run(&here, &c, &end, &rest);
-    assert_int_equal(rest.reason, STOP_CONVERGED);
-    assert_int_equal(rest.moments.n, 0);
+    run(&here, &c, &end, &resumed);
+    assert_int_equal(resumed.reason, STOP_CONVERGED);
+    assert_int_equal(resumed.moments.n, 0);
     c.stop_after = 0; /* it goes on, as if it had never been asked to stop */
-    run(&here, &c, &end, &rest);
-    assert_int_equal(rest.reason, STOP_EVALUATIONS);
-    forget(&rest);
+    run(&here, &c, &end, &resumed);
+    assert_int_equal(resumed.reason, STOP_EVALUATIONS);
+    forget(&resumed);
     forget(&whole);
 }
 
@@ -316,7 +316,7 @@ static void check_this_is_refused_everywhere(double number, int asynchronous)
     here.problem.n_workers = asynchronous ? 3 : here.problem.n_workers;
     c.asynchronous = asynchronous;
     run(&here, &c, NULL, &whole);
-    memset(&rest, 0, sizeof rest);
+    memset(&resumed, 0, sizeof resumed);
     SearchStart start = moment(&whole, 3);
     unsigned char *forged = malloc(start.n_state);
     assert_non_null(forged);

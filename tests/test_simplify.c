@@ -14,8 +14,10 @@ static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return 1;
-    write_in_place("s.ini", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 12\n[search]\n"
-                            "initial = 20\npopulation = 12\nmax_evals = 40\nthreads = 2\npolish = 0\n");
+    write_in_place(
+        "s.ini",
+        "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 12\n"
+        "accuracy = coarse\n[search]\ninitial = 20\npopulation = 12\nmax_evals = 40\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/s.ini --out @/run"));
     Err err = {0};
     char path[PATH_MAX];
@@ -176,9 +178,10 @@ TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
 TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
 {
     write_in_place("d.ini", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n[sim]\nduration_s = 20\n"
-                            "[design]\nvariables = gaps, thickness, links, tuned_mass\ndevices = gap, link, none\n"
-                            "device_zones = 4\ngap_zones = 1\nlink_zones = 1\nmass_kg = 1, 1e5\n[search]\npolish = 0\n"
-                            "objectives = j1_m, devices\ninitial = 8\npopulation = 8\nmax_evals = 8\n");
+                            "accuracy = coarse\n[design]\nvariables = gaps, thickness, links, tuned_mass\n"
+                            "devices = gap, link, none\ndevice_zones = 4\ngap_zones = 1\nlink_zones = 1\n"
+                            "mass_kg = 1, 1e5\n[search]\npolish = 0\nobjectives = j1_m, devices\ninitial = "
+                            "8\npopulation = 8\nmax_evals = 8\n");
     write_in_place("d.csv", "gap_m,t_base_m,t_top_m,link_n_s_m,tuned_mass_kg,tuned_mass_hz,tuned_mass_damping,"
                             "device_zone_1,device_zone_2,device_zone_3,device_zone_4,device_roof\n"
                             "9,0.02,0.02,7e5,10,0.3,0.1,gap,link,link,link,tuned_mass\n");

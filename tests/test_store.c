@@ -331,38 +331,45 @@ TEST(progress_is_one_line_on_a_terminal_and_none_in_a_pipe)
 
 TEST(a_second_signal_ends_at_once)
 {
-    write_in_place("deaf.ini", DEAF);
-    const double begun = now_s();
+    char text[sizeof DEAF + PATH_MAX], path[PATH_MAX];
+    const int before = (int)(strstr(DEAF, " deaf") + 5 - DEAF); /* behind it the file that its worker makes */
+    snprintf(text, sizeof text, "%.*s %s%s", before, DEAF, path_of("asked", path), DEAF + before);
+    write_in_place("deaf.ini", text);
     const pid_t pid = start("deaf.ini", "deaf");
-    char path[PATH_MAX];
-    while (access(path_of("deaf/lock", path), F_OK) != 0 && now_s() < begun + 60)
+    while (access(path, F_OK) != 0)
         rest(0.02);
-    rest(0.2);
+    const double begun = now_s();
     kill(pid, SIGSTOP);
     kill(pid, SIGTERM);
     kill(pid, SIGINT); /* it takes both at once: one request, as of `timeout` */
     kill(pid, SIGCONT);
     rest(0.4);
     assert_int_equal(waitpid(pid, NULL, WNOHANG), 0); /* it still waits for the answer that is under way */
-    kill(pid, SIGTERM);
-    const int status = wait_end(pid);
+    int status;
+    do { /* on a busy machine the first two may only just have been taken */
+        kill(pid, SIGTERM);
+        rest(0.3);
+    } while (waitpid(pid, &status, WNOHANG) == 0);
     assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
-    assert_less(now_s(), begun + 30);
+    assert_less(now_s(), begun + 50);
 }
 
-/* 0.2 s of a batch that takes 0.7 s. */
-/* On a busy machine the first session may end before its worker has answered: then one of half as long again. */
+/* 40 answers of one worker take 1.6 s at least, however busy the machine is: no session is long enough for all of them. One
+ * that ends before its worker has answered is followed by one of half as long again. */
 TEST(hours_are_obeyed_within_a_batch)
 {
     StudySummary summary = {0};
     Err err = {0};
     Settings s = settings_of(STEADY, "hours");
-    s.search.max_hours = 0.2 / 3600;
-    for (int session = 0; session < 5 && summary.n_simulated == 0; session++, s.search.max_hours *= 1.5) {
+    s.search.threads = 1;
+    for (double limit_s = 0.2; limit_s < 1.6 && summary.n_simulated == 0; limit_s *= 1.5) {
+        s.search.max_hours = limit_s / 3600;
         assert_int_equal(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), STATUS_STOPPED);
         assert_int_equal(summary.stopped, STOP_TIME);
+        assert_at_most(summary.n_simulated, 1 + limit_s / 0.04);
     }
-    assert_true(summary.n_simulated > 0 && summary.n_simulated < 30);
+    assert_less(0, summary.n_simulated);
+    s.search.threads = 2;
     s.search.max_hours = 0;
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 40);

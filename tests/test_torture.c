@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
-#include <time.h>
 
 #include "store/run_read.h"
 
@@ -37,18 +36,6 @@ typedef struct {
 
 /* While a start makes its database: files are there in part. */
 static const double EARLY_S = 0.08;
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))}, NULL);
-}
 
 static const char *in_place_of_said(char path[128])
 {

@@ -1,7 +1,8 @@
 # A simulator for tests of the JSON lines protocol: f = (x1, x2). Every third request it misbehaves as $1 says.
+# With $1 waits the 30th request is answered once $3 of them are in the file $2, which must be within $4 tenths of a second.
 # With $1 bounded or unbounded whole numbers x1, x2 in 0..20 and a word: 6 <= x1 <= 15 - x2 as g; $2 gets the requests.
 [ "$1" = unasked ] && echo "welcome to the simulator"
-[ "$1" = deaf ] && exec sleep 60
+[ "$1" = deaf ] && { : >"${2:-/dev/null}"; exec sleep 60; }
 while read -r line; do
     id=${line#*:}
     id=${id%%,*}
@@ -19,6 +20,8 @@ while read -r line; do
         [ "$1" = unbounded ] && [ $((id % 3)) -eq 0 ] && good="$good}" || good="$good,\"g\":[$((6 - x1)),$((x1 + x2 - 15))]}" ;;
     esac
     [ "$1" = steady ] && sleep 0.04
+    [ "$1" = waits ] && { echo "$id" >>"$2"; tries=$4
+        while [ "$id" -eq 30 ] && [ "$(wc -l <"$2")" -lt "$3" ]; do sleep 0.1; [ $((tries -= 1)) -gt 0 ] || { good='{}'; break; }; done; }
     [ "$1" = uneven ] && if [ $((id % 10)) -eq 0 ]; then sleep 0.1; else sleep 0.005; fi
     [ "$1" = tenth ] && [ $((id % 10)) -eq 0 ] && good="{\"id\":$id,\"error\":\"every tenth\"}"
     [ $((id % 3)) -ne 0 ] && mode=good || mode=$1

@@ -250,9 +250,11 @@ static Status ask_first(Study *study, Err *err)
     TRY(search_config(study, &config, err));
     config.asynchronous = 0;
     const Status status = search_run(&p, &config, end_first, NULL, &reason, err);
-    if (status == STATUS_STOPPED && !has_first(study))
+    if (status == STATUS_STOPPED && !has_first(study)) {
+        study->summary->stopped = study->late ? STOP_TIME : STOP_ASKED;
         return fail(err, status, "%s: stopped before its first design succeeded; nothing is stored",
                     study->summary->folder);
+    }
     if (status != STATUS_STOPPED)
         TRY(status);
     while (t->n > 0 && n < CONSTRAINTS_MAX && isfinite(t->row[t->n - 1].extra[n]))
@@ -461,10 +463,8 @@ static Status finish(Study *study, Err *err)
     StudySummary *sum = study->summary;
     const double session = session_seconds(study);
     const int is_final = sum->stopped != STOP_ASKED;
-    if (!is_final && study->late)
-        sum->stopped = STOP_TIME;
-    if (!is_final && study->failing)
-        sum->stopped = STOP_FAILURES;
+    if (!is_final)
+        sum->stopped = study->failing ? STOP_FAILURES : study->late ? STOP_TIME : STOP_ASKED;
     const char *why = why_stopped(study);
     sum->seconds = study->seconds_before + session;
     TRY(study_log_end(study->store, sum, is_final, err));
@@ -514,8 +514,6 @@ static Status polish(Study *study, Err *err)
 {
     StudySummary *sum = study->summary;
     const FinalPolish p = {.used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
-    if (sum->stopped == STOP_ASKED)
-        return STATUS_OK;
     return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
 }
 
@@ -570,7 +568,8 @@ static Status work(Study *study, Err *err)
     TRY(study->status);
     if (study->summary->stopped == STOP_ASKED)
         TRY(know_named_so_far(study, err));
-    TRY(polish(study, err));
+    else
+        TRY(polish(study, err));
     TRY(know_named(study, err));
     return finish(study, err);
 }
