@@ -256,6 +256,7 @@ static Status run_factors(const Args *args, Err *err)
     FactorPlan plan = {.settings = &s,
                        .problems = args_value(args, "--problem"),
                        .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside"),
+                       .rounded = args_has(args, "--rounded"),
                        .against_random = args_has(args, "--random"),
                        .keep = args_value(args, "--keep")};
     const long budgets[] = {300, 500, 1000};
@@ -275,6 +276,7 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
     {"--aside", NULL, NULL, 0, "those kept aside instead"},
     {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
+    {"--rounded", NULL, NULL, 0, "beside a search of reals, of which the problem rounds some"},
     {"--random", NULL, NULL, 0, "beside random designs (a Latin hypercube), not a plain search"},
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},

@@ -32,6 +32,7 @@ typedef struct {
     const char *name[PROBLEMS_MAX];
     double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES]; /* medians over the seeds */
     double total_s;                                   /* [s] processor time of all searches */
+    double distinct;                                  /* share of this program's evaluations, least of all searches */
 } Tables;
 
 static size_t n_budgets(const FactorPlan *plan)
@@ -67,11 +68,14 @@ static Status make_course(const FactorPlan *plan, const Problem *p, Which which,
                           Err *err)
 {
     Settings s = *plan->settings;
+    Problem other = *p;
+    if (which == PLAIN && plan->rounded)
+        other.kind = NULL;
     s.search.seed = seed;
     TRY(course_create(c, n, p->n_obj, err));
     if (which == PLAIN && plan->against_random)
         s.search.initial = (long)n;
-    return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
+    return search_course(&s, &other, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
 }
 
 /* From the folder where it is there. The plain search has as many evaluations as the largest factor takes. */
@@ -84,11 +88,11 @@ static Status get_course(const FactorPlan *plan, const Problem *p, const Family 
     int found = 0;
     if (!plan->keep)
         return make_course(plan, p, which, seed, n, c, err);
-    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name,
+    snprintf(path, sizeof path, "%s/%s-%s%s-%zu-%ld.course", plan->keep, a->name,
              which == OURS          ? "imtet"
              : plan->against_random ? "random"
                                     : "plain",
-             n, seed);
+             which == PLAIN && plan->rounded ? "-rounded" : "", n, seed);
     TRY(course_load(c, path, n, p->n_obj, &found, err));
     if (found)
         return STATUS_OK;
@@ -203,6 +207,19 @@ static double factor_of(const Curve *plain, Score score, double wanted, double n
 /* Of each seed, for the medians. */
 typedef double Sample[BUDGETS_MAX][SCORES][SEEDS_MAX];
 
+/* Share of evaluations whose objectives no other one has. */
+static double distinct_share(const Course *c)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < c->n; i++) {
+        size_t j = 0;
+        while (j < i && memcmp(c->F + j * c->n_obj, c->F + i * c->n_obj, c->n_obj * sizeof *c->F) != 0)
+            j++;
+        n += j == i;
+    }
+    return (double)n / (double)c->n;
+}
+
 static void take_seed(const Tables *t, const Curve curve[], size_t seed, Sample factor)
 {
     for (size_t b = 0; b < n_budgets(t->plan); b++)
@@ -226,8 +243,10 @@ static Status run_seed(Tables *t, const Problem *p, const Family *a, const Cours
         find_box(&curve[OURS].course, &curve[PLAIN].course, lower, upper);
     for (int v = 0; status == STATUS_OK && v < SEARCHES; v++)
         status = score_course(&curve[v], reference, lower, upper, err);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
         take_seed(t, curve, seed, factor);
+        t->distinct = fmin(t->distinct, distinct_share(&curve[OURS].course));
+    }
     for (int v = 0; v < SEARCHES; v++) {
         t->total_s += curve[v].course.n > 0 ? curve[v].course.cpu_s[curve[v].course.n - 1] : 0.0;
         curve_free(&curve[v]);
@@ -309,6 +328,9 @@ static void print_means(const Tables *t, FILE *out)
                 worst = t->factor[i][b][score] < t->factor[worst][b][score] ? i : worst;
             fprintf(out, " %s |", t->name[worst]);
         }
+    fprintf(out, "\n| evaluations with objectives of their own, least share of a search | %.3f |", t->distinct);
+    for (size_t b = 0; b < SCORES * n_budgets(t->plan); b++)
+        fputs(" |", out);
     fprintf(out, "\n| processor time | %.0f min |", t->total_s / 60.0);
     for (size_t b = 0; b < SCORES * n_budgets(t->plan); b++)
         fputs(" |", out);
@@ -333,7 +355,7 @@ static int is_wanted(const FactorPlan *plan, const Family *a)
 
 Status factors_run(const FactorPlan *plan, FILE *out, Err *err)
 {
-    Tables t = {.plan = plan};
+    Tables t = {.plan = plan, .distinct = 1.0};
     if (plan->keep)
         mkdir(plan->keep, 0777);
     for (size_t i = 0; i < family_count(); i++) {

@@ -264,10 +264,13 @@ static void to_unit(const Made *m, const double x[], double u[])
                                               : x[j];
 }
 
-static void evaluate(const Made *m, const double design[], double f[], double g[])
+/* Whole numbers and choices are rounded, for searches that do not know them. */
+static void evaluate(const Made *m, const double x_real[], double f[], double g[])
 {
     const Family *a = &m->recipe.family;
-    double x[FAMILY_VAR_MAX], y[FAMILY_VAR_MAX];
+    double design[FAMILY_VAR_MAX], x[FAMILY_VAR_MAX], y[FAMILY_VAR_MAX];
+    for (size_t j = 0; j < a->n_var; j++)
+        design[j] = m->kind[j] == VARIABLE_WHOLE || m->kind[j] == VARIABLE_CHOICE ? round(x_real[j]) : x_real[j];
     if (m->mix && m->mix->mixed) {
         m->mix->mixed->evaluate(design, f, g);
         return;
