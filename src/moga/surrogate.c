@@ -254,11 +254,6 @@ double surrogate_waves(const Surrogate *s)
     return n / (double)s->problem->n_obj;
 }
 
-const double *surrogate_ranges(const Surrogate *s)
-{
-    return s->range;
-}
-
 size_t surrogate_left_out(const Surrogate *s)
 {
     return s->fitted ? rbf_left_out(s->rbf) : 0;

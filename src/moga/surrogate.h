@@ -41,9 +41,6 @@ int surrogate_is_usable(const Surrogate *s);
 /* Share of the objectives with waves along single variables: their kernels have an additive part (rbf/rbf.h). */
 double surrogate_waves(const Surrogate *s);
 
-const double *
-surrogate_ranges(const Surrogate *s); /* (n_obj) of the objectives in the archive, 1 where all are equal */
-
 /* Median leave-one-out error as a share of the objective's range, of the worst objective; NAN: not fitted. */
 double surrogate_error(const Surrogate *s);
 
