@@ -2,6 +2,7 @@
 
 #include "analysis/estimate.h"
 #include "base/stat.h"
+#include "evaluate/cluster.h"
 #include "study/run_simulator.h"
 
 /* Times that the steps are doubled; copies of a design, first and where those disagree; designs looked at together,
@@ -100,10 +101,14 @@ static int may_go_on(void *work)
     return w->is_first || !w->go_on || w->go_on(w->user);
 }
 
-/* The first n designs in X. */
+/* The first n designs in X. Other processes open one simulator at a time. */
 static Status simulate(Work *w, size_t level, size_t n, Err *err)
 {
     RunSimulator *r = &w->simulator[level];
+    size_t n_ranks;
+    for (size_t other = 0; other <= LEVELS && cluster_executor(&n_ranks); other++)
+        if (other != level)
+            run_simulator_close(&w->simulator[other]);
     if (!r->queue)
         TRY(run_simulator_open(r, w->used, &w->sim[level], may_go_on, w, err));
     return ask_all(w, r->queue, n, err);
