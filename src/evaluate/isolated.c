@@ -85,6 +85,7 @@ static int end_child(Child *c)
     int status = 0;
     if (c->pid == 0)
         return 0;
+    shutdown(c->fd, SHUT_RDWR); /* processes of another Isolated may have this end too */
     close(c->fd);
     waitpid(c->pid, &status, 0);
     c->pid = 0;

@@ -314,7 +314,7 @@ const char *design_protection(const DesignSpace *s, const Design *d, char text[P
     int stops = 0, links = 0;
     for (int j = 0; j < s->n_floors; j++) {
         stops |= design_gap(d, j) < DESIGN_OPEN_M;
-        links |= d->link[j] > 0;
+        links |= d->link[j] > 0 || d->friction[j] > 0;
     }
     const char *mass = d->mass_kg > 0 ? "a tuned mass" : "";
     snprintf(text, PROTECTION_MAX, "%s%s%s%s%s", stops ? "impacts" : "", stops && links ? " and " : "",

@@ -101,12 +101,13 @@ static int may_go_on(void *work)
     return w->is_first || !w->go_on || w->go_on(w->user);
 }
 
-/* The first n designs in X. Other processes open one simulator at a time. */
+/* The first n designs in X. Where other processes simulate, they open one simulator at a time. */
 static Status simulate(Work *w, size_t level, size_t n, Err *err)
 {
     RunSimulator *r = &w->simulator[level];
     size_t n_ranks;
-    for (size_t other = 0; other <= LEVELS && cluster_executor(&n_ranks); other++)
+    const int elsewhere = cluster_executor(&n_ranks) || w->used->run.isolate == SWITCH_ON;
+    for (size_t other = 0; other <= LEVELS && elsewhere; other++)
         if (other != level)
             run_simulator_close(&w->simulator[other]);
     if (!r->queue)

@@ -31,7 +31,7 @@ function verdict(raw, b, k) {
 function gainAndPrice(raw, b) {
   const known = objectives.map((c, k) => ({ c, k, ratio: (raw[k] / b.raw[k]) ** c.sense }));
   const gain = known.find(({ k }) => verdict(raw, b, k) > 0), price = known.filter(({ k }) => verdict(raw, b, k) < 0).sort((p, q) => q.ratio - p.ratio)[0];
-  const words = (up, { c, k }, down) => `${raw[k] < b.raw[k] === (up === "reduces") ? up : down} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)} (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`;
+  const words = (up, { c, k }, down) => `${raw[k] < b.raw[k] === (up === "reduces") ? up : down} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)}${b.raw[k] === 0 ? "" : ` (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`}`;
   return [gain && words("reduces", gain, "raises"), price && words("at the price of raising", price, "at the price of reducing")].filter(Boolean).join(", ");
 }
 
@@ -41,7 +41,7 @@ function sentence(d) {
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)} is nearest to the best of every objective.`;
   const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, with a core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
+  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with
@@ -148,8 +148,8 @@ function summaryPart() {
   document.getElementById("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(190) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
-  if (d) peakPart(host, d, 290);
-  if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(305));
+  if (d) peakPart(host, d, 250);
+  if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
   if (run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
