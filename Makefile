@@ -214,7 +214,7 @@ $(BUILD)/tests/test_store_faults: LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
 $(BUILD)/tests/test_shared: LDFLAGS += -Wl,--wrap=statfs
 
 # The tests that take more than some seconds, longest first; they are started first, and `make check` leaves them out.
-LONG := store_faults cli risk simplify serve report objectives designs yielding kinds disk faults suite search histories \
+LONG := check devices store_faults cli risk simplify serve report objectives designs yielding kinds disk faults suite search histories \
         building bumper forces damage variables torture async study store stability reference linear engines window tail \
         moved sensitivity bench replicates ida estimate number resume workers start shared verify problem manual library \
         asking
