@@ -12,7 +12,7 @@
 static void expect_figure(double value, double error, double sd, const char *wanted)
 {
     char text[FIGURE_MAX];
-    figure_text(value, error, sd, text);
+    figure_text(value, error, sd, "sd", text);
     if (strcmp(text, wanted) != 0)
         fail_msg("%g, error %g, sd %g: is '%s', wanted '%s'", value, error, sd, text, wanted);
 }
@@ -105,7 +105,7 @@ TEST(the_page_writes_the_same_figures)
     assert_non_null(said);
     for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
         for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++) {
-            figure_text(VALUES[i], SHARES[k] * fmax(fabs(VALUES[i]), 0.01), NAN, text);
+            figure_text(VALUES[i], SHARES[k] * fmax(fabs(VALUES[i]), 0.01), NAN, "sd", text);
             assert_non_null(fgets(line, sizeof line, said));
             line[strcspn(line, "\n")] = 0;
             assert_string_equal(line, text);

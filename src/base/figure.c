@@ -39,7 +39,7 @@ static void write_figure(double value, double uncertain, const char *word, int p
     }
     if (exponent)
         n += snprintf(text + n, FIGURE_MAX - n, "%s\u00b710^%d", is_bracketed ? ")" : "", exponent);
-    snprintf(text + n, FIGURE_MAX - n, "%s", uncertain > 0 ? word : "");
+    snprintf(text + n, FIGURE_MAX - n, "%s%s", *word ? " " : "", word);
 }
 
 static void write_digits(double value, int digits, char text[FIGURE_MAX])
@@ -47,7 +47,7 @@ static void write_digits(double value, int digits, char text[FIGURE_MAX])
     write_figure(value, 0, "", value == 0 ? 0 : first_place(value, digits) - digits + 1, text);
 }
 
-void figure_text(double value, double error, double sd, char text[FIGURE_MAX])
+void figure_text(double value, double error, double sd, const char *word, char text[FIGURE_MAX])
 {
     const int is_sd = isfinite(sd) && !(error >= sd);
     const double uncertain = is_sd ? sd : error;
@@ -64,7 +64,7 @@ void figure_text(double value, double error, double sd, char text[FIGURE_MAX])
     if (value != 0 && uncertain < 0.5 * pow(10, first_place(value, DIGITS_MOST) - DIGITS_MOST + 1)) {
         write_digits(value, DIGITS_MOST, text);
     } else if (uncertain < fabs(value) || value <= 0 || fabs(value) < 0.5 * unit) {
-        write_figure(uncertain < fabs(value) ? value : 0, uncertain, is_sd ? " sd" : "", place, text);
+        write_figure(uncertain < fabs(value) ? value : 0, uncertain, is_sd ? word : "", place, text);
     } else {
         char order[FIGURE_MAX];
         write_digits(value, 1, order);

@@ -15,5 +15,5 @@
 
 enum { FIGURE_MAX = 64 };
 
-/* error, sd: in the unit of the value; NAN: not known. */
-void figure_text(double value, double error, double sd, char text[FIGURE_MAX]);
+/* error, sd: in the unit of the value; NAN: not known. word: behind a deviation, "sd". */
+void figure_text(double value, double error, double sd, const char *word, char text[FIGURE_MAX]);

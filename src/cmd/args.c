@@ -102,14 +102,13 @@ static Status take_option(Args *args, int argc, char *const argv[], int *i, Err 
 }
 
 /* A run is its folder; who names the database in it means that. */
-static Status take_run_folder(Args *args, const char *word, Err *err)
+static Status take_run_folder(Args *args, int i, Err *err)
 {
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s", word) >= (int)sizeof path || !run_drop_name(path))
+    if (snprintf(path, sizeof path, "%s", args->operands[i]) >= (int)sizeof path || !run_drop_name(path))
         return STATUS_OK;
-    char *folder = strdup(path);
-    args->operands[args->n_operands - 1] = args->folders[args->n_operands - 1] = folder;
-    return folder ? STATUS_OK : fail_memory(err, 1, "a path");
+    args->operands[i] = args->folders[i] = strdup(path);
+    return args->folders[i] ? STATUS_OK : fail_memory(err, 1, "a path");
 }
 
 static Status take_operand(Args *args, const char *word, Err *err)
@@ -123,7 +122,7 @@ static Status take_operand(Args *args, const char *word, Err *err)
     if (!word[0])
         return misused(err, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
     args->operands[args->n_operands++] = word;
-    TRY(strstr(c->operand, "RUN") ? take_run_folder(args, word, err) : STATUS_OK);
+    TRY(strstr(c->operand, "RUN") ? take_run_folder(args, args->n_operands - 1, err) : STATUS_OK);
     args->operand = args->operands[0];
     return STATUS_OK;
 }

@@ -163,15 +163,15 @@ static double level_of(const Evaluations *e, const EvaluatedRun *run)
 
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
+    const MeasureOrder *order = tower_measures(tower_of(&e->tower));
     json_t *o =
         json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
     if (is_spectral(e))
         json_put(o, "sa_g=%g", level_of(e, run));
     for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
         if (evaluated_has(e, run, c))
-            json_object_set_new(
-                o, EVALUATION_CASES[c].key,
-                json_result(tower_measures(tower_of(&e->tower)), EVALUATION_CASES[c].kind, &run->result[c]));
+            json_object_set_new(o, EVALUATION_CASES[c].key,
+                                json_result(order, EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_has(e, run, EVALUATED_TMD))
         json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
                  run->device[EVALUATED_TMD].device.tmd_damping);
@@ -180,7 +180,7 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
     if (run->error_known)
         put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
-        json_put(o, "replicates=%p", json_replicates(tower_measures(tower_of(&e->tower)), &run->replicates));
+        json_put(o, "replicates=%p", json_replicates(order, &run->replicates));
     return o;
 }
 

@@ -200,9 +200,7 @@ static void list_devices(const Dossier *o, const Design *design)
                                  1e-6 * design->friction[j],
                                  1e-6 * r->device[j].force,
                                  1e3 * r->device[j].stroke};
-        json_t *row = has_stop || design->link[j] + design->friction[j] > 0
-                          ? json_put(figures_row(table), "floor=%d", j + 1)
-                          : NULL;
+        json_t *row = has_stop || design_has_link(design, j) ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
         for (size_t k = 0; row && k < N_OF(values); k++)
             if (values[k] > 0 && isfinite(values[k]))
                 figures_put(row, columns[k], values[k], NAN, NAN);
@@ -224,8 +222,8 @@ static void write_design(const Dossier *o)
     fputs("<figure>", o->out);
     draw_devices(o->out, o->d, &design);
     fputs("<figcaption>Section: tower, core and what is between them. Heights to scale, gaps and walls each in "
-          "proportion "
-          "to their largest. Orange: a stop (thick: with a bumper); green: a dashpot.</figcaption></figure>\n",
+          "proportion to their largest. Orange: a stop (thick: with a bumper); green: a dashpot."
+          "</figcaption></figure>\n",
           o->out);
     list_devices(o, &design);
 }
@@ -547,8 +545,7 @@ static void write_not_covered(const Dossier *o)
                   "and their mass is missing here and in every objective"
                 : "");
     fputs("<li>Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
-          "floors "
-          "as diaphragms, local stresses and fatigue are not designed.</li>\n",
+          "floors as diaphragms, local stresses and fatigue are not designed.</li>\n",
           o->out);
     if (strcmp(s->core.foundation, "fixed") == 0)
         fprintf(o->out,

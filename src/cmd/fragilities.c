@@ -135,9 +135,9 @@ static const char *relation(const Curve *c)
 static void median_words(const Curve *c, char text[4 * FIGURE_MAX])
 {
     char median[FIGURE_MAX], low[FIGURE_MAX], high[FIGURE_MAX];
-    figure_text(c->fit.median, NAN, NAN, median);
-    figure_text(c->low, NAN, NAN, low);
-    figure_text(c->high, NAN, NAN, high);
+    figure_text(c->fit.median, NAN, NAN, "", median);
+    figure_text(c->low, NAN, NAN, "", low);
+    figure_text(c->high, NAN, NAN, "", high);
     if (isfinite(c->fit.beta))
         snprintf(text, 4 * FIGURE_MAX, "%s (%s to %s)", median, low, high);
     else if (isfinite(c->fit.median))

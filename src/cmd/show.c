@@ -21,13 +21,18 @@ json_t *figures_row(json_t *table)
     return row;
 }
 
-void figures_put(json_t *row, const char *column, double value, double error, double sd)
+static void put_as(json_t *row, const char *column, double value, double error, double sd, const char *word)
 {
     static const double NOTHING = 0.05; /* [%] of a share, which is not negative but by rounding or a deviation */
     char text[FIGURE_MAX] = "0.0";
     if (!(strstr(column, "_pct") && value < 0 && value > -NOTHING && isnan(error) && isnan(sd)))
-        figure_text(value, error, sd, text);
+        figure_text(value, error, sd, word, text);
     json_object_set_new(row, column, json_string(text));
+}
+
+void figures_put(json_t *row, const char *column, double value, double error, double sd)
+{
+    put_as(row, column, value, error, sd, "sd");
 }
 
 /* Behind the point, of a number that is known: 0.03, not 0.03000. */
@@ -52,7 +57,7 @@ static void cell_words(const json_t *cell, char text[CELL_MAX])
     else if (json_is_boolean(cell))
         snprintf(text, CELL_MAX, "%s", json_is_true(cell) ? "yes" : "no");
     else
-        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, text);
+        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, "", text);
     if (json_is_real(cell))
         drop_zeros(text);
 }
@@ -463,7 +468,7 @@ void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t
 {
     char value[IDA_FRACTILES][FIGURE_MAX];
     for (int f = 0; f < IDA_FRACTILES; f++)
-        figure_text(factor * ida_fractile(e, level, c, k, IDA_FRACTILE[f]), NAN, NAN, value[f]);
+        figure_text(factor * ida_fractile(e, level, c, k, IDA_FRACTILE[f]), NAN, NAN, "", value[f]);
     json_object_set_new(row, column,
                         e->n_read == 1 ? json_string(value[1])
                                        : json_sprintf("%s (%s to %s)", value[1], value[0], value[2]));
@@ -498,11 +503,7 @@ static void put_objectives(json_t *row, const MeasureOrder *order, const double 
 {
     for (int i = 0; i < order->n_obj; i++) {
         const int k = order->of[i];
-        const char *name = measures_name(order, k);
-        figures_put(row, name, value[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
-        const char *text = json_string_value(json_object_get(row, name)), *end = strstr(text, " sd");
-        if (end)
-            json_object_set_new(row, name, json_sprintf("%.*s %s", (int)(end - text), text, word));
+        put_as(row, measures_name(order, k), value[k], error ? error[k] : NAN, sd ? sd[k] : NAN, word);
     }
 }
 

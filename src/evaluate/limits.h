@@ -2,7 +2,7 @@
  *
  *   g = (value - limit) / |limit| for <=, the negative of it for >=; limit 0 counts as 1
  *
- * And the levels that are wished for (search.aspire = j1_m 0.5,j3_g 3).
+ * And the aspiration levels (search.aspire = j1_m 0.5,j3_g 3).
  *
  * Threads  limits_apply reads only
  * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both, or one

@@ -95,7 +95,7 @@ struct Problem {
     RepairFn repair;      /* NULL: the box is all */
     JudgeFn judge;        /* NULL: f as it is, and no g */
     const void *user;     /* of judge */
-    const double *aspire; /* (n_obj) minimised values that are wished for, NAN: of that objective none; NULL: of none */
+    const double *aspire; /* (n_obj) minimised aspiration levels, NAN: of that objective none; NULL: of none */
     int is_noisy;         /* the same design evaluated again gives another answer */
     const Simulator *simulator;
     void *self; /* of simulator and repair */

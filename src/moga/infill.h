@@ -4,7 +4,7 @@
  *   value     INFILL_PBI          d1 + 5 d2: d1 along w from the ideal, d2 off it, in normalised objectives
  *             INFILL_HYPERVOLUME  minus the length that f dominates of the ray from behind the worst of the front along
  *                                 -w: the lengths of many rays add up to the hypervolume, whatever the front's shape
- *             with levels that are wished for, in the place of both: max_k (f_k - level_k) / width_k / u_k, where every
+ *             with aspiration levels, in the place of both: max_k (f_k - level_k) / width_k / u_k, where every
  *             vector has a u of its own between 0.5 and 2
  *   best_w    smallest value of the front
  *   chance    where there is a front: a gain counts with the probability that the design succeeds and keeps every
@@ -29,7 +29,7 @@ typedef struct Infill Infill;
 
 typedef enum { INFILL_PBI, INFILL_HYPERVOLUME, INFILL_KINDS } InfillKind;
 
-/* aspire (n_obj): levels, NAN where there is none, borrowed; NULL: nothing is wished for. */
+/* aspire (n_obj): levels, NAN where there is none, borrowed; NULL: of no objective. */
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors,
                      const double aspire[], Err *err);
 

@@ -29,7 +29,7 @@ static inline double normalised(const Normalisation *q, size_t k, double f)
     return (f - q->ideal[k]) / q->width[k];
 }
 
-/* How far f is behind a level that is wished for, in widths; NAN: no level is, and nothing is behind it. */
+/* How far f is behind an aspiration level, in widths; NAN: there is none, and nothing is behind it. */
 static inline double normalised_behind(const Normalisation *q, size_t k, double level, double f)
 {
     return isnan(level) ? -INFINITY : (f - level) / q->width[k];

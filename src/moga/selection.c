@@ -126,19 +126,19 @@ static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *rand
 
 typedef struct {
     const double *violation, *behind; /* violation NULL: none */
-} Wish;
+} Achievement;
 
-static int compare_wished(const void *first, const void *second, void *wish)
+static int compare_achievement(const void *first, const void *second, void *achievement)
 {
     const size_t a = *(const size_t *)first, b = *(const size_t *)second;
-    const Wish *w = wish;
+    const Achievement *w = achievement;
     const double violated = w->violation ? w->violation[a] - w->violation[b] : 0.0;
     const double more = violated != 0.0 ? violated : w->behind[a] - w->behind[b];
     return more != 0.0 ? (more > 0.0 ? 1 : -1) : (a > b) - (a < b);
 }
 
 /* Those that are least behind the levels, of whichever is most behind. */
-static void take_wished(Selection *s, size_t n, const double F[], const double violation[], size_t keep)
+static void take_achieving(Selection *s, size_t n, const double F[], const double violation[], size_t keep)
 {
     nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
     normalisation_fit_range(&s->normalisation, rows_of_layer(s, n, 0), s->list, F);
@@ -149,7 +149,7 @@ static void take_wished(Selection *s, size_t n, const double F[], const double v
             s->distance[i] =
                 fmax(s->distance[i], normalised_behind(&s->normalisation, k, s->aspire[k], F[i * s->n_obj + k]));
     }
-    qsort_r(s->list, n, sizeof *s->list, compare_wished, &(Wish){violation, s->distance});
+    qsort_r(s->list, n, sizeof *s->list, compare_achievement, &(Achievement){violation, s->distance});
     for (size_t i = 0; i < n && i < keep; i++)
         s->taken[s->list[i]] = 1;
 }
@@ -184,7 +184,7 @@ size_t selection_select(Selection *s, size_t n, const double F[], const double v
     size_t n_selected = 0;
     memset(s->taken, 0, n);
     if (s->aspire)
-        take_wished(s, n, F, violation, keep);
+        take_achieving(s, n, F, violation, keep);
     else
         take_layers(s, n, F, violation, keep, random);
     for (size_t i = 0; i < n; i++)

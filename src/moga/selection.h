@@ -5,7 +5,7 @@
  *     to it
  *   3 from the layer that does not fit, designs are taken for the directions with the fewest members
  *
- * Where levels are wished for (search.aspire) the designs that are least behind them, after those that violate less.
+ * With aspiration levels (search.aspire) the designs that are least behind them, after those that violate less.
  *
  * Nothing is kept from one call to the next.
  *
@@ -20,7 +20,7 @@
 
 typedef struct Selection Selection;
 
-/* Borrows the directions, and the levels (n_obj), NAN where there is none; NULL: nothing is wished for. */
+/* Borrows the directions, and the aspiration levels (n_obj), NAN where there is none; NULL: of no objective. */
 Status selection_create(Selection **out, size_t n_max, const Directions *directions, const double aspire[], Err *err);
 
 /* Selects min(n, keep) of F (n, n_obj), violation (n) or NULL; selected holds their rows in ascending order. */

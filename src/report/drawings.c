@@ -43,7 +43,7 @@ static void draw_side(FILE *out, const Detail *d, const Design *design, int j, d
     if (has_stop)
         fprintf(out, "<path d=\"M%.1f %.1f v10\" stroke=\"#c40\" stroke-width=\"%d\"/>\n", face, y - 5,
                 d->bumper_n_m[j] > 0 ? 6 : 3);
-    if (design->link[j] + design->friction[j] > 0)
+    if (design_has_link(design, j))
         draw_link(out, direction > 0 ? x0 : end, 150, y);
 }
 
@@ -60,7 +60,7 @@ static void label_floor(FILE *out, const Design *design, const Detail *d, int j,
     fputs("</text>", out);
     if (d->thickness_m[j] > 0)
         fprintf(out, "<text x=\"560\" y=\"%.1f\">%.1f mm</text>", y + 4, 1e3 * d->thickness_m[j]);
-    if (design->link[j] + design->friction[j] > 0)
+    if (design_has_link(design, j))
         fprintf(out, "<text x=\"630\" y=\"%.1f\">%s</text>", y + 4, design->link[j] > 0 ? "link" : "friction");
     else if (d->bumper_n_m[j] > 0)
         fprintf(out, "<text x=\"630\" y=\"%.1f\">%.3g MN/m</text>", y + 4, 1e-6 * d->bumper_n_m[j]);

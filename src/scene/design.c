@@ -314,13 +314,18 @@ const char *design_protection(const DesignSpace *s, const Design *d, char text[P
     int stops = 0, links = 0;
     for (int j = 0; j < s->n_floors; j++) {
         stops |= design_gap(d, j) < DESIGN_OPEN_M;
-        links |= d->link[j] > 0 || d->friction[j] > 0;
+        links |= design_has_link(d, j);
     }
     const char *mass = d->mass_kg > 0 ? "a tuned mass" : "";
     snprintf(text, PROTECTION_MAX, "%s%s%s%s%s", stops ? "impacts" : "", stops && links ? " and " : "",
              links ? "links" : "", stops + links && *mass ? " and " : "",
              stops + links || *mass ? mass : "the core alone");
     return text;
+}
+
+int design_has_link(const Design *d, int j)
+{
+    return d->link[j] > 0 || d->friction[j] > 0;
 }
 
 double design_gap(const Design *d, int j)

@@ -18,9 +18,8 @@
  *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
  * Of a floor, gap is a stop, bumper one with a bumper, link a dashpot and friction a friction link without a stop, none
- * nothing at all; variables of
- * what a floor or the roof does not have do nothing there. x has the place of the word, from 0. Without design.devices
- * every floor has all that design.variables name.
+ * nothing at all; variables of what a floor or the roof does not have do nothing there. x has the place of the word,
+ * from 0. Without design.devices every floor has all that design.variables name.
  *
  * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales
  * linearly. Zone z of Z has the floors from z n/Z to (z + 1) n/Z. The right gap is how far a floor may go to the right,
@@ -102,6 +101,7 @@ const char *design_protection(const DesignSpace *space, const Design *d, char te
 
 /* The smaller gap of floor j = 0..n_floors-1 [m]. */
 double design_gap(const Design *d, int j);
+int design_has_link(const Design *d, int j); /* a link or a friction link stands there */
 
 /* Thickness of the core in storey j = 0..n_floors-1 [m]. */
 double design_thickness(const DesignSpace *space, const Design *d, int j);

@@ -241,9 +241,8 @@ static const Option OPTIONS[] = {
            "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
     TEXT(design.devices, "all",
          "what a floor may have, as a choice of the search: gap (a stop), bumper, link, friction, none; the roof's "
-         "tuned mass is "
-         "one then too, and the search begins with links and a tuned mass that are tuned alone; all: no choice, every "
-         "floor has what design.variables name"),
+         "tuned mass is one then too, and the search begins with links and a tuned mass that are tuned alone; all: no "
+         "choice, every floor has what design.variables name"),
     WHOLE(design.device_zones, "0", 0, 128,
           "0: a choice for every floor; else one for each of so many zones of floors"),
     WHOLE(design.link_zones, "0", 0, 128,
@@ -257,8 +256,7 @@ static const Option OPTIONS[] = {
     BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
     SHARES(design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4",
            "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core; "
-           "the default is an "
-           "example, in thousands of euros, no quotation"),
+           "the default is an example, in thousands of euros, no quotation"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
@@ -323,7 +321,7 @@ static const Option OPTIONS[] = {
     TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
          .flags = SETTING_BASIC),
     TEXT(search.aspire, "none",
-         "levels that are wished for, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
+         "aspiration levels, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
          "to them, or is beyond them (docs/search.md); none"),
 
     CHOICE(run.isolate, Switch, CHOICE_WORDS(SWITCH_LIST), "off",

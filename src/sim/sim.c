@@ -435,7 +435,7 @@ static void add_devices(SimWorker *w, const Design *d, double exponent)
     if (d->mass_kg > 0)
         model_add_mass(model, d->mass_kg);
     for (int j = 0; j < w->core.top; j++)
-        if (d->link[j] + d->friction[j] > 0) /* one of them at most */
+        if (design_has_link(d, j))
             model_add_device(model,
                              &(Device){.floor = j,
                                        .damping = d->link[j] + d->friction[j],
@@ -490,7 +490,7 @@ static void count_devices(const SimWorker *w, const Design *d, SimResult *result
         const int is_stop = design_gap(d, j) < DESIGN_OPEN_M;
         stops += is_stop;
         bumpers += is_stop && d->bumper[j] > 0;
-        links += d->link[j] + d->friction[j] > 0;
+        links += design_has_link(d, j);
     }
     result->n_devices = stops + links + (d->mass_kg > 0);
     result->cost =
