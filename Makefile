@@ -50,6 +50,7 @@ FLAGS.base   := -DFAST_LANES=2 $(if $(filter-out base,$(WIDEST)),$(NARROW.$(MODE
 FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3 -mtune=haswell $(if $(filter avx512dq,$(WIDEST)),$(NARROW.$(MODE)))
 FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mtune=skylake-avx512 -mprefer-vector-width=512
 KERNELS      := base $(if $(filter x86_64,$(shell uname -m)),avx2 avx512)
+KERNEL_OBJ   := $(foreach kind,kernel plain,$(KERNELS:%=$(BUILD)/src/sim/fast/$(kind)_%.o))
 
 flags_of   = $(if $(2),; $(1): $(filter-out -W% -ffile-prefix-map=%,$(2)))
 FLAGS_LIST := $(filter-out -W% -ffile-prefix-map=%,$(CFLAGS)) $(call flags_of,src/sim,$(FLAGS.sim)) \
@@ -62,7 +63,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv) src/motion/builtin.csv
-LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
+LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNEL_OBJ) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
 LIB      := $(BUILD)/libprogram.a
 # What stands alone: no SQLite, no server, nothing printed. `make lib-alone` links it so.
 CORE     := $(BUILD)/libimtet.a
@@ -152,11 +153,11 @@ $(BUILD)/pic:
 $(BUILD)/src/sim/%.o: FLAGS = $(FLAGS.sim)
 $(BUILD)/src/rbf/%.o $(BUILD)/src/moga/infill.o: FLAGS = $(FLAGS.rbf)
 
-# The fast engine's kernel, once per instruction set; fast.c chooses at run time.
-$(BUILD)/src/sim/fast/kernel_%.o: src/sim/fast/kernel.c
+# The fast engine's kernel, for all scenes and for plain ones, once per instruction set; fast.c chooses at run time.
+$(KERNEL_OBJ): $(BUILD)/src/sim/fast/%.o: src/sim/fast/kernel.c
 	@mkdir -p $(@D)
 	@echo '  CC  $@'
-	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(WARNINGS) $(FLAGS.kernel) $(FLAGS.$*) -DFAST_KERNEL=fast_kernel_$* -c $< -o $@
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) $(WARNINGS) $(FLAGS.kernel) $(FLAGS.$(lastword $(subst _, ,$*))) -DFAST_KERNEL=fast_$* -DPLAIN=$(words $(filter plain_%,$*)) -c $< -o $@
 
 # The two 20-floor buildings and the built-in motions are part of the program: a file becomes the symbols _binary_PATH_start and _end.
 $(BUILD)/%.csv.o: %.csv

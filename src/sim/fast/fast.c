@@ -133,7 +133,7 @@ void fast_free(FastWork *work)
 
 typedef struct {
     const char *name;
-    FastKernel *run;
+    FastKernel *run, *plain;
 } Kernel;
 
 /* The widest vectors that this processor has. */
@@ -141,11 +141,11 @@ static Kernel best_kernel(void)
 {
 #ifdef __x86_64__
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-        return (Kernel){"avx512", fast_kernel_avx512};
+        return (Kernel){"avx512", fast_kernel_avx512, fast_plain_avx512};
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return (Kernel){"avx2", fast_kernel_avx2};
+        return (Kernel){"avx2", fast_kernel_avx2, fast_plain_avx2};
 #endif
-    return (Kernel){"base", fast_kernel_base};
+    return (Kernel){"base", fast_kernel_base, fast_plain_base};
 }
 
 const char *fast_kernel_name(void)
@@ -205,7 +205,9 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const
               const FastTolerances *tolerances, SimResult *result)
 {
     const unsigned mode = denormal_off();
-    best_kernel().run(work, model, motion, options, tolerances, result);
+    const Kernel kernel = best_kernel();
+    const int is_plain = !model->yields && model->n_devices == 0 && motion->n_force == 0;
+    (is_plain ? kernel.plain : kernel.run)(work, model, motion, options, tolerances, result);
     denormal_restore(mode);
 }
 

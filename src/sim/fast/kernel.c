@@ -1,5 +1,6 @@
-/* sim/fast/kernel.c -- step control and results of the engine `fast`; see fast.h for the method. Compiled once per
- * instruction set with FAST_KERNEL naming the entry and FAST_LANES the width of a vector. */
+/* sim/fast/kernel.c -- step control and results of the engine `fast`; see fast.h for the method. Compiled twice per
+ * instruction set with FAST_KERNEL naming the entry, FAST_LANES the width of a vector, and PLAIN: 1 where no storey
+ * yields, no device is there and no force acts on the floors, so that these cost such scenes nothing. */
 #include "sim/fast/kernel.h"
 
 #include <math.h>
@@ -9,6 +10,31 @@
 #include "sim/contact.h"
 #include "sim/energy_balance.h"
 #include "sim/force_monitor.h"
+
+static inline int yields(const FastWork *k)
+{
+    return !PLAIN && k->yields;
+}
+
+static inline int n_devices(const FastWork *k)
+{
+    return PLAIN ? 0 : k->n_devices;
+}
+
+static inline int is_pushed(const FastWork *k)
+{
+    return !PLAIN && k->has_push;
+}
+
+static inline int n_rows(const FastWork *k)
+{
+    return PLAIN ? k->n : k->rows;
+}
+
+static inline int channel_vectors(const FastWork *k)
+{
+    return PLAIN ? k->nf : k->cf;
+}
 
 /* One unit, in the order of use: static functions alone. */
 #include "sim/fast/design.inc"
@@ -69,7 +95,7 @@ static double ground_at(const Interval *in, uint32_t tick)
 /* The load of the forces on the floors at one end of the step under way. */
 static void set_push(FastWork *k, int end, uint32_t tick)
 {
-    for (int i = 0; i < k->bf && k->has_push; i++) {
+    for (int i = 0; i < k->bf && is_pushed(k); i++) {
         k->push[end][i] = k->swing[0][i] + (k->swing[1][i] - k->swing[0][i]) * ((double)tick / TICKS);
         k->push_rise[i] = k->push[1][i] - k->push[0][i];
     }
@@ -111,7 +137,7 @@ static int fly_on(FastWork *k, Interval *in, int resolving)
 /* Where the next contact step is tried: as long as the last one, where no gap is about to close in it. */
 static void set_contact_level(FastWork *k, int resolving)
 {
-    const int is_fixed = k->tolerances->energy_tolerance == 0 && (k->n_devices == 0 || k->in_contact);
+    const int is_fixed = k->tolerances->energy_tolerance == 0 && (n_devices(k) == 0 || k->in_contact);
     if (k->contact_level > resolving || is_fixed)
         k->contact_level = resolving;
     while (k->contact_level < resolving && k->state_valid && onset_ahead(k, ldexp(k->base, -k->contact_level)))
@@ -179,10 +205,10 @@ static int interval(FastWork *k, double start, double a0, double a1)
         if ((double)(k->steps + k->flights) > k->tolerances->steps_max)
             return 0;
         const int resolving = later(has_core                        ? resolving_level(k, in.speed_gain)
-                                    : k->yields || k->n_devices > 0 ? 0
+                                    : yields(k) || n_devices(k) > 0 ? 0
                                                                     : LEVEL_MAX,
                                     k->yielding_level);
-        if (!(!k->in_contact && !k->yielding && k->n_devices == 0 && fly_on(k, &in, resolving)) &&
+        if (!(!k->in_contact && !k->yielding && n_devices(k) == 0 && fly_on(k, &in, resolving)) &&
             !step_on(k, &in, resolving))
             return 0;
         if (k->options->sample && in.at < TICKS && in.at % (TICKS >> k->sample_level) == 0)
@@ -236,14 +262,14 @@ static void swing_at(FastWork *k, const Motion *motion, long i, vec *out)
 /* The forces on the floors in the first `share` of interval i; after the last sample there are none. */
 static void enter_forces(FastWork *k, const Motion *motion, long i, double share)
 {
-    const int was_pushed = k->has_push;
+    const int was_pushed = is_pushed(k);
     const vec zero = {0};
     vec most = zero;
     k->push_accel = 0;
     k->has_push = i + 1 < (long)motion->n && is_forced(motion, i, i + 1);
-    for (int m = 0; m < k->bf && was_pushed && !k->has_push; m++)
+    for (int m = 0; m < k->bf && was_pushed && !is_pushed(k); m++)
         k->push[0][m] = k->push[1][m] = k->push_rise[m] = zero;
-    if (!k->has_push)
+    if (!is_pushed(k))
         return;
     swing_at(k, motion, i, k->swing[0]);
     swing_at(k, motion, i + 1, k->swing[1]);
@@ -260,7 +286,7 @@ static void enter_forces(FastWork *k, const Motion *motion, long i, double share
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->oscillatory || k->in_contact || k->yielding || k->n_devices > 0 || first < k->free_from ||
+    if (!k->oscillatory || k->in_contact || k->yielding || n_devices(k) > 0 || first < k->free_from ||
         end - first < FREE_INTERVALS_MIN)
         return 0;
     const long n = k->free_count < end - first ? k->free_count : end - first;
@@ -337,11 +363,11 @@ static double calm_of(const FastWork *k, double left)
 static double twice_energy_about_rest(const FastWork *k)
 {
     vec sum = {0};
-    for (int i = 0; k->yields && i < k->mf; i++) {
+    for (int i = 0; yields(k) && i < k->mf; i++) {
         const vec q = k->now.q[i] - k->held[i] * k->flexibility[i];
         sum += k->now.v[i] * k->now.v[i] + k->omega[i] * k->omega[i] * q * q;
     }
-    return k->yields ? lanes_sum(sum) : twice_energy(k, &k->now, 0, k->mf);
+    return yields(k) ? lanes_sum(sum) : twice_energy(k, &k->now, 0, k->mf);
 }
 
 /* Bouc-Wen flows at any drift: of what the drifts still move, no more than this share is left out. */
@@ -353,9 +379,9 @@ static int storeys_may_yield(FastWork *k, double energy)
     const StoreyLaw *law = &k->model->storey_law;
     const double *D = k->E + k->n_pad;
     const double share = law->kind == HYSTERESIS_BILINEAR ? 1 : pow(SETTLED_FLOW, 1 / law->exponent);
-    if (k->yields)
+    if (yields(k))
         set_rest(k);
-    for (int j = 0; k->yields && j < k->n; j++) {
+    for (int j = 0; yields(k) && j < k->n; j++) {
         double soft = 0;
         for (int i = 0; i < k->model->nb; i++)
             soft += D[i * k->c_pad + j] * D[i * k->c_pad + j] * scalars_const(k->flexibility)[i];
@@ -376,7 +402,7 @@ static int is_settled(FastWork *k, const Motion *motion, long i)
     k->most_energy = larger(energy, k->most_energy);
     const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
     k->calm = calm_of(k, left);
-    return !k->in_contact && k->n_devices == 0 && !storeys_may_yield(k, left) &&
+    return !k->in_contact && n_devices(k) == 0 && !storeys_may_yield(k, left) &&
            left <= k->tolerances->tail_tolerance * energy_scale(k) && left <= PEAK_ENERGY * k->most_energy &&
            (k->tolerances->tail_share == 0 || left <= k->tolerances->tail_share * smallest_share(k));
 }
@@ -420,7 +446,7 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     k->contact_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
-    k->yielding_level = k->yields ? yielding_level(k) : 0;
+    k->yielding_level = yields(k) ? yielding_level(k) : 0;
     long look = 0; /* at the next sample from this one on */
     k->settled = duration;
     k->calm = k->crowd = 1;
@@ -508,7 +534,7 @@ static void report_energies(FastWork *k, SimResult *r)
     r->kinetic_strain_j += held;
     model_report_devices(k->model, k->device, r);
     const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
-                                k->device_taken - (k->yields ? report_storeys(k, r) : 0);
+                                k->device_taken - (yields(k) ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)

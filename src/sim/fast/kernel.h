@@ -1,4 +1,4 @@
-/* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set.
+/* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled twice per instruction set.
  *
  * Shapes   (m_pad) modes: building from 0, the kept ones of the core from nb_pad; (n_pad) floors; (c_pad)
  *          channels: the gaps of the floors, from n_pad on the storeys where some may yield, from at_device on the
@@ -215,6 +215,7 @@ typedef struct FastWork {
 typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
                         const FastTolerances *tolerances, SimResult *result);
 
-FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512;
+/* fast_plain_*: for models without storeys that yield and devices, and motions without forces on floors. */
+FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512, fast_plain_base, fast_plain_avx2, fast_plain_avx512;
 
 #endif
