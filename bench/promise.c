@@ -14,7 +14,7 @@ static const double CORE_MIN = 4e-3, CORE_MAX = 0.04, NEVER = 5;       /* [m] */
 static const double LENGTH_MIN_S = 9, LENGTH_MAX_S = 40, STRONG = 0.3; /* of the peak */
 static const double BOXES[] = {8, 11.3, 15}, MOVED = 1e-6;
 
-enum { FRONT_MAX = 60, REFERENCE_EVERY = 10 };
+enum { REFERENCE_EVERY = 10 };
 
 typedef struct {
     const char *name;
@@ -345,10 +345,10 @@ static Status write_designs(Promise *p, const Designs *d, FILE *out, FILE *progr
     const Motion *record = &p->plan->records[0];
     PromiseCase c = {
         .motion = *record, .duration = (double)(record->n - 1) * record->dt_s, .theory = p->plan->options->core.theory};
-    const long n = d->n < FRONT_MAX ? (long)d->n : FRONT_MAX;
+    const long n = (long)d->n;
     TRY(clear(p, n, err));
     for (long k = 0; k < n; k++) {
-        memcpy(c.x, d->x + (size_t)k * d->n / (size_t)n * (size_t)d->space.n_var, (size_t)d->space.n_var * sizeof *c.x);
+        memcpy(c.x, d->x + k * d->space.n_var, (size_t)d->space.n_var * sizeof *c.x);
         TRY(measure_case(p, &c, &SHARP, 1, err)); /* `fine` would take seconds for each */
     }
     write_part(p, "front", out, progress);
