@@ -141,6 +141,23 @@ TEST(the_welded_beam_of_the_example_has_four_constraints)
     run_free(&run);
 }
 
+/* What the awk program of the example solves, in closed form. */
+TEST(a_simulator_that_reads_a_template_is_searched)
+{
+    if (system("command -v python3 >/dev/null") != 0)
+        skip();
+    free(output_of("optimize configs/template.ini --out @/template --max-evals 40"));
+    Run run = run_of("template");
+    for (size_t i = 0; i < run.table.n; i++) {
+        const Evaluation *e = &run.table.row[i];
+        const double b = e->x[0], h = e->x[1], steel = e->x[2] == 0, E = steel ? 210000 : 70000;
+        assert_close(e->f[0], (steel ? 7.85e-3 : 2.7e-3) * b * h, 1e-8);
+        assert_close(e->f[1], 4 * 2000 * 1e9 / (E * b * h * h * h), 1e-8);
+        assert_close(e->extra[0], 6 * 2000 * 1e3 / (b * h * h) / (steel ? 235 : 160) - 1, 1e-7);
+    }
+    run_free(&run);
+}
+
 int main(void)
 {
     return RUN_TESTS(prepare, clear_place);
