@@ -46,7 +46,7 @@ extern "C" {
 #endif
 
 /* Semantic: functions and fields of one major version stay; below 1, of one minor version. */
-#define IMTET_VERSION "0.1.0"
+#define IMTET_VERSION "0.2.0"
 #define IMTET_API     __attribute__((visibility("default")))
 
 typedef enum {

@@ -189,7 +189,6 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
 {
     Run a, b, both;
     Err err = {0};
-    long step;
     size_t n = 0;
     char path[2][PATH_MAX];
     write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
@@ -198,9 +197,9 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
     CHECK_OK(run_read(&a, folders[0], &err), &err);
     CHECK_OK(run_read(&b, folders[1], &err), &err);
-    CHECK_OK(merged_read(&both, 2, folders, &step, &err), &err);
+    CHECK_OK(merged_read(&both, 2, folders, &err), &err);
     assert_int_equal(both.table.n, a.table.n + b.table.n);
-    assert_int_equal(step, 1000);
+    assert_int_equal(both.id_step, 1000);
     for (size_t i = 0; i < a.n_front; i++)
         n += !is_dominated(&a, a.front[i], &b);
     const size_t n_first = n;
@@ -218,7 +217,7 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     assert_less(n, n_first + b.n_front); /* the second one began with the front of the first */
     assert_int_equal(both.n_front, n);
     const size_t last = both.front[n - 1];
-    assert_int_equal(both.table.row[last].id, b.table.row[last - a.table.n].id + step);
+    assert_int_equal(both.table.row[last].id, b.table.row[last - a.table.n].id + both.id_step);
     free(output_of("export @/first @/second --csv @/both.csv"));
     Table t = table_of("both.csv");
     assert_int_equal(t.n_rows, n);

@@ -71,4 +71,4 @@ const Mixed MIXED_REDUCER = {reducer,
                              {VARIABLE_REAL, VARIABLE_REAL, VARIABLE_WHOLE},
                              {2.6, 0.7, 17, 7.3, 7.3, 2.9, 5.0},
                              {3.6, 0.8, 28, 8.3, 8.3, 3.9, 5.5}};
-const Mixed MIXED_VESSEL = {vessel, {VARIABLE_WHOLE, VARIABLE_WHOLE, VARIABLE_LOG}, {1, 1, 10, 10}, {99, 99, 200, 240}};
+const Mixed MIXED_VESSEL = {vessel, {VARIABLE_WHOLE, VARIABLE_WHOLE}, {1, 1, 10, 10}, {99, 99, 200, 240}};

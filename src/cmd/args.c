@@ -166,12 +166,11 @@ void args_place(const Args *args, Err *err)
 /* The run of the operand, or several as one. */
 static Status read_runs(const Args *args, Run *run, Err *err)
 {
-    long step;
     if (args->n_operands == 1)
         return run_read(run, args->operand, err);
-    TRY(merged_read(run, (size_t)args->n_operands, args->operands, &step, err));
+    TRY(merged_read(run, (size_t)args->n_operands, args->operands, err));
     for (int i = 1; i < args->n_operands; i++)
-        fprintf(stderr, "note: the ids of %s have %ld added\n", args->operands[i], i * step);
+        fprintf(stderr, "note: the ids of %s have %ld added\n", args->operands[i], i * run->id_step);
     return STATUS_OK;
 }
 

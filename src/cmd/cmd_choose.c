@@ -155,7 +155,7 @@ static void show_table(const Run *run, const Picks *p)
     if (n_unknown > 0)
         printf("\n%zu of them are not among the designs that the study named, and no error of theirs is known: `imtet "
                "evaluate %s --design ID` estimates it\n",
-               n_unknown, run->folder);
+               n_unknown, run->id_step > 0 ? "RUN" : run->folder);
     if (p->n > 0)
         tell_knees(run, p);
 }

@@ -347,15 +347,16 @@ json_t *report_json(const Report *r)
     const int has_errors = run_likely(run, r->chosen, likely);
     words_of_rule(run->settings, rule);
     return json_of(
-        "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s tower=%c robust=%c building=%s spread=%s "
+        "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s id_step=%ld tower=%c robust=%c building=%s "
+        "spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
         "convergence=%p detail=%p pair=%p named=%p settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
-        slash && slash[1] ? slash + 1 : name, name, r->has_detail, r->is_robust, run->settings->building.model,
-        spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), run->table.row[r->knee].id,
-        run->table.row[r->chosen].id, json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run),
-        run->n_failed, run->n_front, json_of_names(r), json_of_beyond_law(r),
-        importance_json(&r->importance, &run->schema), growth_json(run),
+        slash && slash[1] && !run->id_step ? slash + 1 : name, name, run->id_step, r->has_detail, r->is_robust,
+        run->settings->building.model, spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain),
+        run->table.row[r->knee].id, run->table.row[r->chosen].id,
+        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
+        json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
         json_of_pair(run, r->chosen), json_of_named(r), json_of_settings(run->settings), run->provenance);
 }

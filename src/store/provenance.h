@@ -9,7 +9,7 @@
 
 typedef struct Settings Settings;
 
-const char *program_version(void);  /* 0.1.0 */
+const char *program_version(void);  /* 0.2.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
 
 /* Version and revision, instruction set, and a hash of compiler, flags and libraries: where two are the same, so are

@@ -61,6 +61,7 @@ typedef struct {
 
 typedef struct Run {
     char folder[PATH_MAX];
+    long id_step;     /* of several runs as one (study/merged.h), else 0 */
     char *provenance; /* JSON */
     Settings *settings;
     Schema schema;

@@ -1,5 +1,7 @@
 #include "study/merged.h"
 
+#include <stdarg.h>
+
 #include "settings/settings.h"
 #include "store/provenance.h"
 #include "store/run_read.h"
@@ -22,34 +24,37 @@ typedef struct {
     size_t n;
 } Listed;
 
+__attribute__((format(printf, 2, 3))) static void list(Listed *l, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    if (l->n > 0 && l->n < sizeof l->text)
+        l->n += (size_t)snprintf(l->text + l->n, sizeof l->text - l->n, "; ");
+    if (l->n < sizeof l->text)
+        l->n += (size_t)vsnprintf(l->text + l->n, sizeof l->text - l->n, format, values);
+    va_end(values);
+}
+
 static void list_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
-    Listed *l = user;
     (void)flags;
-    if (is_of_problem(key) && l->n < sizeof l->text)
-        l->n += (size_t)snprintf(l->text + l->n, sizeof l->text - l->n, "%s%s %.60s and %.60s", l->n > 0 ? "; " : "",
-                                 key, was, is);
+    if (is_of_problem(key))
+        list(user, "%s %.60s and %.60s", key, was, is);
 }
 
 static Status check_same(const Run *one, const Run *other, Err *err)
 {
-    static const char *const INPUTS[][2] = {{"record_fnv1a", "content of motion.record"},
-                                            {"records_fnv1a", "content of motion.records"},
-                                            {"forces_fnv1a", "content of motion.forces"},
-                                            {"matrices_fnv1a", "content of building.model"}};
+    static const char *const INPUTS[][2] = {{"record_fnv1a", "motion.record"},
+                                            {"records_fnv1a", "motion.records"},
+                                            {"forces_fnv1a", "motion.forces"},
+                                            {"matrices_fnv1a", "building.model"}};
     Listed l = {0};
-    char was[32], is[32];
     settings_compare(one->settings, other->settings, list_difference, &l);
-    for (size_t i = 0; i < N_OF(INPUTS); i++) {
-        snprintf(was, sizeof was, "%016lx", (unsigned long)provenance_hash(one->provenance, INPUTS[i][0]));
-        snprintf(is, sizeof is, "%016lx", (unsigned long)provenance_hash(other->provenance, INPUTS[i][0]));
-        if (strcmp(was, is) != 0)
-            list_difference(INPUTS[i][1], 0, was, is, &l);
-    }
-    snprintf(was, sizeof was, "%zu", one->schema.n_extra);
-    snprintf(is, sizeof is, "%zu", other->schema.n_extra);
-    if (strcmp(was, is) != 0)
-        list_difference("constraint values", 0, was, is, &l);
+    for (size_t i = 0; i < N_OF(INPUTS); i++)
+        if (provenance_hash(one->provenance, INPUTS[i][0]) != provenance_hash(other->provenance, INPUTS[i][0]))
+            list(&l, "%s has another content", INPUTS[i][1]);
+    if (one->schema.n_extra != other->schema.n_extra)
+        list(&l, "the worker answers %zu and %zu constraint values", one->schema.n_extra, other->schema.n_extra);
     return l.n == 0 ? STATUS_OK
                     : bad_data(err, "%.60s and %.60s are runs of two problems: %s", one->folder, other->folder, l.text);
 }
@@ -105,7 +110,7 @@ static void point_at_finer(Run *run)
     }
 }
 
-static Status join(Run *to, size_t n, const Run run[], long step, Err *err)
+static Status join(Run *to, size_t n, const Run run[], Err *err)
 {
     size_t rows = 1;
     for (size_t k = 0; k < n; k++)
@@ -113,9 +118,9 @@ static Status join(Run *to, size_t n, const Run run[], long step, Err *err)
     TRY_ROOM(to->F, rows * to->schema.n_obj, "designs", err);
     TRY_ROOM(to->place, rows, "designs", err);
     for (size_t part = 0; part < 2 * n; part++)
-        TRY(append_rows(to, &run[part % n], part >= n, (long)(part % n) * step, err));
+        TRY(append_rows(to, &run[part % n], part >= n, (long)(part % n) * to->id_step, err));
     for (size_t k = 0; k < n; k++)
-        TRY(append_finer(to, &run[k], (long)k * step, err));
+        TRY(append_finer(to, &run[k], (long)k * to->id_step, err));
     point_at_finer(to);
     return run_form_front(to, err);
 }
@@ -136,39 +141,38 @@ static void take_head(Run *to, Run *first)
     first->schema.column = NULL;
 }
 
-static void count(Run *to, const Run *from, long *step)
+static void count(Run *to, const Run *from)
 {
     to->n_failed += from->n_failed;
     to->n_repeats += from->n_repeats;
     to->n_finished += from->n_finished;
     to->planned_evals += from->planned_evals;
     for (size_t i = 0; i < from->table.n; i++)
-        while (*step <= from->table.row[i].id)
-            *step *= 10;
+        while (to->id_step <= from->table.row[i].id)
+            to->id_step *= 10;
 }
 
-static Status read_all(Run *to, size_t n, const char *const folders[], Run run[], long *step, Err *err)
+static Status read_all(Run *to, size_t n, const char *const folders[], Run run[], Err *err)
 {
     for (size_t k = 0; k < n; k++) {
         TRY(run_read(&run[k], folders[k], err));
         TRY(check_same(&run[0], &run[k], err));
-        count(to, &run[k], step);
+        count(to, &run[k]);
     }
     take_head(to, &run[0]);
     for (size_t k = 1; k < n; k++) {
         const size_t at = strlen(to->folder);
-        snprintf(to->folder + at, sizeof to->folder - at, " + %s", basename(folders[k]));
+        snprintf(to->folder + at, sizeof to->folder - at, " + %s", folders[k]);
     }
-    return join(to, n, run, *step, err);
+    return join(to, n, run, err);
 }
 
-Status merged_read(Run *run, size_t n, const char *const folders[], long *step, Err *err)
+Status merged_read(Run *run, size_t n, const char *const folders[], Err *err)
 {
     Run *each;
-    *run = (Run){0};
-    *step = 1000;
+    *run = (Run){.id_step = 1000};
     TRY_ROOM(each, n, "runs", err);
-    const Status status = read_all(run, n, folders, each, step, err);
+    const Status status = read_all(run, n, folders, each, err);
     for (size_t k = 0; k < n; k++)
         run_free(&each[k]);
     free(each);

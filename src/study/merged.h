@@ -1,9 +1,10 @@
 /* study/merged.h -- several runs of one problem, read as one run.
  *
- *   rows        those of every search, then the polished ones of every run; ids of the runs after the first have the
- *               same multiple of `step`, a power of ten, added: 1, 2, ... times
+ *   rows        those of every search, then the polished ones of every run; the ids of the k-th run, from 0, have k
+ *               times `id_step`, a power of ten, added
  *   front       what is nondominated among the fronts of all; of a design that is on several the first stays
- *   the rest    settings and provenance of the first; no generations, no sessions, no state; the folder "results/A + B"
+ *   the rest    settings and provenance of the first; no generations, no sessions, no state; the folder
+ *               "results/A + results/B"
  *
  * One problem: the same settings but for search.*, run.* and how the simulator is started, the same objectives and
  * limits, and files of the same content.
@@ -15,6 +16,6 @@
 
 #include "store/run.h"
 
-Status merged_read(Run *run, size_t n, const char *const folders[], long *step, Err *err);
+Status merged_read(Run *run, size_t n, const char *const folders[], Err *err);
 
 #endif

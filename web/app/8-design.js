@@ -277,7 +277,7 @@ function designPart() {
   const host = document.getElementById("design"), d = run.detail;
   if (!d) return host.remove();
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
-  host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ${run.folder} --design ID`));
+  host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ${run.id_step ? run.folder.replaceAll(" + ", " ") : run.folder} --design ID`));
   if (run.pair) folded(host, "As found and to be built", true).append(pairTable(run.pair));
   detailParts(host, d);
 }

@@ -57,7 +57,11 @@ function familyFigure(host, family, row) {
   }));
 }
 
-const commandsOf = (id) => [`imtet evaluate ${run.folder} --design ${id}`, ...(run.tower ? [`imtet simplify ${run.folder} --design ${id}`] : []), `imtet report ${run.folder} --design ${id}`].join("\n");
+// Of several runs as one: the one that has the design, and its id there.
+function commandsOf(id) {
+  const k = run.id_step && Math.floor(id / run.id_step), folder = run.id_step ? run.folder.split(" + ")[k] : run.folder;
+  return ["evaluate", ...(run.tower ? ["simplify"] : []), "report"].map((command) => `imtet ${command} ${folder} --design ${id - k * run.id_step}`).join("\n");
+}
 
 // The row of front.csv with its head.
 const exportDesign = (row) => saveFile(`${run.name}-${ids[row]}.csv`, csvOf((i) => i === row));
