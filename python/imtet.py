@@ -134,7 +134,8 @@ class Search:
     kinds         "real", "log", "int" or "choice:steel|oak", one for all variables or a list; a choice is 0, 1, ... in X
     senses        "min" or "max", one for all objectives or a list
     start         (n, variables) designs to begin with
-    settings      of [search] as `imtet settings` lists them: population=40, stop_after=300, "search.surrogate"="off" ...
+    settings      of [search] as `imtet settings` lists them: population=40, stop_after=300, aspire="f1 0.5,f2 3" (objectives
+                  are f1, f2, ...) ...
 
     Same arguments and answers: the same designs to the last bit, however many are asked for at a time, in whatever order
     they are told, saved and loaded in between or not.

@@ -15,7 +15,7 @@ enum { ROWS_MAX = 200, VAR_MAX = 6, OBJ_MAX = 3, CON_MAX = 2, ASKED_MAX = 64 };
 typedef const char *(*AnswerFn)(long id, const double x[], double f[], double g[]);
 
 typedef struct {
-    const char *name, *ini, *kinds;
+    const char *name, *ini, *kinds, *aspire;
     size_t n_var, n_obj, n_con, n;
     double upper;
     AnswerFn answer;
@@ -52,21 +52,26 @@ static const char *answer_tenth(long id, const double x[], double f[], double g[
     "[problem]\nkind = external\ncommand = sh tests/worker.sh " mode "\nvariables = 3\nobjectives = 2\nupper = 20\n"   \
     "kinds = " kinds "\n"
 #define SEARCH "[search]\ninitial = 16\npopulation = 12\nmax_evals = 90\nthreads = 1\n"
+#define DTLZ2  "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n" SEARCH
+#define WISH   "f1 0.2,f2 0.2,f3 0.6"
 
 static const Exercise EXERCISES[] = {
-    {"dtlz2", "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n" SEARCH, "real", 6, 3, 0, 90, 1, answer_dtlz2},
-    {"bounded", WORKER("bounded", "int, int, choice:a|b") SEARCH, "int,int,choice:a|b", 3, 2, 2, 90, 20,
+    {"dtlz2", DTLZ2, "real", "none", 6, 3, 0, 90, 1, answer_dtlz2},
+    {"wished", DTLZ2 "aspire = " WISH "\n", "real", WISH, 6, 3, 0, 90, 1, answer_dtlz2},
+    {"bounded", WORKER("bounded", "int, int, choice:a|b") SEARCH, "int,int,choice:a|b", "none", 3, 2, 2, 90, 20,
      answer_bounded},
-    {"tenth", WORKER("tenth", "real") SEARCH, "real", 3, 2, 0, 90, 20, answer_tenth},
+    {"tenth", WORKER("tenth", "real") SEARCH, "real", "none", 3, 2, 0, 90, 20, answer_tenth},
 };
 
 static imtet_search *search_of(const Exercise *e)
 {
-    static const char *const settings[] = {"search.initial=16", "search.population=12", "search.max_evals=90",
-                                           "search.threads=1", NULL};
+    char aspire[64];
+    const char *const settings[] = {
+        "search.initial=16", "search.population=12", "search.max_evals=90", "search.threads=1", aspire, NULL};
     double upper[VAR_MAX];
     imtet_search *s;
     imtet_error error;
+    snprintf(aspire, sizeof aspire, "search.aspire=%s", e->aspire);
     for (size_t j = 0; j < e->n_var; j++)
         upper[j] = e->upper;
     const imtet_search_options o = {.size = sizeof o,
@@ -228,14 +233,14 @@ TEST(answers_of_designs_that_were_under_way_when_it_was_saved_are_taken_by_the_o
 
 TEST(it_says_how_far_it_is_and_why_it_ends)
 {
-    imtet_search *s = drive(&EXERCISES[2], 8, NULL);
+    imtet_search *s = drive(&EXERCISES[3], 8, NULL);
     imtet_search_state now = {.size = sizeof now};
     imtet_error error;
     must(imtet_search_look(s, &now, &error), &error);
     assert_true(now.done && now.told == 90 && now.failed == 9 && now.left == 0 && now.under_way == 0);
     assert_string_equal(now.why, "all simulations spent");
     imtet_search_free(&s);
-    s = search_of(&EXERCISES[2]);
+    s = search_of(&EXERCISES[3]);
     double X[5 * 3];
     long ids[5];
     size_t n;
@@ -341,6 +346,8 @@ TEST(options_that_are_wrong_in_one_way_are_named)
     create_fails(o, IMTET_BAD_DATA, "did you mean search.population?");
     o.settings = (const char *const[]){"search.population=2", NULL};
     create_fails(o, IMTET_BAD_DATA, "search.population");
+    o.settings = (const char *const[]){"search.aspire=f3 1", NULL};
+    create_fails(o, IMTET_BAD_DATA, "search.aspire: f3 is no objective");
     o.settings = (const char *const[]){"search.asynchronous=on", NULL};
     create_fails(o, IMTET_BAD_DATA, "search.asynchronous is no setting of a search that is asked and told");
     assert_int_equal(imtet_search_create(NULL, NULL, NULL), IMTET_MISUSED);
@@ -348,7 +355,7 @@ TEST(options_that_are_wrong_in_one_way_are_named)
 
 TEST(answers_that_make_no_sense_are_refused_as_a_whole)
 {
-    imtet_search *s = search_of(&EXERCISES[1]);
+    imtet_search *s = search_of(&EXERCISES[2]);
     imtet_error error;
     imtet_search_state now = {.size = sizeof now};
     double X[4 * 3], F[4 * 2] = {1, 2, 3, 4, 5, 6, 7, 8}, G[4 * 2] = {0};
@@ -452,7 +459,7 @@ TEST(a_file_that_is_damaged_is_refused)
     size_t length;
     Err err = {0};
     imtet_error error;
-    imtet_search *s = drive(&EXERCISES[1], 8, NULL);
+    imtet_search *s = drive(&EXERCISES[2], 8, NULL);
     must(imtet_search_save(s, path_of("whole.search", path), &error), &error);
     imtet_search_free(&s);
     CHECK_OK(file_read(path, FILE_LARGEST, &bytes, &length, &err), &err);

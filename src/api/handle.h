@@ -19,6 +19,7 @@ struct imtet_search {
     double *lower, *upper, *given;
     size_t n_given;
     VariableKind *kind;
+    double aspire[OBJECTIVES_MAX];
     Asking asking;
     size_t next;    /* no design before it is free */
     size_t failing; /* of the last that were told, in a row, */

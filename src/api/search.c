@@ -2,6 +2,7 @@
 
 #include "api/handle.h"
 #include "api/search_config.h"
+#include "evaluate/limits.h"
 #include "evaluate/tasks.h"
 #include "moga/archive.h"
 
@@ -59,6 +60,7 @@ Status handle_open(imtet_search *s, Err *err)
             return bad_data(err, "variable %zu has the bounds %g and %g; give finite ones, the lower one first", j + 1,
                             s->lower[j], s->upper[j]);
     TRY(kinds_read(s->settings.problem.kinds, n_var, s->kind, s->lower, s->upper, err));
+    TRY(aspirations_read(&a->problem.aspire, s->aspire, &s->schema, s->settings.search.aspire, err));
     a->config = search_config_of(&s->settings);
     a->config.given = s->given;
     a->config.n_given = s->n_given;
@@ -86,7 +88,7 @@ void handle_free(imtet_search *s)
 static const char *const KEYS[] = {
     "search.max_evals", "search.seed",       "search.population",   "search.initial",   "search.generations",
     "search.max_hours", "search.stop_after", "search.failures_max", "search.surrogate", "search.nondominated_share",
-    "search.threads"};
+    "search.threads",   "search.aspire"};
 
 /* The others are of runs, towers, or of evaluations that answer differently each time. */
 static Status take_settings(Settings *s, const char *const list[], Err *err)

@@ -84,8 +84,7 @@ static Status describe(Adapter *a, const Settings *s, Err *err)
     if ((a->schema.order.objectives >> MEASURE_DEVICES & 1) && a->schema.design.n_choices == 0)
         return bad_data(err, "search.objectives: all designs have the same devices: set design.devices");
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
-    TRY(aspirations_read(a->aspire, &a->schema, s->search.aspire, err));
-    a->problem.aspire = strcmp(s->search.aspire, "none") != 0 ? a->aspire : NULL;
+    TRY(aspirations_read(&a->problem.aspire, a->aspire, &a->schema, s->search.aspire, err));
     a->problem.n_con = a->limits.n + (t ? 0 : a->schema.n_extra);
     a->problem.judge = judge;
     a->problem.user = a;

@@ -91,12 +91,14 @@ void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, doubl
     }
 }
 
-Status aspirations_read(double level[], const Schema *schema, const char *list, Err *err)
+Status aspirations_read(const double **aspire, double level[], const Schema *schema, const char *list, Err *err)
 {
     char text[128], *end;
+    const int is_wished = strcmp(list, "none") != 0;
+    *aspire = is_wished ? level : NULL;
     for (size_t k = 0; k < schema->n_obj; k++)
         level[k] = NAN;
-    for (size_t i = 0, k; strcmp(list, "none") != 0 && i < list_count(list); i++) {
+    for (size_t i = 0, k; is_wished && i < list_count(list); i++) {
         char *blank = list_item(list, i, text, sizeof text) ? strrchr(text, ' ') : NULL;
         const double value = blank ? strtod(blank, &end) : NAN;
         if (!blank || *end || !isfinite(value))

@@ -29,5 +29,5 @@ Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
 /* g (n) of an evaluation with so many objectives. */
 void limits_apply(const Limits *l, size_t n_obj, const Evaluation *e, double g[]);
 
-/* level (n_obj): of the minimised objectives; NAN: none of that one. */
-Status aspirations_read(double level[], const Schema *schema, const char *list, Err *err);
+/* level (n_obj): of the minimised objectives; NAN: none of that one. *aspire: level, or NULL where the list is none. */
+Status aspirations_read(const double **aspire, double level[], const Schema *schema, const char *list, Err *err);
