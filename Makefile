@@ -4,7 +4,7 @@
 #   V=1                                       shows every command
 #   T="moga rbf"                              with test: these tests only, in MODE
 
-VERSION  := $(shell sed -n 's/^.define IMTET_VERSION "\(.*\)"/\1/p' include/imtet.h)
+VERSION  := 0.2.0
 REVISION ?= $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 MODE     ?= release
 BUILD    := build/$(MODE)
