@@ -99,8 +99,8 @@ static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
         const size_t used = strlen(fits);
         const double other = per_storey * sqrt(unit.mass / unit.stiffness);
         if (is_period(other) && (!is_right || is_floor(unit.mass * mass)))
-            snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g kg)", used ? ", " : "",
-                     WORDS[u], other, unit.mass * mass);
+            snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g t)", used ? ", " : "",
+                     WORDS[u], other, unit.mass * mass / 1e3);
     }
     if (fits[0])
         return bad_data(

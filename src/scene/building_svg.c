@@ -73,8 +73,8 @@ static void draw_frame(const Drawing *d, const Frame *f)
         draw_support(d, n);
         if (n->floor)
             fprintf(d->out,
-                    "<circle class=\"n\" cx=\"%.2f\" cy=\"%.2f\" r=\"3\"><title>floor %d: %.4g kg</title></circle>\n",
-                    px(d, n->x), py(d, n->z), n->floor, building_floor_mass(d->b, n->floor - 1));
+                    "<circle class=\"n\" cx=\"%.2f\" cy=\"%.2f\" r=\"3\"><title>floor %d: %.4g t</title></circle>\n",
+                    px(d, n->x), py(d, n->z), n->floor, building_floor_mass(d->b, n->floor - 1) / 1e3);
     }
 }
 

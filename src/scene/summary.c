@@ -125,6 +125,12 @@ static int is_period(double per_storey)
     return per_storey >= PERIOD_PER_STOREY_MIN_S && per_storey <= PERIOD_PER_STOREY_MAX_S;
 }
 
+static void warn_of_mass(const Warner *w, int floor, double mass_kg)
+{
+    say(w, "building.model", "floor %d has a mass of %.4g t; a floor usually has %g to %g t", floor, mass_kg / 1e3,
+        FLOOR_MASS_MIN_KG / 1e3, FLOOR_MASS_MAX_KG / 1e3);
+}
+
 static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
@@ -134,11 +140,9 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
         say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g",
             s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S);
     if (s->floor_mass_min_kg < FLOOR_MASS_MIN_KG)
-        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->lightest,
-            s->floor_mass_min_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
+        warn_of_mass(w, s->lightest, s->floor_mass_min_kg);
     if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
-        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->heaviest,
-            s->floor_mass_max_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
+        warn_of_mass(w, s->heaviest, s->floor_mass_max_kg);
     if (s->hardening_raised > 0)
         say(w, "building.hardening", "raised to %.3g: with less the building would not stand where all storeys yield",
             s->hardening_raised);
