@@ -9,6 +9,7 @@
 #include "check.h"
 #include "moga/constants.h"
 #include "base/dominance.h"
+#include "moga/levels.h"
 #include "moga/search.h"
 #include "searches.h"
 
@@ -343,6 +344,53 @@ TEST(penalties_whose_squares_overflow_do_not_end_a_search_with_levels)
         assert_less(3 * LEVEL_PAIRS, other.n_screened);
         forget(&other_world, &other);
     }
+}
+
+/* y = 2 + 3 y_cheap + d(x) for PAIRS designs at random, and the root mean square error of predictions at others, as a
+ * share of what the line alone would leave. */
+enum { PAIRS = 60 };
+
+static double share_left(const World *w, int is_biased, double (*unseen)(const double x[]))
+{
+    static double x[2 * PAIRS][VAR], cheap[2 * PAIRS], whole[2 * PAIRS];
+    const double *at[PAIRS];
+    double left = 0.0, all = 0.0, y;
+    Levels *levels;
+    Err err = {0};
+    for (size_t i = 0; i < 2 * PAIRS; i++) {
+        for (size_t d = 0; d < VAR; d++)
+            x[i][d] = 0.5 + 0.5 * noise_of((const double[VAR]){(double)i}, d, 7);
+        cheap[i] = noise_of(x[i], 0, 1);
+        whole[i] = 2.0 + 3.0 * cheap[i] + unseen(x[i]);
+        at[i % PAIRS] = x[i % PAIRS];
+    }
+    CHECK_OK(levels_fit(&levels, &w->problem, is_biased, PAIRS, 1, at, cheap, whole, &err), &err);
+    for (size_t i = PAIRS; i < 2 * PAIRS; i++) {
+        levels_predict(levels, x[i], cheap + i, &y);
+        left += (y - whole[i]) * (y - whole[i]);
+        all += unseen(x[i]) * unseen(x[i]);
+    }
+    levels_free(levels);
+    return sqrt(left / all);
+}
+
+static double of_region(const double x[])
+{
+    return sin(3.0 * x[0]) * x[1] - 0.35;
+}
+
+static double of_nothing(const double x[])
+{
+    return noise_of(x, 3, 3);
+}
+
+TEST(what_the_line_between_levels_leaves_is_learned_where_designs_explain_it)
+{
+    open_world(&other_world, 1);
+    assert_less(share_left(&other_world, 1, of_region), 0.35);
+    assert_less(0.9, share_left(&other_world, 0, of_region));
+    assert_less(share_left(&other_world, 1, of_nothing), 1.2);
+    evaluation_table_free(&other_world.done);
 }
 
 TEST(without_a_cheap_level_nothing_is_screened)

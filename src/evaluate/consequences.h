@@ -2,7 +2,8 @@
  *
  *   P(state s or worse | demand) = Phi(ln(demand / median_s) / beta)       s: slight, moderate, extensive, complete
  *   cost of a part = sum_s P(state s) cost_s                               [share of replacing the whole building]
- *   loss = sum over parts of the mean over storeys or floors of their cost
+ *   loss = sum over parts of the mean over storeys or floors of their cost, those of a part in proportion to what
+ *          SimOptions.repair says of it, destroyed
  *
  * A steel frame by its drift ratio in every storey, parts that break by drift (partitions, facades) likewise, parts
  * that break by acceleration (ceilings, machines, pipes) by the peak of the floor above it: unfiltered, so that spikes

@@ -1,18 +1,17 @@
 /* moga/screening.c -- screening: most designs are evaluated by the cheap level of the problem alone.
  *
- * The whole evaluation is predicted from the cheap one, output by output, over the designs that have both, y = a + b
- * y_cheap by least squares, and the predictions stand in the archive. Of the designs on the front of results and
- * predictions those that add most to the front of the whole evaluations are finished: evaluated as a whole, to the
- * same bytes as if asked for at once, of the first replicates the other simulations alone. A row of the cheap level
- * is never on the front of the archive. One design is finished for SCREENED_PER_FINISHED, LEVEL_PAIRS after the
- * initial sample, most at the end.
+ * The whole evaluation is predicted from the cheap one (moga/levels.h), and the predictions stand in the archive. Of
+ * the designs on the front of results and predictions those that add most to the front of the whole evaluations are
+ * finished: evaluated as a whole, to the same bytes as if asked for at once, of the first replicates the other
+ * simulations alone. A row of the cheap level is never on the front of the archive. LEVEL_PAIRS are finished after the
+ * initial sample, then one for SCREENED_PER_FINISHED: at the end where the cheap level is a noisy sample of the whole
+ * (replicates), as the search goes on where it is a biased one (records), so that it learns where it is deceived.
  *
  * The levels agree while Kendall's tau, mean over the objectives, is LEVEL_TAU_MIN at least: of the pairs of designs
  * that the whole evaluation tells apart; those that the cheap level does not tell apart speak neither for it nor
  * against it, so that tau of a constant is 0. Where they do not agree the initial sample is finished and nothing is
  * screened any more.
  *
- * Sources  Kennedy and O'Hagan, Biometrika 87 (2000) 1-13 (autoregression between levels)
  * Threads  one */
 #include "moga/screening.h"
 
@@ -21,10 +20,11 @@
 void screening_begin(Screening *q, const Common *c)
 {
     const Problem *p = c->problem;
-    *q = (Screening){.cost = {.whole = 1}, .agreement = NAN, .n_out = p->n_obj + p->n_con};
+    *q = (Screening){.problem = p, .cost = {.whole = 1}, .agreement = NAN, .n_out = p->n_obj + p->n_con};
     if (c->config->fidelity == FIDELITY_OFF || p->n_cheap == 0 || p->is_noisy)
         return;
     q->is_on = 1;
+    q->is_biased = c->config->fidelity == FIDELITY_RECORDS;
     q->cost = (LevelCosts){p->n_cheap, p->n_parts - p->n_cheap, p->n_parts};
 }
 
@@ -190,31 +190,6 @@ static size_t find_pairs(Screening *q, const Archive *a)
     return q->n_rows;
 }
 
-typedef struct {
-    double from, to, slope; /* means, slope between them */
-} Line;
-
-/* Where squares overflow, or the cheap level is constant beside the whole evaluation: the mean of the latter. */
-static Line fit_line(const Screening *q, const Archive *a, size_t k)
-{
-    const double n = (double)q->n_rows;
-    Line line = {0.0, 0.0, 1.0};
-    double xx = 0.0, xy = 0.0;
-    for (size_t j = 0; j < q->n_rows; j++) {
-        line.from += cheap_value(q, a->scratch.row[j], k) / n;
-        line.to += whole_value(q, a, a->scratch.row[j], k) / n;
-    }
-    for (size_t j = 0; j < q->n_rows; j++) {
-        const double x = cheap_value(q, a->scratch.row[j], k) - line.from;
-        xx += x * x;
-        xy += x * (whole_value(q, a, a->scratch.row[j], k) - line.to);
-    }
-    line.slope = xx > 0.0 ? xy / xx : 1.0;
-    if (!isfinite(line.slope))
-        line.slope = 0.0;
-    return line;
-}
-
 static int order_of(double a, double b)
 {
     return (a > b) - (a < b);
@@ -258,23 +233,59 @@ static void turn_off(Screening *q, Archive *a)
 
 /* -- predictions --------------------------------------------------------------------------------------------------- */
 
-static void predict(Screening *q, Archive *a)
+/* Of the designs that have both levels, whose rows are in scratch of the archive. */
+static Status fit_levels(const Screening *q, const Archive *a, Levels **out, Err *err)
 {
-    for (size_t k = 0; k < q->n_out; k++) {
-        const Line line = q->n_rows >= LEVEL_PAIRS ? fit_line(q, a, k) : (Line){0.0, 0.0, 1.0};
-        for (size_t i = 0; i < q->n; i++) {
-            const size_t row = q->design[i].row;
-            if (!is_open(q, a, i))
-                continue;
-            double *y = output_of(a, row, k);
-            *y = line.to + line.slope * (cheap_value(q, i, k) - line.from);
-            if (!isfinite(*y))
-                pareto_archive_drop(a, row);
+    const size_t n = q->n_rows, m = q->n_out;
+    const double **x;
+    double *cheap;
+    TRY_ROOM(x, n, "designs of both levels", err);
+    Status status = STATUS_OK;
+    cheap = malloc(2 * n * m * sizeof *cheap);
+    if (!cheap)
+        status = fail_memory(err, n, "results of both levels");
+    for (size_t j = 0; status == STATUS_OK && j < n; j++) {
+        const size_t i = a->scratch.row[j];
+        x[j] = a->X + q->design[i].row * q->problem->n_var;
+        for (size_t k = 0; k < m; k++) {
+            cheap[j * m + k] = cheap_value(q, i, k);
+            cheap[(n + j) * m + k] = whole_value(q, a, i, k);
         }
     }
-    for (size_t i = 0; i < q->n; i++)
-        if (is_open(q, a, i))
-            pareto_archive_predicted(a, q->design[i].row);
+    if (status == STATUS_OK)
+        status = levels_fit(out, q->problem, q->is_biased, n, m, x, cheap, cheap + n * m, err);
+    free(x);
+    free(cheap);
+    return status;
+}
+
+/* By the cheap level itself while there are few pairs. */
+static Status predict(Screening *q, Archive *a, Err *err)
+{
+    Levels *levels = NULL;
+    double *y;
+    TRY_ROOM(y, q->n_out, "a prediction", err);
+    Status status = q->n_rows >= LEVEL_PAIRS ? fit_levels(q, a, &levels, err) : STATUS_OK;
+    for (size_t i = 0; status == STATUS_OK && i < q->n; i++) {
+        const size_t row = q->design[i].row;
+        const double *cheap = q->y + i * q->n_out;
+        if (!is_open(q, a, i))
+            continue;
+        if (levels)
+            levels_predict(levels, a->X + row * q->problem->n_var, cheap, y);
+        int is_finite = 1;
+        for (size_t k = 0; k < q->n_out; k++) {
+            *output_of(a, row, k) = levels ? y[k] : cheap[k];
+            is_finite = is_finite && isfinite(*output_of(a, row, k));
+        }
+        if (is_finite)
+            pareto_archive_predicted(a, row);
+        else
+            pareto_archive_drop(a, row);
+    }
+    levels_free(levels);
+    free(y);
+    return status;
 }
 
 /* -- the front ----------------------------------------------------------------------------------------------------- */
@@ -316,7 +327,7 @@ Status screening_update(Screening *q, Archive *a, Err *err)
         if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
             turn_off(q, a);
     }
-    predict(q, a);
+    TRY(predict(q, a, err));
     return find_front(q, a, err);
 }
 
@@ -387,17 +398,20 @@ static size_t size_with(const Screening *q, const Common *c, const Batch *b, siz
     return MIN_OF(b->size_max, n + MIN_OF(wanted, room / q->cost.rest));
 }
 
-/* Pairs to compare the levels by, or the initial sample where nothing is screened any more. */
-static size_t wanted_now(const Screening *q)
+/* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial sample
+ * where nothing is screened any more. */
+static size_t wanted_now(const Screening *q, size_t n)
 {
-    return !q->is_on ? q->n : q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : 0;
+    if (!q->is_on)
+        return q->n;
+    return q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : q->is_biased ? finish_due(q, n) : 0;
 }
 
 Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 {
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(q, c, b, *n, wanted_now(q));
+    const size_t size = size_with(q, c, b, *n, wanted_now(q, *n));
     if (size <= *n)
         return STATUS_OK;
     if (q->is_on)

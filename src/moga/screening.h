@@ -6,6 +6,7 @@
 #pragma once
 
 #include "moga/batch.h"
+#include "moga/levels.h"
 
 /* A design of which the cheap level was evaluated first. */
 typedef struct {
@@ -14,8 +15,10 @@ typedef struct {
 } Screened;
 
 typedef struct {
+    const Problem *problem;
     LevelCosts cost; /* whole 1: nothing is screened in this search */
     size_t is_on;    /* 0: the levels do not agree, or nothing is screened */
+    int is_biased;   /* the cheap level has errors that are functions of the design: its records are always the same */
     size_t n_out;    /* objectives and constraints */
     size_t n, n_max, n_finished;
     size_t n_open;    /* on that front, not finished */

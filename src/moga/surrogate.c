@@ -51,7 +51,15 @@ static void set_corner(size_t n, size_t word, double u[])
     }
 }
 
-static void set_coordinates(const Problem *p, const double x[], double u[])
+size_t surrogate_dimension(const Problem *p)
+{
+    size_t n = 0;
+    for (size_t d = 0; d < p->n_var; d++)
+        n += n_coordinates(p, d);
+    return n;
+}
+
+void surrogate_coordinates(const Problem *p, const double x[], double u[])
 {
     for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
         if (problem_kind(p, d) == VARIABLE_CHOICE)
@@ -99,8 +107,7 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     TRY_ROOM(*out, 1, "a surrogate", err);
     Surrogate *s = *out;
     s->problem = problem;
-    for (size_t d = 0; d < problem->n_var; d++)
-        s->n_dim += n_coordinates(problem, d);
+    s->n_dim = surrogate_dimension(problem);
     s->n_out = problem->n_obj + problem->n_con;
     s->n_max = surrogate_max;
     s->predict_max = predict_max;
@@ -201,7 +208,7 @@ static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
     for (size_t i = 0, k = 0; i < a->n; i++) {
         if (a->replicates[i] == 0 || (k++) * kept / n_designs < n || n == kept)
             continue;
-        set_coordinates(s->problem, a->X + i * a->n_var, s->U + n * s->n_dim);
+        surrogate_coordinates(s->problem, a->X + i * a->n_var, s->U + n * s->n_dim);
         s->F[n++] = a->usable[i] || (a->kind[i] == KIND_SCREENED && a->ok[i]); /* which may have been dropped */
     }
     TRY((tuning ? rbf_tune : rbf_fit)(s->success, n, s->U, s->F, NULL, err));
@@ -219,7 +226,7 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
         const size_t row = a->scratch.row[i];
-        set_coordinates(s->problem, a->X + row * a->n_var, s->U + i * s->n_dim);
+        surrogate_coordinates(s->problem, a->X + row * a->n_var, s->U + i * s->n_dim);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
         for (size_t k = 0; k < s->n_out; k++)
@@ -278,7 +285,7 @@ static size_t gather(Surrogate *s, const Population *population, size_t first)
     size_t n = 0;
     for (size_t i = first; i < population->n; i++)
         if (population->row[i] == PREDICTED) {
-            set_coordinates(s->problem, population->X + i * population->n_var, s->u + n * s->n_dim);
+            surrogate_coordinates(s->problem, population->X + i * population->n_var, s->u + n * s->n_dim);
             s->member[n++] = i;
         }
     return n;
@@ -430,7 +437,7 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
         double *U = s->descent + i * length, *x = X + i * p->n_var;
         for (size_t j = 0; j < count; j++) {
             memcpy(x + j * p->n_var, a->X + infill_best(near, vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
-            set_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
+            surrogate_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
         }
         descend(s, near, count, vectors + i, U);
         for (size_t j = 0; j < count; j++)

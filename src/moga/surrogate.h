@@ -27,6 +27,10 @@
 
 typedef struct Surrogate Surrogate;
 
+/* How many coordinates a design has, and which: u (surrogate_dimension). */
+size_t surrogate_dimension(const Problem *p);
+void surrogate_coordinates(const Problem *p, const double x[], double u[]);
+
 /* Borrows the problem. predict_max: most designs of one surrogate_predict. */
 Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err);
 void surrogate_free(Surrogate *s); /* NULL is fine */

@@ -63,8 +63,9 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #undef X
 #define ENGINE_WORDS (ENGINE_BARS + 1)
 
-/* In the order of PriceOptions, UncertainOptions. */
+/* In the order of PriceOptions, RepairOptions, UncertainOptions. */
 enum { SHARES_MAX = 7 };
+static const char REPAIR_WORDS[] = "structure|drift_sensitive|acceleration_sensitive";
 static const char PRICE_WORDS[] = "gap|bumper|link|tuned_mass_t|core_t";
 static const char UNCERTAIN_WORDS[] =
     "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness|strength";
@@ -211,6 +212,10 @@ static const Option OPTIONS[] = {
            "ten are better. Chances p(NAME>NUMBER) of search.objectives are shares of all, whatever stands here",
            .number = AT_TYPED(sim.quantile, double), .min = 1e-6, .max = 1),
     REAL(sim.tail, "-", "0.2", 1e-3, 1, "cvar: share of all simulations, the worst, whose mean counts"),
+    SHARES(sim.repair, RepairOptions, REPAIR_WORDS, 1,
+           "structure=0.192 drift_sensitive=0.329 acceleration_sensitive=0.479",
+           "of loss: what parts cost that are destroyed, as shares of the building; the default is offices by Hazus, a "
+           "hospital has more that acceleration breaks"),
 
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, 1, "none",
@@ -307,7 +312,7 @@ static const Option OPTIONS[] = {
     CHOICE(search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
            "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
            "replicate, "
-           "or an eighth of the records, is simulated, and the rest where it promises most"),
+           "or a fifth of the records, is simulated, and the rest where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
          "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
     WHOLE(search.replicates_max, "4", 1, 1000,
@@ -333,6 +338,7 @@ static const Option OPTIONS[] = {
 enum { N_OPTIONS = N_OF(OPTIONS) };
 
 _Static_assert(sizeof(PriceOptions) == 5 * sizeof(double), "a price for each of PRICE_WORDS");
+_Static_assert(sizeof(RepairOptions) == 3 * sizeof(double), "a share for each of REPAIR_WORDS");
 _Static_assert(sizeof(UncertainOptions) == SHARES_MAX * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert(N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");

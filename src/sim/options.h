@@ -52,6 +52,11 @@ typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness, strength;
 } UncertainOptions;
 
+/* What a part of every storey costs, destroyed, as a share of the building (evaluate/consequences.h). */
+typedef struct {
+    double structure, drift_sensitive, acceleration_sensitive;
+} RepairOptions;
+
 typedef struct {
     Engine engine;
     Accuracy accuracy;
@@ -61,6 +66,7 @@ typedef struct {
     long replicates;          /* simulations of a design under each record */
     Robust robust;            /* how a design's results under several records become one */
     double tail;              /* of ROBUST_CVAR: share of the simulations */
+    RepairOptions repair;     /* of the measure loss */
     double quantile;          /* a number as sim.robust: on the bad side; 0: robust is one of the words */
     UncertainOptions uncertain;
     double gap_tolerance_m; /* standard deviation of a gap as built */

@@ -5,6 +5,7 @@
 #define IMTET_SIM_RESULT_H
 
 #include "scene/building.h"
+#include "sim/options.h"
 
 #define RUN_OUTCOME_LIST(X)                                                                                            \
     X(OK, "ok")                                                                                                        \
@@ -107,6 +108,7 @@ typedef struct {
     int filtered_known; /* it was asked for: SimOptions.filtered */
     double peak_filtered_g[FLOORS_MAX],
         j3_filtered_g;          /* as peak_acceleration_g behind a low-pass (sim/floor_filter.h) */
+    RepairOptions repair;       /* SimOptions.repair */
     double chance[CHANCES_MAX]; /* 1 where a limit of the search is exceeded, set by who asks (evaluate/measures.h) */
     int forces_known;           /* they were asked for: SimOptions.forces */
     SimForces forces;

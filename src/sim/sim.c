@@ -566,6 +566,7 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)
         result->cost += 1e-3 * result->mcore_kg * w->options->design.prices.core_t;
+    result->repair = w->options->sim.repair;
     set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;

@@ -5,7 +5,7 @@
 
 #include "evaluate/adapter.h"
 
-enum { PILOT = 16 };
+enum { PILOT = 8 };
 
 /* Nothing where designs are not screened by records. */
 Status record_race(Adapter *a, const Settings *s, Err *err);

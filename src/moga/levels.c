@@ -1,0 +1,107 @@
+#include "moga/levels.h"
+
+#include "base/carve.h"
+#include "moga/surrogate.h"
+
+typedef struct {
+    double from, to, slope; /* means, slope between them */
+} Line;
+
+struct Levels {
+    const Problem *problem;
+    size_t n, n_out, n_dim;
+    Line *line;    /* (n_out) */
+    Rbf *rest;     /* d; NULL: 0 */
+    double *U, *D; /* (n, n_dim) (n, n_out) coordinates, what the lines leave */
+    double *u, *d; /* (n_dim) (n_out) of a design */
+    void *store;
+};
+
+static void layout(void *levels, Carve *c)
+{
+    Levels *q = levels;
+    CARVE(c, q->line, q->n_out);
+    CARVE(c, q->U, q->n * q->n_dim);
+    CARVE(c, q->D, q->n * q->n_out);
+    CARVE(c, q->u, q->n_dim);
+    CARVE(c, q->d, q->n_out);
+}
+
+/* Output k. Where squares overflow, or the cheap level is constant beside the whole evaluation: the latter's mean. */
+static Line fit_line(const Levels *q, size_t k, const double cheap[], const double whole[])
+{
+    const double n = (double)q->n;
+    Line line = {0.0, 0.0, 1.0};
+    double xx = 0.0, xy = 0.0;
+    for (size_t i = k; i < q->n * q->n_out; i += q->n_out) {
+        line.from += cheap[i] / n;
+        line.to += whole[i] / n;
+    }
+    for (size_t i = k; i < q->n * q->n_out; i += q->n_out) {
+        const double x = cheap[i] - line.from;
+        xx += x * x;
+        xy += x * (whole[i] - line.to);
+    }
+    line.slope = xx > 0.0 ? xy / xx : 1.0;
+    if (!isfinite(line.slope))
+        line.slope = 0.0;
+    return line;
+}
+
+static double on_line(const Line *line, double cheap)
+{
+    return line->to + line->slope * (cheap - line->from);
+}
+
+static Status fit_rest(Levels *q, const double *const x[], const double cheap[], const double whole[], Err *err)
+{
+    int is_finite = 1;
+    for (size_t i = 0; i < q->n * q->n_out; i++) {
+        q->D[i] = whole[i] - on_line(&q->line[i % q->n_out], cheap[i]);
+        is_finite = is_finite && isfinite(q->D[i]);
+    }
+    if (!is_finite || q->n_dim > RBF_DIM_MAX)
+        return STATUS_OK;
+    for (size_t i = 0; i < q->n; i++)
+        surrogate_coordinates(q->problem, x[i], q->U + i * q->n_dim);
+    TRY(rbf_create(&q->rest, q->n, q->n_dim, q->n_out, err));
+    return rbf_tune(q->rest, q->n, q->U, q->D, NULL, err);
+}
+
+Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_t n_out, const double *const x[],
+                  const double cheap[], const double whole[], Err *err)
+{
+    TRY_ROOM(*out, 1, "a prediction from the cheap level", err);
+    Levels *q = *out;
+    *q = (Levels){.problem = p, .n = n, .n_out = n_out, .n_dim = surrogate_dimension(p)};
+    q->store = carve_all(layout, q);
+    Status status = q->store ? STATUS_OK : fail_memory(err, n, "pairs of levels");
+    for (size_t k = 0; status == STATUS_OK && k < n_out; k++)
+        q->line[k] = fit_line(q, k, cheap, whole);
+    if (status == STATUS_OK && is_biased)
+        status = fit_rest(q, x, cheap, whole, err);
+    if (status != STATUS_OK) {
+        levels_free(q);
+        *out = NULL;
+    }
+    return status;
+}
+
+void levels_free(Levels *q)
+{
+    if (q) {
+        free(q->rest);
+        free(q->store);
+    }
+    free(q);
+}
+
+void levels_predict(Levels *q, const double x[], const double cheap[], double y[])
+{
+    if (q->rest) {
+        surrogate_coordinates(q->problem, x, q->u);
+        rbf_eval(q->rest, 1, q->u, q->d, NULL);
+    }
+    for (size_t k = 0; k < q->n_out; k++)
+        y[k] = on_line(&q->line[k], cheap[k]) + (q->rest && rbf_explained(q->rest, k) > 0.0 ? q->d[k] : 0.0);
+}
