@@ -42,7 +42,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = 1;
 }
 
-static const Simulator SLEEPER = {simulate, combine, NULL};
+static const Simulator SLEEPER = {.simulate = simulate, .combine = combine};
 
 /* recipe: the number of parts */
 static Status reopen(Problem *p, const void *recipe, size_t size, Err *err)

@@ -51,7 +51,7 @@ static inline void function_judge(const Evaluation *e, double f[], double g[], c
         memcpy(g, e->extra, function->n_con * sizeof *g);
 }
 
-static const Simulator FUNCTION = {function_simulate, function_combine, NULL};
+static const Simulator FUNCTION = {.simulate = function_simulate, .combine = function_combine};
 
 /* One worker, the client itself. `function` must stay where it is. */
 static inline Problem function_problem(Function *function, size_t n_var, size_t n_obj, size_t n_con,

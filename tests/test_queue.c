@@ -63,7 +63,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
         evaluation_set_outcome(e, OUTCOME_ERROR, "negative");
 }
 
-static const Simulator SIMULATOR = {simulate, combine, NULL};
+static const Simulator SIMULATOR = {.simulate = simulate, .combine = combine};
 
 static void judge(const Evaluation *e, double f[], double g[], const void *user)
 {

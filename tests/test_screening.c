@@ -85,7 +85,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     mean_of(w, n > CHEAP && (w->is_unrelated || w->is_flat) ? 1 : 0, n, parts, e->f);
 }
 
-static const Simulator SIMULATOR = {simulate, combine, NULL};
+static const Simulator SIMULATOR = {.simulate = simulate, .combine = combine};
 
 static Status note_done(const Evaluation *e, void *user, Err *err)
 {

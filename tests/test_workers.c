@@ -167,6 +167,32 @@ TEST(a_design_without_input_fails_in_a_search_and_in_a_simulation_alike)
                    "--set search.objectives=j1_m,j3_g")); /* known at rest */
 }
 
+/* Designs that end the worker, keep it too long or have no result fail alone, as they do one by one. */
+TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
+{
+    static const char HOW[][9] = {"alone", "together"};
+    char text[700];
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, sizeof text,
+                 "[problem]\nkind = external\ncommand = python3 tests/batch_worker.py %s %s/sizes-%s\nvariables = 2\n"
+                 "objectives = 2\ntimeout_s = 0.5\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
+                 "threads = %d\nfailures_max = 0\n",
+                 HOW[i], place.folder, HOW[i], 1 + i);
+        write_in_place("batch.ini", text);
+        snprintf(text, sizeof text, "optimize @/batch.ini --out @/%s", HOW[i]);
+        free(output_of(text));
+    }
+    char *alone = all_of("alone"), *together = all_of("together"), *sizes = read_in_place("sizes-together");
+    assert_string_equal(alone, together);
+    assert_non_null(strstr(alone, ",dead,"));
+    assert_non_null(strstr(alone, ",timeout,"));
+    assert_non_null(strstr(alone, ",error,no"));
+    assert_non_null(strstr(sizes, "8\n8\n"));
+    free(alone);
+    free(together);
+    free(sizes);
+}
+
 static const char ISOLATED[] =
     "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n"
     "[sim]\nduration_s = 20\n[search]\nmax_evals = 80\npolish = 0\nthreads = 2\n[run]\nisolate = yes\n";

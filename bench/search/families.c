@@ -358,7 +358,7 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
         memcpy(g, e->extra, m->recipe.family.n_con * sizeof *g);
 }
 
-static const Simulator FAMILY = {simulate, combine, free};
+static const Simulator FAMILY = {.simulate = simulate, .combine = combine, .close = free};
 
 /* Rows of normal numbers made orthogonal, Gram and Schmidt twice. */
 static void draw_turn(Random *r, size_t n, double turn[][FAMILY_VAR_MAX])

@@ -120,7 +120,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = 1;
 }
 
-static const Simulator TOLD = {simulate, combine, NULL};
+static const Simulator TOLD = {.simulate = simulate, .combine = combine};
 
 /* -- the search ---------------------------------------------------------------------------------------------------- */
 

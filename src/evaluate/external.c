@@ -21,6 +21,7 @@ enum {
     LINE_MAX_BYTES = 1 << 20,
     READ_BYTES = 1 << 16,
     WORDS_MAX = 128,
+    BATCH_MAX = TASKS_MAX,
     GRACE_MS = 1000,
     LOOK_MS = 200
 };
@@ -37,14 +38,16 @@ typedef struct {
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
     size_t n_line;
-    char *request; /* behind it, REQUEST_BYTES and VALUE_BYTES of each variable */
+    char *request; /* (batch) of REQUEST_BYTES and VALUE_BYTES of each variable */
+    size_t batch;  /* designs that it wants at once */
     size_t n_request, n_sent;
-    ExternalAnswer *answer; /* to be filled; NULL: idle */
-    long id;
-    double asked, deadline;
-    size_t n_answered; /* by this process */
-    int again;         /* the request goes to a fresh process */
-    int is_second;     /* ... it did */
+    const Task *task; /* (n) under way, of which n_done are answered */
+    size_t n, n_done;
+    ExternalAnswer *answer; /* to be filled, of the next task; NULL: idle */
+    double asked, deadline; /* the former of the next answer */
+    size_t n_answered;      /* by this process */
+    int again;              /* the request goes to a fresh process */
+    int is_second;          /* ... it did */
 } Worker;
 
 typedef struct {
@@ -170,48 +173,71 @@ static ssize_t write_quietly(int fd, const char *text, size_t n)
 
 /* -- one request --------------------------------------------------------------------------------------------------- */
 
+static void expect_next(Worker *w)
+{
+    w->asked = clock_seconds();
+    w->answer = w->n_done < w->n ? w->task[w->n_done].result : NULL;
+}
+
+/* Whose fault it was that a process fails with several designs is not known: then none is settled. */
 __attribute__((format(printf, 5, 6))) static void settle(External *e, Worker *w, Outcome outcome, int kill_it,
                                                          const char *format, ...)
 {
     ExternalAnswer *a = w->answer;
+    if (kill_it)
+        worker_end(e, w, 1);
+    if (kill_it && w->n > 1) {
+        w->answer = NULL;
+        return;
+    }
     va_list list;
     va_start(list, format);
     vsnprintf(a->reason, sizeof a->reason, format, list);
     va_end(list);
     a->outcome = outcome;
     a->seconds = clock_seconds() - w->asked;
-    w->answer = NULL;
-    if (kill_it)
-        worker_end(e, w, 1);
+    w->n_done++;
+    expect_next(w);
 }
 
-/* Into room that is there from the start: half a request would be waited for. */
-static void write_request(const External *e, Worker *w, const Task *task)
+static char *write_design(const External *e, char *to, const Task *task)
 {
-    char *to = w->request, word[KIND_WORD_MAX];
-    to += sprintf(to, "{\"id\":%ld,\"x\":[", w->id);
+    char word[KIND_WORD_MAX];
+    to += sprintf(to, "{\"id\":%ld,\"x\":[", task->id);
     for (size_t d = 0; d < e->n_var; d++)
         if (e->kind && kinds_word(e->kinds, d, task->x[d], word))
             to += sprintf(to, "%s\"%s\"", d ? "," : "", word);
         else
             to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
-    to += sprintf(to, "]}\n");
+    return to + sprintf(to, "]}");
+}
+
+/* A design, or a list of them, into room that is there: half a request would be waited for. */
+static void write_request(const External *e, Worker *w)
+{
+    char *to = w->request;
+    for (size_t i = 0; i < w->n; i++) {
+        to += sprintf(to, "%s", i > 0 ? "," : w->n > 1 ? "[" : "");
+        to = write_design(e, to, &w->task[i]);
+    }
+    to += sprintf(to, "%s\n", w->n > 1 ? "]" : "");
     w->n_request = to - w->request;
     w->n_sent = 0;
 }
 
-static Status send_request(External *e, Worker *w, const Task *task, Err *err)
+static Status send_request(External *e, Worker *w, size_t n, const Task tasks[], Err *err)
 {
     if (w->pid && has_ended(w))
         worker_end(e, w, 0); /* it ended after its last answer: no fault of any design */
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
-    w->id = task->id;
-    write_request(e, w, task);
-    w->answer = task->result;
+    w->task = tasks;
+    w->n = n;
+    w->n_done = 0;
+    write_request(e, w);
+    expect_next(w);
     w->again = w->is_second = 0;
-    w->asked = clock_seconds();
-    w->deadline = w->asked + e->timeout_s;
+    w->deadline = w->asked + e->timeout_s * (double)n;
     return STATUS_OK;
 }
 
@@ -273,21 +299,38 @@ static void blank_words(char *line)
     }
 }
 
-static void take_answer(External *e, Worker *w, char *line, size_t length)
+static size_t request_bytes(const External *e)
 {
-    json_error_t error;
-    if (line[strspn(line, " \t\r")] == '{')
-        blank_words(line);
-    json_t *o = json_loadb(line, length, 0, &error);
+    return REQUEST_BYTES + VALUE_BYTES * e->n_var;
+}
+
+/* "batch" of an answer: so many designs at once from now on, where there is memory for them. 0: it is no such number. */
+static int take_batch(const External *e, Worker *w, const json_t *batch)
+{
+    const json_int_t n = json_integer_value(batch);
+    if (!batch || (size_t)n == w->batch)
+        return 1;
+    if (!json_is_integer(batch) || n < 1 || n > BATCH_MAX)
+        return 0;
+    char *room = (size_t)n > w->batch ? realloc(w->request, n * request_bytes(e)) : w->request;
+    if (room) {
+        w->request = room;
+        w->batch = n;
+    }
+    return 1;
+}
+
+static void take_design(External *e, Worker *w, const json_t *o, const char *line)
+{
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
-    w->n_answered++;
-    if (!o && json_error_code(&error) == json_error_numeric_overflow)
-        settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers: one is too large for a double", e->n_obj);
-    else if (!json_is_object(o) || !json_is_number(id))
+    const long wanted = w->task[w->n_done].id;
+    if (!json_is_object(o) || !json_is_number(id))
         settle(e, w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
-    else if (json_number_value(id) != w->id)
-        settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
+    else if (json_number_value(id) != wanted)
+        settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), wanted);
+    else if (!take_batch(e, w, json_object_get(o, "batch")))
+        settle(e, w, OUTCOME_GARBLED, 1, "batch is no whole number from 1 to %d", BATCH_MAX);
     else if (why && !json_is_null(why))
         settle(e, w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
     else if (!json_is_array(f))
@@ -298,6 +341,25 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
         settle(e, w, OUTCOME_NOT_FINITE, 0, "g is not a list of at most %d finite numbers", CONSTRAINTS_MAX);
     else
         settle(e, w, OUTCOME_OK, 0, "%s", "");
+}
+
+/* Of one design, or of a list of them the list of their answers. */
+static void take_answer(External *e, Worker *w, char *line, size_t length)
+{
+    json_error_t error;
+    const char first = line[strspn(line, " \t\r")];
+    if (first == '{' || first == '[')
+        blank_words(line);
+    json_t *o = json_loadb(line, length, 0, &error);
+    w->n_answered++;
+    if (!o && json_error_code(&error) == json_error_numeric_overflow)
+        settle(e, w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
+               e->n_obj);
+    else if (json_is_array(o) && w->n > 1)
+        for (size_t i = 0; i < json_array_size(o) && w->answer; i++)
+            take_design(e, w, json_array_get(o, i), line);
+    else
+        take_design(e, w, o, line);
     json_decref(o);
 }
 
@@ -326,7 +388,7 @@ static void take_end(External *e, Worker *w)
 {
     const int was_leaving =
         w->n_answered > 0 && w->n_line == 0 && !w->is_second && clock_seconds() < w->asked + LEFT_BEFORE_S;
-    if (was_leaving || helper_is_lost(&e->helper))
+    if (w->n == 1 && (was_leaving || helper_is_lost(&e->helper)))
         w->again = 1;
     else
         settle(e, w, OUTCOME_DEAD, 1, "the worker ended without an answer");
@@ -373,15 +435,12 @@ static void wait_for(External *e, Worker *w)
         settle(e, w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
 
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+static Status wait_for_answers(External *e, Worker *w, Err *err)
 {
-    External *e = self;
-    Worker *w = &e->worker[worker];
-    double ending = 0.0; /* since when no more is wanted */
-    TRY(send_request(e, w, task, err));
+    double ending = 0.0;   /* since when no more is wanted */
     look_for_answer(e, w); /* a worker that wrote without being asked */
     while (w->answer) {
-        if (ending == 0.0 && !task->may_go_on(task->user))
+        if (ending == 0.0 && !w->task->may_go_on(w->task->user))
             ending = clock_seconds();
         if (ending > 0.0 && clock_seconds() > ending + LAST_ANSWERS_S) {
             w->answer = NULL;
@@ -393,6 +452,35 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
             TRY(ask_again(e, w, err));
     }
     return STATUS_OK;
+}
+
+/* What a process that failed left of a batch is asked one by one, so that the design at fault fails alone. */
+static Status simulate_batch(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+{
+    External *e = self;
+    Worker *w = &e->worker[worker];
+    Status status = STATUS_OK;
+    size_t asked = n;
+    for (*n_done = 0; status == STATUS_OK && *n_done < n; asked = 1) {
+        w->n_done = 0;
+        status = send_request(e, w, asked, tasks + *n_done, err);
+        if (status == STATUS_OK)
+            status = wait_for_answers(e, w, err);
+        *n_done += w->n_done;
+    }
+    return status;
+}
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    size_t n_done;
+    return simulate_batch(self, worker, 1, task, &n_done, err);
+}
+
+static size_t batch(void *self, size_t worker)
+{
+    const External *e = self;
+    return e->worker[worker].batch;
 }
 
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
@@ -444,6 +532,7 @@ static void external_close(void *self)
     for (size_t i = 0; i < e->n_workers; i++) {
         worker_end(e, &e->worker[i], 1);
         free(e->worker[i].line);
+        free(e->worker[i].request);
     }
     helper_end(&e->helper);
     free(e->worker);
@@ -453,7 +542,11 @@ static void external_close(void *self)
     free(e);
 }
 
-static const Simulator EXTERNAL = {simulate, combine, external_close};
+static const Simulator EXTERNAL = {.simulate = simulate,
+                                   .combine = combine,
+                                   .close = external_close,
+                                   .batch = batch,
+                                   .simulate_batch = simulate_batch};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
@@ -503,10 +596,9 @@ static Status create_workers(External *e, size_t n, Err *err)
     e->worker = calloc(n, sizeof *e->worker);
     for (; e->worker && e->n_workers < n; e->n_workers++) {
         Worker *w = &e->worker[e->n_workers];
-        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES + REQUEST_BYTES + VALUE_BYTES * e->n_var)};
-        if (!w->line)
+        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES), .request = malloc(request_bytes(e)), .batch = 1};
+        if (!w->line || !w->request)
             break;
-        w->request = w->line + LINE_MAX_BYTES;
     }
     return e->n_workers == n ? STATUS_OK : fail_memory(err, n, "workers");
 }

@@ -63,7 +63,13 @@ typedef struct {
      * there. */
     void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
+    /* Several tasks at once, so many as the worker wants now, TASKS_MAX at most; *n_done of them, the first ones, are
+     * done where a status ends it. NULL: one */
+    size_t (*batch)(void *self, size_t worker);
+    Status (*simulate_batch)(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
 } Simulator;
+
+enum { TASKS_MAX = 64 };
 
 /* Who does the tasks in the place of this process (evaluate/tasks.h), which has a thread for each of several workers;
  * where there is one, the client does them itself while it waits. */

@@ -310,14 +310,22 @@ static size_t find_next(const Queue *q)
     return first;
 }
 
-static int do_task(Queue *q, size_t worker, int wait)
+/* One, or as many of those that wait as the worker wants. */
+static int do_tasks(Queue *q, size_t worker, int wait)
 {
-    Task task;
+    const Simulator *s = q->problem->simulator;
+    Task task[TASKS_MAX];
     Err why = {0};
-    if (!queue_take(q, wait, &task))
+    size_t n = 0, n_done = 0;
+    const size_t n_wanted = s->batch ? s->batch(q->problem->self, worker) : 1;
+    while (n < n_wanted && queue_take(q, wait && n == 0, &task[n]))
+        n++;
+    if (n == 0)
         return 0;
-    const Status status = q->problem->simulator->simulate(q->problem->self, worker, &task, &why);
-    queue_give(q, &task, status, &why);
+    const Status status = n > 1 ? s->simulate_batch(q->problem->self, worker, n, task, &n_done, &why)
+                                : s->simulate(q->problem->self, worker, task, &why);
+    for (size_t i = 0; i < n; i++)
+        queue_give(q, &task[i], i < n_done ? STATUS_OK : status, &why);
     return 1;
 }
 
@@ -332,7 +340,7 @@ static void wait_for_news(Queue *q)
     if (e)
         e->help(q->executing);
     else
-        do_task(q, 0, 0);
+        do_tasks(q, 0, 0);
     pthread_mutex_lock(&q->lock);
 }
 
@@ -538,7 +546,7 @@ void executor_choose(Problem *p)
 static void *work(void *user)
 {
     const Worker *w = user;
-    while (do_task(w->queue, w->number, 1))
+    while (do_tasks(w->queue, w->number, 1))
         ;
     return NULL;
 }

@@ -123,7 +123,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = 1;
 }
 
-static const Simulator TEXTBOOK = {simulate, combine, free};
+static const Simulator TEXTBOOK = {.simulate = simulate, .combine = combine, .close = free};
 
 static Status set_variables(Exercise *e, const char *kinds, Err *err)
 {

@@ -296,7 +296,7 @@ static void tower_close(void *self)
     free(t);
 }
 
-static const Simulator TOWER = {simulate, combine, tower_close};
+static const Simulator TOWER = {.simulate = simulate, .combine = combine, .close = tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
