@@ -237,7 +237,7 @@ static void write_curve(const Fragilities *f, const Evaluations *e, const Curve 
     (void)e;
     if (c->which == CASES[0])
         fprintf(script, "\nset title '%s %s %g'\nset key %s\nplot ", c->name, relation(c), c->limit->bound,
-                c->limit == f->limits.limit ? "left top" : "off");
+                c->limit == f->limits.limit ? "right center" : "off");
     fprintf(script, "$S%zu using 1:2 with points pt 7 ps 0.5 lc '%s' notitle, ", number_of(f, c), COLOURS[c->which]);
     if (isnan(fit->median))
         fputs("NaN", script);
@@ -258,7 +258,7 @@ static void write_script(FILE *script, const void *user)
             "set terminal svg size %g,%g font 'sans,13' noenhanced background '#ffffff'\n"
             "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:%.6g]\nset yrange [0:1]\nset samples 400\n"
             "set xlabel '%s [g]'\nset ylabel 'probability'\n"
-            "set key right center\nset multiplot layout %zu,%zu margins screen %g,0.98,%g,%g spacing 0.07,0.16\n",
+            "set multiplot layout %zu,%zu margins screen %g,0.98,%g,%g spacing 0.07,0.16\n",
             width, height, p->e->level[p->e->n_levels - 1] * 1.05,
             p->e->intensity[0] == 's' ? "spectral acceleration" : "peak ground acceleration", rows, columns, 60 / width,
             60 / height, 1 - 40 / height);

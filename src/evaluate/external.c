@@ -304,7 +304,7 @@ static size_t request_bytes(const External *e)
     return REQUEST_BYTES + VALUE_BYTES * e->n_var;
 }
 
-/* "batch" of an answer: so many designs at once from now on, where there is memory for them. 0: it is no such number. */
+/* "batch" of an answer: so many designs at once from now on, where there is memory. 0: it is no such number. */
 static int take_batch(const External *e, Worker *w, const json_t *batch)
 {
     const json_int_t n = json_integer_value(batch);

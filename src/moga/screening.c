@@ -398,8 +398,8 @@ static size_t size_with(const Screening *q, const Common *c, const Batch *b, siz
     return MIN_OF(b->size_max, n + MIN_OF(wanted, room / q->cost.rest));
 }
 
-/* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial sample
- * where nothing is screened any more. */
+/* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial
+ * sample where nothing is screened any more. */
 static size_t wanted_now(const Screening *q, size_t n)
 {
     if (!q->is_on)
