@@ -12,14 +12,21 @@ static void demand_numbers(const ExternalAnswer *a)
             abort();
 }
 
+/* Two designs alone, then two together. */
 static void hear(External *e, const uint8_t *data, size_t size)
 {
-    ExternalAnswer *answer = calloc(1, sizeof *answer + N_OBJ * sizeof *answer->f);
-    Worker w = {.line = malloc(LINE_MAX_BYTES)};
-    while (answer && w.line && w.id < N_DESIGNS && size > 0) {
+    const size_t one = sizeof(ExternalAnswer) + N_OBJ * sizeof(double);
+    char *answers = calloc(N_DESIGNS, one);
+    Worker w = {.line = malloc(LINE_MAX_BYTES), .batch = 1};
+    Task task[N_DESIGNS];
+    for (size_t i = 0; i < N_DESIGNS; i++)
+        task[i] = (Task){.id = (long)i + 1, .result = answers + i * one};
+    for (size_t at = 0; answers && w.line && at < N_DESIGNS && size > 0;) {
         if (!w.answer) {
-            w.answer = answer;
-            w.id++;
+            w.task = task + at;
+            w.n = at < 2 ? 1 : N_DESIGNS - at;
+            w.n_done = 0;
+            expect_next(&w);
         }
         const size_t piece = size < 7 + w.n_line ? size : 7 + w.n_line, room = LINE_MAX_BYTES - w.n_line;
         const size_t n = piece < room ? piece : room;
@@ -28,11 +35,13 @@ static void hear(External *e, const uint8_t *data, size_t size)
         data += n;
         size -= n;
         look_for_answer(e, &w);
-        if (!w.answer)
-            demand_numbers(answer);
+        for (size_t i = 0; !w.answer && i < w.n_done; i++)
+            demand_numbers(w.task[i].result);
+        at += w.answer ? 0 : w.n_done > 0 ? w.n_done : 1;
     }
+    free(w.request);
     free(w.line);
-    free(answer);
+    free(answers);
 }
 
 void fuzz_worker(const uint8_t *data, size_t size)
