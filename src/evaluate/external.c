@@ -21,7 +21,6 @@ enum {
     LINE_MAX_BYTES = 1 << 20,
     READ_BYTES = 1 << 16,
     WORDS_MAX = 128,
-    BATCH_MAX = TASKS_MAX,
     GRACE_MS = 1000,
     LOOK_MS = 200
 };
@@ -308,9 +307,9 @@ static size_t request_bytes(const External *e)
 static int take_batch(const External *e, Worker *w, const json_t *batch)
 {
     const json_int_t n = json_integer_value(batch);
-    if (!batch || (size_t)n == w->batch)
+    if (!batch)
         return 1;
-    if (!json_is_integer(batch) || n < 1 || n > BATCH_MAX)
+    if (!json_is_integer(batch) || n < 1 || n > TASKS_MAX)
         return 0;
     char *room = (size_t)n > w->batch ? realloc(w->request, n * request_bytes(e)) : w->request;
     if (room) {
@@ -330,7 +329,7 @@ static void take_design(External *e, Worker *w, const json_t *o, const char *lin
     else if (json_number_value(id) != wanted)
         settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), wanted);
     else if (!take_batch(e, w, json_object_get(o, "batch")))
-        settle(e, w, OUTCOME_GARBLED, 1, "batch is no whole number from 1 to %d", BATCH_MAX);
+        settle(e, w, OUTCOME_GARBLED, 1, "batch is no whole number from 1 to %d", TASKS_MAX);
     else if (why && !json_is_null(why))
         settle(e, w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
     else if (!json_is_array(f))
@@ -348,7 +347,7 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
 {
     json_error_t error;
     const char first = line[strspn(line, " \t\r")];
-    if (first == '{' || first == '[')
+    if (first == '{' || (first == '[' && w->n > 1))
         blank_words(line);
     json_t *o = json_loadb(line, length, 0, &error);
     w->n_answered++;
