@@ -208,10 +208,6 @@ TEST(devices_have_the_same_bytes_over_ranks)
     assert_same_files("devices", "devices-on-3");
 }
 
-static const char ISOLATED[] =
-    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n"
-    "[sim]\nduration_s = 20\n[search]\nmax_evals = 60\npolish = 0\nthreads = 1\n[run]\nisolate = yes\n";
-
 TEST(isolated_simulations_have_the_same_bytes_over_ranks)
 {
     program();
@@ -224,16 +220,14 @@ TEST(isolated_simulations_have_the_same_bytes_over_ranks)
 /* Three processes that simulate for ranks are shot while they run. */
 TEST(an_isolated_simulation_that_crashes_ends_its_design_alone_on_a_rank_too)
 {
-    char command[128];
     program();
     write_in_place("isolated.ini", ISOLATED);
     const pid_t pid = launch(3, "optimize @/isolated.ini --out @/shot --max-evals 400 --set sim.accuracy=fine");
     wait_for_evaluations("shot");
     const pid_t rank[] = {process_of(pid, 1), process_of(pid, 2)};
     for (int n = 0, k = 0; n < 3 && kill(pid, 0) == 0; k++) {
-        snprintf(command, sizeof command, "kill -KILL $(pgrep -r R -P %d | tail -1) 2>/dev/null", (int)rank[k % 2]);
         rest(0.005);
-        n += system(command) == 0;
+        n += shoot_child_of(rank[k % 2]);
     }
     expect_code(pid, 0);
     char *all = all_of("shot");

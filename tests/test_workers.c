@@ -175,7 +175,7 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
     for (int i = 0; i < 2; i++) {
         snprintf(text, sizeof text,
                  "[problem]\nkind = external\ncommand = python3 tests/batch_worker.py %s %s/sizes-%s\nvariables = 2\n"
-                 "objectives = 2\ntimeout_s = 0.5\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
+                 "objectives = 2\ntimeout_s = 2\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
                  "threads = %d\nfailures_max = 0\n",
                  HOW[i], place.folder, HOW[i], 1 + i);
         write_in_place("batch.ini", text);
@@ -193,10 +193,6 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
     free(sizes);
 }
 
-static const char ISOLATED[] =
-    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n"
-    "[sim]\nduration_s = 20\n[search]\nmax_evals = 80\npolish = 0\nthreads = 2\n[run]\nisolate = yes\n";
-
 TEST(processes_of_their_own_change_no_byte)
 {
     write_in_place("isolated.ini", ISOLATED);
@@ -211,13 +207,11 @@ TEST(processes_of_their_own_change_no_byte)
 /* Five processes are shot while they run: simulate, or have just done so, and then another one gets the next design. */
 TEST(a_simulation_that_crashes_ends_its_design_alone)
 {
-    char command[128];
     write_in_place("isolated.ini", ISOLATED);
     const pid_t pid = start("isolated.ini", "shot");
-    snprintf(command, sizeof command, "kill -KILL $(pgrep -r R -P %d | tail -1) 2>/dev/null", (int)pid);
     for (int n = 0; n < 5 && kill(pid, 0) == 0;) {
         rest(0.005);
-        n += system(command) == 0;
+        n += shoot_child_of(pid);
     }
     const int status = wait_end(pid);
     assert_true(WIFEXITED(status));
