@@ -294,4 +294,4 @@ clean: ## removes build/ and ./imtet
 
 # What the compiler wrote is up to date: make need not ask its built-in rules how to link one.
 %.d: ;
--include $(shell find build -name '*.d' 2>/dev/null)
+-include $(shell find build -path 'build/fresh-*' -prune -o -name '*.d' -print 2>/dev/null)
