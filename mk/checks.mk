@@ -1,29 +1,43 @@
 # Checks beyond the tests.
 
-.PHONY: lint deb api-fuzz fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+.PHONY: lint deb apt api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
         laws fresh-debian
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
 	@scripts/setup packages-lint.txt
 	@scripts/lint
 
-# Every reader of foreign bytes under libFuzzer; what it finds goes to build/fuzz.
+# Every reader of foreign bytes under libFuzzer; what it finds goes to build/fuzz. Readers of files need a few folders of
+# the program, and so are built in seconds: .ci/run fuzzes them for a minute.
 FUZZ_S       ?= 600
-FUZZ_OBJ     := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
-FUZZ_TARGETS := settings motion instrument archive table worker database cells
-fuzz: ## the readers under libFuzzer (clang), FUZZ_S=600 seconds in all
-	@$(MAKE) --no-print-directory MODE=fuzz CC=clang WARNINGS=-w fuzz-here
+FUZZ_READERS := settings motion instrument archive table
+FUZZ_TARGETS ?= $(FUZZ_READERS) worker database cells
+READERS      := $(BUILD)/libreaders.a
+FUZZ_FILES   := $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
+OF_READERS   := $(FUZZ_READERS:%=$(BUILD)/tests/fuzz/fuzz_%)
+fuzz: ## the readers under libFuzzer (clang), FUZZ_S=600 seconds in all; FUZZ_TARGETS="settings motion" chooses
+	@scripts/setup packages-fuzz.txt
+	@$(MAKE) --no-print-directory -j$(JOBS) MODE=fuzz CC=clang WARNINGS=-w fuzz-here
 	@scripts/fuzz build/fuzz $(FUZZ_S) $(FUZZ_TARGETS)
 
-fuzz-here: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
+fuzz-minute:
+	@$(MAKE) --no-print-directory fuzz FUZZ_S=60 FUZZ_TARGETS="$(FUZZ_READERS)"
+
+fuzz-here: $(FUZZ_FILES)
+
+$(READERS): $(foreach d,base settings scene motion,$(filter $(BUILD)/src/$(d)/%,$(LIB_OBJ))) $(BUILD)/src/sim/as_built.o $(MATRICES:%=$(BUILD)/%.o)
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $^
 
 $(BUILD)/tests/fuzz/target_%.o: tests/fuzz/libfuzzer.c
 	@mkdir -p $(@D)
 	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) -c $< -o $@
 
-$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/tests/fuzz/target_%.o $(FUZZ_OBJ) $(LIB)
+$(OF_READERS): %: $(BUILD)/tests/fuzz/targets.o $(READERS)
+$(filter-out $(OF_READERS),$(FUZZ_FILES)): %: $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run) $(LIB)
+$(FUZZ_FILES): $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/tests/fuzz/target_%.o
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDLIBS)
 
 COVER ?= $(NAMES:%=test_%)
 coverage: ## branches that the tests take, by folder; COVER="test_moga" chooses tests (gcovr)
@@ -79,8 +93,8 @@ laws: $(BENCH) ## rebound of the contact laws
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
 
-fresh-packages: ## the packages of `make deb` in a Debian that has nothing, the same way
-	@scripts/fresh-debian build/fresh-packages build/deb
+fresh-packages: apt ## the packages in a Debian that has nothing, the same way
+	@scripts/fresh-debian build/fresh-packages build/apt
 
 CALLS ?= 100000
 api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
@@ -90,3 +104,6 @@ api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
 deb: ## packages imtet, imtet-mpi, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt
 	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)
+
+apt: deb ## these packages as an apt repository in build/apt; KEY=NAME signs it (gpg)
+	@scripts/apt build/deb build/apt

@@ -243,17 +243,29 @@ static json_t *json_of_result_column(const Schema *schema, size_t k)
                    schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title);
 }
 
+/* Of a choice, in their order; null for other variables. */
+static json_t *json_of_choice(const Schema *schema, size_t j)
+{
+    char word[KIND_WORD_MAX];
+    json_t *words = schema_word(schema, j, 0, word) ? json_array() : json_null();
+    for (int i = 0; json_is_array(words) && schema_word(schema, j, i, word); i++)
+        json_array_append_new(words, json_words(word));
+    return words;
+}
+
 static json_t *json_of_names(const Report *r)
 {
     const Schema *schema = &r->run->schema;
-    json_t *variables = json_array(), *objectives = json_array(), *limited = json_array();
-    for (size_t j = 0; j < schema->n_var; j++)
+    json_t *variables = json_array(), *words = json_array(), *objectives = json_array(), *limited = json_array();
+    for (size_t j = 0; j < schema->n_var; j++) {
         json_array_append_new(variables, json_words(schema_variable(schema, j)->name));
+        json_array_append_new(words, json_of_choice(schema, j));
+    }
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(objectives, json_of_result_column(schema, k));
     for (size_t k = 0; k < schema->n_limited; k++)
         json_array_append_new(limited, json_of_result_column(schema, schema->n_obj + schema->limited[k]));
-    return json_of("variables=%p objectives=%p limited=%p bounds=%p", variables, objectives, limited,
+    return json_of("variables=%p words=%p objectives=%p limited=%p bounds=%p", variables, words, objectives, limited,
                    json_of_bounds(r));
 }
 

@@ -15,7 +15,6 @@ typedef enum {
     PART_ORIGIN,
     PART_VIOLATION,
     PART_X,
-    PART_POINT, /* the same, choices as numbers */
     PART_F,
     PART_MEANS,
     PART_LIMITED,
@@ -29,7 +28,7 @@ static const Part PARTS[][8] = {
     [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD, PART_ERR},
     [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA, PART_ERR, PART_ERR_EXTRA},
     [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
-    [EXPORT_PAGE] = {PART_ID, PART_POINT, PART_MEANS, PART_LIMITED, PART_ERR},
+    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_ERR},
 };
 
 /* Numbers of a design, each behind a comma. */
@@ -48,7 +47,6 @@ static Numbers numbers_of(const Schema *s, const Evaluation *e, const double f[]
     const int is_tower = s->order.n_obj > 0;
     switch (part) {
     case PART_X:
-    case PART_POINT:
         return (Numbers){s->n_var, s->column, e->x, .begin = ""};
     case PART_F:
         return (Numbers){s->n_obj, objectives, e->f, .begin = ""};

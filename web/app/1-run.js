@@ -11,18 +11,24 @@ const SINGLE = {
   t_base_m: ["t base", "mm", 1e3, "thickness of the core, first storey"],
   t_top_m: ["t top", "mm", 1e3, "thickness of the core, last storey"],
   side_m: ["side of the core", "m", 1, "outer side of the core's box"],
+  tuned_mass_kg: ["tuned mass", "t", 1e-3, "mass of the tuned mass at the roof"],
+  tuned_mass_hz: ["tuned to", "Hz", 1, "frequency of the tuned mass"],
+  tuned_mass_damping: ["damping of the tuned mass", "%", 100, "damping of the tuned mass, of critical"],
+};
+const NUMBERED = {
+  gap: ["mm", 1e3, "gap"],
+  bumper: ["log10 N/m", 1, "stiffness of the bumper, decimal logarithm,"],
+  link: [/^link_exponent = 1$/m.test(run.settings) ? "MN s/m" : "MN (s/m)^a", 1e-6, "dashpot between floor and core"],
+  friction: ["MN", 1e-6, "force at which floor and core slip"],
+  device: ["", 1, "device"],
 };
 
 function variableWords(name) {
-  const gap = run.tower && name.match(/^gap(?:_(left|right))?(?:_(zone_)?0*(\d+))?_m$/);
-  const bumper = run.tower && name.match(/^bumper(?:_(zone_)?0*(\d+))?_log10_n_m$/);
-  const [, side, zone, number] = gap || (bumper && [0, undefined, ...bumper.slice(1)]) || [];
-  const where = number ? `${zone ? "zone" : "floor"} ${number}` : "every floor";
-  const short = number ? (zone ? `, zone ${number}` : ` ${number}`) : "";
-  const to = side ? ` ${side}` : "";
-  if (gap) return [`gap${to}${short}`, "mm", 1e3, `gap${to} at ${where}${side ? `: how far the floor may go to the ${side}` : ""}`];
-  if (bumper) return [`bumper${short}`, "log10 N/m", 1, `stiffness of the bumper at ${where}, decimal logarithm`];
-  return (run.tower && SINGLE[name]) || [name, "", 1, name];
+  const [, stem, side, zone, number, roof] = (run.tower && name.match(/^([a-z]+)(?:_(left|right))?(?:_(zone_)?0*(\d+)|_(roof))?(?:_(?:log10_n_m|n_s_m|n|m))?$/)) || [];
+  if (!NUMBERED[stem]) return (run.tower && SINGLE[name]) || [name, "", 1, name];
+  const where = number ? `${zone ? "zone" : "floor"} ${number}` : roof ? "the roof" : "every floor", [unit, factor, what] = NUMBERED[stem];
+  const title = `${stem}${side ? ` ${side}` : ""}${number ? (zone ? `, zone ${number}` : ` ${number}`) : roof ? ", roof" : ""}`;
+  return [title, unit, factor, `${what}${side ? ` ${side}` : ""} at ${where}${side ? `: how far the floor may go to the ${side}` : ""}`];
 }
 
 function columnOf(name, place, sense, [title, unit, factor, what]) {
@@ -30,7 +36,7 @@ function columnOf(name, place, sense, [title, unit, factor, what]) {
 }
 
 const nVar = run.schema.variables.length;
-const variables = run.schema.variables.map((name, j) => columnOf(name, 1 + j, 0, variableWords(name)));
+const variables = run.schema.variables.map((name, j) => ({ ...columnOf(name, 1 + j, 0, variableWords(name)), words: run.schema.words[j] })); // words of a choice
 const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
 const objectives = results.slice(0, run.schema.objectives.length); // behind them what search.limits limits beside them
 const columns = [...results, ...variables];
@@ -42,7 +48,7 @@ for (let i = 0; i < n; i++) {
   const cells = lines[i].split(",");
   ids[i] = +cells[0];
   for (const c of columns) {
-    c.raw[i] = +cells[c.place];
+    c.raw[i] = c.words ? c.words.indexOf(cells[c.place]) : +cells[c.place];
     c.value[i] = c.raw[i] * c.factor;
   }
   objectives.forEach((c, k) => { if (cells[1 + columns.length + k]) c.error[i] = c.factor * cells[1 + columns.length + k]; });
@@ -63,7 +69,7 @@ for (const c of columns) {
 // Bounds of the search, in the units of the eye; -1, 0, 1: whether a value lies at one of them.
 variables.forEach((c, j) => {
   const b = run.schema.bounds;
-  c.bounds = b ? [b.lower[j] * c.factor, b.upper[j] * c.factor] : [NaN, NaN];
+  c.bounds = b && !c.words ? [b.lower[j] * c.factor, b.upper[j] * c.factor] : [NaN, NaN];
 });
 function atBound(c, v) {
   const [low, high] = c.bounds ?? [NaN, NaN], near = 1e-3 * (high - low);
@@ -74,6 +80,9 @@ function atBound(c, v) {
 
 // A share that is no more than a negative nothing: -0.0066 %.
 const positive = (c, v) => (c.unit === "%" && v < 0 && v > -0.05 ? 0 : v);
+
+// A tick of a column's axis.
+const tickText = (c) => (v) => (c.words ? (c.words[v] ?? "") : show(v));
 
 // Three or four digits, never an exponent where a person would not write one.
 function show(v) {
@@ -90,7 +99,7 @@ function digits(v) {
 }
 
 // A value of design i with its likely error, where one is known.
-const known = (c, i) => (Number.isFinite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
+const known = (c, i) => (c.words ? c.words[c.value[i]] : Number.isFinite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
 const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");
@@ -111,7 +120,7 @@ const heading = (c) => [c.title, ...(c.unit ? [element("small", {}, c.unit)] : [
 // ---- colours: Okabe and Ito's, and viridis without its palest end
 
 const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e69f00", SKY = "#56b4e9", GREEN = "#009e73",
-  PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32;
+  PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32, PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, GREY];
 
 // Light or dark, as the system has it or the address says; of the style sheet what canvases draw with.
 const root = document.documentElement, ownTheme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
@@ -158,6 +167,7 @@ function percentiles(c, low, high) {
 }
 
 function scaleOf(c, from, to, pad) {
+  if (c.words) return Object.assign(charts.scaleLinear([-0.3, c.words.length - 0.7], [from, to]), { ticks: () => c.words.map((_, k) => k) });
   const [low, high] = extent(c);
   const spread = state.percent.has(c) ? percentiles(c, low, high) : [];
   if (spread.length > 2) {

@@ -266,10 +266,10 @@ function readAddress() {
 // Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.
 let shade = new Uint8Array(n), byShade = [], shadeColours = RAMP;
 function findShades() {
-  const { value, palette } = state.colour, [low, high] = extent(state.colour, []), many = palette ? palette.length : SHADES;
+  const { value, words } = state.colour, [low, high] = extent(state.colour, []);
   const scale = high > low ? (SHADES - 1) / (high - low) : 0;
-  shadeColours = palette ?? RAMP;
-  for (let i = 0; i < n; i++) shade[i] = palette ? value[i] - 1 : Math.max(0, Math.min(many - 1, Math.round((value[i] - low) * scale)));
+  shadeColours = words ? PALETTE : RAMP;
+  for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : Math.max(0, Math.min(SHADES - 1, Math.round((value[i] - low) * scale)));
   byShade = Array.from({ length: n }, (_, i) => i).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
 }
 views.layout.push(findShades);

@@ -19,8 +19,8 @@ function axisActions(c) {
   return [
     ["Move left", at > 0, () => move(-1), "ArrowLeft"], ["Move right", at < state.axes.length - 1, () => move(1), "ArrowRight"],
     ["Turn over", true, () => toggle(state.inverted), "i"],
-    [state.log.has(c) ? "Linear" : "Logarithmic", extent(c, [])[0] > 0, () => toggle(state.log), "l"],
-    [state.percent.has(c) ? "By value" : "Percentiles", !c.palette, () => toggle(state.percent), "p"],
+    [state.log.has(c) ? "Linear" : "Logarithmic", !c.words && extent(c, [])[0] > 0, () => toggle(state.log), "l"],
+    [state.percent.has(c) ? "By value" : "Percentiles", !c.words, () => toggle(state.percent), "p"],
     ["Colour by it", true, () => (state.colour = c), "c"],
     ["Hide", state.axes.length > 1, () => state.axes.splice(at, 1), "Delete"],
   ];
@@ -260,7 +260,7 @@ function parallelCoordinates(host) {
       const group = charts.select(this);
       axis.brush = charts.brushY().extent([[-10, margin.top - 2], [10, height - margin.bottom + 4]])
         .on("brush end", (event) => brushed(event, axis));
-      group.append("g").call(charts.axisLeft(axis.y).tickValues(ticksOf(axis.y, 6)).tickSize(4).tickFormat(hasNumbers ? show : () => ""));
+      group.append("g").call(charts.axisLeft(axis.y).tickValues(ticksOf(axis.y, 6)).tickSize(4).tickFormat(hasNumbers ? tickText(axis.c) : () => ""));
       group.append("g").attr("class", "brush").call(axis.brush);
       headAxis(group, axis, room);
     });

@@ -111,14 +111,14 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     const bottom = p.top + p.h, many = Math.max(2, Math.min(6, Math.floor(p.w / 60)));
     group.append("rect").attr("class", "cell").attr("x", p.left).attr("y", p.top).attr("width", p.w).attr("height", p.h);
     if (p.hasY)
-      group.append("g").attr("transform", `translate(${p.left},0)`).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(show)).call((g) => g.select(".domain").remove());
+      group.append("g").attr("transform", `translate(${p.left},0)`).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(tickText(p.cy))).call((g) => g.select(".domain").remove());
     if (!p.hasX) return;
     let end = -Infinity; // of the last number, that the next one does not run into it
     for (const v of ticksOf(p.x, many)) {
-      const x = p.x(v), half = 3.6 * show(v).length;
+      const words = tickText(p.cx)(v), x = p.x(v), half = 3.6 * words.length;
       if (x - half < end + 6) continue;
       end = x + half;
-      group.append("text").attr("class", "number").attr("text-anchor", "middle").attr("x", x).attr("y", bottom + 15).text(show(v));
+      group.append("text").attr("class", "number").attr("text-anchor", "middle").attr("x", x).attr("y", bottom + 15).text(words);
     }
   }
 

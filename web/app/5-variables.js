@@ -15,22 +15,23 @@ function groupsInOrder() {
 const meanOf = (c, rows) => rows.reduce((sum, i) => sum + c.value[i], 0) / rows.length;
 
 function heatFigure(host, family) {
-  const [first] = family, isZone = /zone/.test(first.title), stem = first.title.replace(/[, ]+(zone )?\d+$/, "");
+  const [first] = family, { words } = first, isZone = /zone/.test(first.title), stem = first.title.replace(/[, ]+(zone )?\d+$/, "");
   let groups = [];
   const f = figure(host, `${stem[0].toUpperCase()}${stem.slice(1)}s of the front, by ${isZone ? "zone" : "floor"}`, null, (width) => {
     const m = family.length;
     groups = groupsInOrder();
     const values = new Float64Array(groups.length * m);
-    family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = meanOf(c, rows))));
+    family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = words ? c.value[rows[rows.length >> 1]] : meanOf(c, rows))));
     const ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
     return chart({
       width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
       x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
       y: { ...floorAxis(m), label: isZone ? "zone" : "floor" },
-      color: { scheme: "YlGnBu", domain: ends, label: titleUnit({ ...first, title: stem }), legend: true, tickFormat: show },
+      color: words ? { type: "threshold", domain: words.slice(1).map((_, k) => k + 0.5), range: PALETTE.slice(0, words.length) }
+        : { scheme: "YlGnBu", domain: ends, label: titleUnit({ ...first, title: stem }), legend: true, tickFormat: show },
       marks: groups.length ? [charts.raster(values, { width: groups.length, height: m, x1: 0, x2: groups.length, y1: 0.5, y2: m + 0.5, imageRendering: "pixelated" }), cursors()] : [],
     });
-  });
+  }, ...(words ? [legend(words.map((word, k) => [word, PALETTE[k]]))] : []));
 
   function cursors() {
     const at = groups.findIndex((rows) => rows.includes(state.marked));
@@ -93,7 +94,6 @@ function importanceFigure(host) {
 
 const TYPES_MAX = 4;
 const DISTINCT = 0.35; // of the standard deviation over the front: by that much a type differs in an objective
-const TYPE_COLOURS = [BLUE, VERMILLION, GREEN, PURPLE];
 
 // Objectives over their ranges on the front, minimised.
 const scaled = (c, i) => (c.max > c.min ? (c.sense > 0 ? c.value[i] - c.min : c.max - c.value[i]) / (c.max - c.min) : 0);
@@ -147,9 +147,9 @@ function findTypes() {
 for (const c of objectives) [c.min, c.max] = [c.value.reduce((a, b) => Math.min(a, b), Infinity), c.value.reduce((a, b) => Math.max(a, b), -Infinity)];
 const types = findTypes();
 if (types.length) {
-  const c = columnOf("type", -1, 0, ["type of design", "", 1, types.map((t, k) => `${k + 1}: ${t.name}`).join("; ")]);
-  types.forEach((t, k) => t.rows.forEach((i) => (c.raw[i] = c.value[i] = k + 1)));
-  columns.push(Object.assign(c, { family: [c], bounds: [NaN, NaN], palette: TYPE_COLOURS.slice(0, types.length) }));
+  const named = types.map((t, k) => `${k + 1} ${t.name}`), c = columnOf("type", -1, 0, ["type of design", "", 1, named.join("; ")]);
+  types.forEach((t, k) => t.rows.forEach((i) => (c.raw[i] = c.value[i] = k)));
+  columns.push(Object.assign(c, { family: [c], bounds: [NaN, NaN], words: types.map((_, k) => `${k + 1}`), named }));
 }
 
 function typesPart(host) {
@@ -159,14 +159,14 @@ function typesPart(host) {
   const rowOfType = (t, k) => {
     const name = element("button", { type: "button", title: "mark its typical design", onclick: () => mark(t.typical) }, t.name);
     const key = element("span", { class: "key" }, String(k + 1));
-    key.style.background = TYPE_COLOURS[k];
+    key.style.background = PALETTE[k];
     return line([[key, name], count(t.rows.length), String(ids[t.typical]), ...objectives.map((c) => digits(c.value[t.typical]))]);
   };
   part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
   const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));
-  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), gap: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: TYPE_COLOURS[k] })));
+  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), gap: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: PALETTE[k] })));
   figure(part, "Gaps of the typical designs", null, (width) => chart({
     width, height: 250, marginTop: 26, ariaLabel: "Gaps of the typical designs", color: { type: "identity" },
     fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { label: isEach ? "gap to the left and to the right [mm]" : "gap [mm]", grid: true, zero: true, ticks: 3, tickFormat: (v) => String(Math.abs(v)) }, y: { ...floorAxis(gaps.length / (isEach ? 2 : 1)), label: /zone/.test(gaps[0].name) ? "zone" : "floor" },

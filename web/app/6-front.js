@@ -13,12 +13,12 @@ function presetChoice() {
   return element("fieldset", {}, element("legend", {}, "Axes"), ...inputs.map(([, label, input]) => element("label", {}, input, ` ${label}`)));
 }
 
-// The bar of the colour, by the library; of types their names.
+// The bar of the colour, by the library; of choices and types their words.
 function colourBar() {
   const host = element("div", { class: "colourbar" });
   views.layout.push(() => {
     const c = state.colour, [low, high] = extent(c, []);
-    host.replaceChildren(c.palette ? legend(types.map((t, k) => [`${k + 1} ${t.name}`, c.palette[k]]))
+    host.replaceChildren(c.words ? legend((c.named ?? c.words).map((word, k) => [word, PALETTE[k]]))
       : charts.legend({ color: { type: "linear", domain: [low, high > low ? high : low + 1], interpolate: ramp }, label: titleUnit(c), ticks: 4, tickFormat: show, width: 230, style: { fontSize: "12px" } }));
   });
   return host;
@@ -54,14 +54,15 @@ function rangeInputs() {
     return { c, axis, low, high, row: element("div", {}, axis, element("span", { class: "name", title: c.what }, titleUnit(c)), low, "\u2013", high) };
   });
 
-  function read(input, standard) {
-    const value = input.value.trim() === "" ? standard : +input.value;
+  function read(c, input, standard) {
+    const text = input.value.trim(), at = c.words?.indexOf(text);
+    const value = text === "" ? standard : c.words ? (at < 0 ? NaN : at) : +text;
     input.classList.toggle("bad", Number.isNaN(value));
     return value;
   }
 
   function take(c, low, high) {
-    const range = [read(low, -Infinity), read(high, Infinity)];
+    const range = [read(c, low, -Infinity), read(c, high, Infinity)];
     if (range.some(Number.isNaN)) return;
     setRanges([[c, range[0] === -Infinity && range[1] === Infinity ? null : range]]);
   }
@@ -70,14 +71,14 @@ function rangeInputs() {
   views.layout.push(() => {
     for (const { c, axis, low, high } of inputs) {
       axis.checked = state.axes.includes(c);
-      [low.placeholder, high.placeholder] = [c.low, c.high].map(show);
+      [low.placeholder, high.placeholder] = [c.low, c.high].map(tickText(c));
     }
   });
   follow(null, () => {
     for (const { c, low, high } of inputs) {
       const range = state.ranges.get(c);
-      if (document.activeElement !== low) low.value = range && range[0] > -Infinity ? show(range[0]) : "";
-      if (document.activeElement !== high) high.value = range && range[1] < Infinity ? show(range[1]) : "";
+      if (document.activeElement !== low) low.value = range && range[0] > -Infinity ? tickText(c)(c.words ? Math.ceil(range[0]) : range[0]) : "";
+      if (document.activeElement !== high) high.value = range && range[1] < Infinity ? tickText(c)(c.words ? Math.floor(range[1]) : range[1]) : "";
     }
   });
   return element("details", { id: "ranges" }, element("summary", {}, "Axes and ranges as numbers"), box);

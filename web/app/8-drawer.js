@@ -43,8 +43,8 @@ function difference(value, before) {
 function numbersOf(row) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables.filter((c) => c.family.length === 1)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
-      ...(other === undefined ? [] : [difference(c.value[row], c.value[other])])]))]);
+    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${!c.words && atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+      ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other])])]))]);
 }
 
 // Of a design that was not simulated again: what its variables say.
@@ -74,7 +74,7 @@ function fillDrawer(row, d) {
     if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);
-    else for (const family of families.values()) if (!family[0].sense && family.length > 1) familyFigure(host, family, row);
+    else for (const family of families.values()) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
     if (d?.with_core) peakPart(host, d, 240);
     host.append(element("details", {}, element("summary", {}, "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
     if (d?.with_core) drawerMore.rest(host, d);
