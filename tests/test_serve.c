@@ -162,6 +162,13 @@ static char *ask(const char *method, const char *path, const char *headers, cons
     return hear(fd);
 }
 
+static char *post(const char *path, const char *body)
+{
+    char length[64];
+    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
+    return ask("POST", path, length, body);
+}
+
 static void expect_code(int wanted, const char *method, const char *path, const char *headers)
 {
     char *answer = ask(method, path, headers, "");
@@ -189,9 +196,8 @@ static json_t *ask_json(const char *path)
 
 static json_t *post_json(const char *path, json_t *question)
 {
-    char length[64], *body = json_dumps(question, JSON_REAL_PRECISION(17));
-    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
-    json_t *answer = json_of_answer(ask("POST", path, length, body));
+    char *body = json_dumps(question, JSON_REAL_PRECISION(17));
+    json_t *answer = json_of_answer(post(path, body));
     free(body);
     json_decref(question);
     return answer;
@@ -563,9 +569,19 @@ static void test_two_runs_are_measured_in_one_box(void **state)
     size_t i, n_records = 0;
     json_array_foreach(differs, i, key) n_records += strcmp(json_string_value(key), "motion.records") == 0;
     assert_int_equal(n_records, 1);
+    json_t *three = ask_json("/%T/0/against/1,3"), *runs = json_object_get(three, "runs");
+    assert_int_equal(json_array_size(runs), 3);
+    assert_true(json_equal(json_object_get(json_array_get(runs, 1), "f"),
+                           json_object_get(json_array_get(json_object_get(both, "runs"), 1), "f")));
+    assert_true(json_equal(json_object_get(three, "differences"), differs));
+    json_decref(three);
     json_decref(others);
     json_decref(both);
     json_decref(again);
+    expect_code(404, "GET", "/%T/0/against/1,", "");
+    expect_code(404, "GET", "/%T/0,1/front", "");
+    expect_code(404, "GET", "/%T/0/against/1,1,1,1", "");
+    expect_code(404, "GET", "/%T/0/design/1,2", "");
     expect_code(400, "GET", "/%T/0/against/2", ""); /* other objectives */
     expect_code(404, "GET", "/%T/0/against/9", "");
     expect_code(404, "GET", "/%T/2/what-if", ""); /* no tower */
@@ -656,6 +672,49 @@ static void test_nothing_of_a_run_is_written(void **state)
     table_free(&front);
 }
 
+static void refuse_note(int wanted, const char *note)
+{
+    char *answer = post("/%T/1/notes", note);
+    assert_int_equal(code_of(answer), wanted);
+    free(answer);
+}
+
+static void test_notes_are_of_designs_of_the_run_and_lie_beside_it(void **state)
+{
+    (void)state;
+    Table front = table_of("runs/b/front.csv");
+    const int id = (int)front.values[0];
+    char key[24], path[PATH_MAX];
+    snprintf(key, sizeof key, "%d", id);
+    json_t *notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", "<b>good</b>"));
+    json_t *again = ask_json("/%T/1/notes");
+    assert_string_equal(json_string_value(json_object_get(notes, key)), "<b>good</b>");
+    assert_true(json_equal(notes, again));
+    json_decref(again);
+    json_decref(notes);
+    char *page = ask("GET", "/%T/1/", "", "");
+    assert_non_null(strstr(page, "good"));
+    assert_null(strstr(page, "<b>good")); /* no markup of a note is the page's */
+    free(page);
+    refuse_note(404, "{\"id\": 987654, \"text\": \"none\"}");
+    refuse_note(400, "{\"id\": \"knee\", \"text\": \"none\"}");
+    notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", ""));
+    assert_int_equal(json_object_size(notes), 0);
+    json_decref(notes);
+    write_in_place("runs/b/notes.json", "[1]"); /* by hand, and wrong: stays as it is */
+    expect_code(400, "GET", "/%T/1/notes", "");
+    char *wanted = NULL;
+    assert_int_not_equal(asprintf(&wanted, "{\"id\": %d, \"text\": \"other\"}", id), -1);
+    refuse_note(400, wanted);
+    free(wanted);
+    expect_code(200, "GET", "/%T/1/", "");
+    char *kept = read_in_place("runs/b/notes.json");
+    assert_string_equal(kept, "[1]");
+    free(kept);
+    assert_int_equal(unlink(path_of("runs/b/notes.json", path)), 0);
+    table_free(&front);
+}
+
 static void copy(const char *from, const char *to)
 {
     char command[512];
@@ -729,7 +788,7 @@ static void test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now(
     copy("runs/a", "odd/a");
     const Served before = serve_here("odd/a");
     json_t *bounds = ask_json("/%T/0/what-if");
-    assert_true(json_is_true(json_object_get(bounds, "is_comparable")));
+    assert_int_equal(json_integer_value(json_object_get(bounds, "simulations")), 1);
     json_decref(bounds);
     copy("runs/d", "odd/a");
     Table front = table_of("runs/d/front.csv");
@@ -743,10 +802,16 @@ static void test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now(
     }
     assert_int_equal(n, front.n_rows);
     bounds = ask_json("/%T/0/what-if");
-    assert_true(json_is_false(json_object_get(bounds, "is_comparable")));
+    assert_in_range(json_integer_value(json_object_get(bounds, "simulations")), 2, 100);
     json_decref(bounds);
-    json_decref(post_json("/%T/0/what-if",
-                          json_pack("{s:i, s:i, s:o}", "page", 1, "turn", 1, "x", numbers_of_row(&front, 0, 1, 22))));
+    for (int whole = 0; whole < 2; whole++) { /* as the run judges it, and then in its place on the front */
+        now = post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:o}", "turn", 1, "whole", whole, "x",
+                                                   numbers_of_row(&front, 0, 1, 22)));
+        assert_int_equal(json_is_integer(json_object_get(now, "dominated_by")), whole);
+        const double j1 = json_number_value(json_array_get(json_object_get(now, "objectives"), 0));
+        assert_int_equal(fabs(j1 - front.values[23]) <= 1e-3 * j1, whole);
+        json_decref(now);
+    }
     table_free(&front);
     end_here(before);
 }
@@ -939,6 +1004,7 @@ int main(void)
         cmocka_unit_test(test_two_runs_are_measured_in_one_box),
         cmocka_unit_test(test_the_page_is_the_report_with_live_parts),
         cmocka_unit_test(test_nothing_of_a_run_is_written),
+        cmocka_unit_test(test_notes_are_of_designs_of_the_run_and_lie_beside_it),
         cmocka_unit_test(test_a_run_has_the_same_bytes_with_ten_pages_looking_on),
         cmocka_unit_test(test_a_run_that_cannot_be_read_holds_up_no_listing),
         cmocka_unit_test(test_a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers),

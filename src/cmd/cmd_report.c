@@ -5,63 +5,29 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/dossier.h"
-#include "motion/builtin.h"
-#include "motion/suite.h"
 #include "motion/motion_scale.h"
+#include "report/elsewhere.h"
 #include "report/report.h"
 #include "settings/options.h"
 
-enum { RECORDS_MAX = 32 };
-
-/* The study's own come first. */
-typedef struct {
-    size_t n, n_seen; /* n_seen: records of the run, whose first one the design is simulated under anyway */
-    const char *path[RECORDS_MAX];
-    char own[RECORDS_MAX][OPTION_TEXT_MAX]; /* those that the run names */
-} Records;
-
-static Status take_own(const char *source, void *user, Err *err)
+static Status take_records(const Args *args, const Settings *run, OtherRecords *r, Err *err)
 {
-    Records *r = user;
-    if (r->n_seen++ == 0 || r->n == RECORDS_MAX)
-        return STATUS_OK;
-    r->path[r->n] = r->own[r->n];
-    return option_put_path(r->own[r->n++], source, err);
-}
-
-static Status take_given(const char *source, void *user, Err *err)
-{
-    ((Records *)user)->n_seen++;
-    return take_own(source, user, err);
-}
-
-/* The further ones of the run, those of the command line, and where there is neither the built-in motions that the run
- * did not use. */
-static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
-{
-    static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
-    TRY(suite_of_study(&run->motion, take_own, r, err));
+    TRY(elsewhere_of_study(r, &run->motion, err));
     for (int i = 0; (path = args_next(args, "--record", &i));)
-        TRY(take_given(path, r, err));
+        TRY(elsewhere_add(r, path, err));
     if (args_has(args, "--records"))
-        TRY(suite_each(args_value(args, "--records"), take_given, r, err));
-    if (r->n == RECORDS_MAX)
-        return misused(err, "more than %d earthquakes make no report", RECORDS_MAX - 1);
-    const int none = r->n == 0;
-    for (size_t i = 0; none && i < N_OF(BUILT_IN); i++)
-        if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
-            r->path[r->n++] = BUILT_IN[i];
-    return STATUS_OK;
+        TRY(elsewhere_add(r, args_value(args, "--records"), err));
+    return elsewhere_otherwise(r, &run->motion, err);
 }
 
-static Status open_report(const Args *args, const Run *run, Records *records, Report *r, Err *err)
+static Status open_report(const Args *args, const Run *run, OtherRecords *records, Report *r, Err *err)
 {
     const char *design = args_value(args, "--design");
     Settings other = *run->settings;
     size_t row;
     long floor;
-    DetailOptions options = {.other = &other, .records = records->path, .with_ladder = !args_has(args, "--pictures")};
+    DetailOptions options = {.other = &other, .records = records->source, .with_ladder = !args_has(args, "--pictures")};
     TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, records, err));
@@ -105,22 +71,22 @@ static Status check_dossier(const Run *run, const char *path, Err *err)
     return dossier_check(path, err);
 }
 
-static Status dossier(const Args *args, const Run *run, const Report *r, const Records *records, const char *path,
-                      Err *err)
+static Status dossier(const Args *args, const Run *run, const Report *r, const OtherRecords *records,
+                      const char *path, Err *err)
 {
     Settings s = *run->settings;
     RecordPaths moved;
     TRY(args_moved(args, &moved, err));
     TRY(record_paths_find(&s, run->provenance, &moved, err));
     run_steps(run, r->chosen, &s.sim);
-    return dossier_write(r, &s, records->n, records->path, path, err);
+    return dossier_write(r, &s, records->n, records->source, path, err);
 }
 
 static Status report(const Args *args, const Run *run, Err *err)
 {
     char path[PATH_MAX];
     Report r = {0};
-    Records records = {0};
+    OtherRecords records = {0};
     const int is_dossier = args_has(args, "--dossier");
     TRY(take_target(args, path, err));
     TRY(is_dossier ? check_dossier(run, path, err) : STATUS_OK);

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "base/hypervolume.h"
 #include "report/words.h"
+#include "store/notes.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
 
@@ -346,6 +347,13 @@ static json_t *json_of_pair(const Run *run, size_t chosen)
     return list;
 }
 
+/* Of several runs as one, and where they cannot be read: none. */
+static json_t *json_of_notes(const Run *run)
+{
+    json_t *notes = NULL;
+    return run->id_step == 0 && notes_read(run->folder, &notes, NULL) == STATUS_OK ? notes : json_object();
+}
+
 json_t *report_json(const Report *r)
 {
     const Run *run = r->run;
@@ -362,7 +370,7 @@ json_t *report_json(const Report *r)
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s id_step=%ld tower=%c robust=%c building=%s "
         "spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
-        "convergence=%p detail=%p pair=%p named=%p settings=%p provenance=%s",
+        "convergence=%p detail=%p pair=%p named=%p notes=%p settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
         slash && slash[1] && !run->id_step ? slash + 1 : name, name, run->id_step, r->has_detail, r->is_robust,
         run->settings->building.model, spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain),
@@ -370,5 +378,5 @@ json_t *report_json(const Report *r)
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
         json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        json_of_pair(run, r->chosen), json_of_named(r), json_of_settings(run->settings), run->provenance);
+        json_of_pair(run, r->chosen), json_of_named(r), json_of_notes(run), json_of_settings(run->settings), run->provenance);
 }

@@ -46,10 +46,10 @@ json_t *answer_front(const Look *look)
     return answer;
 }
 
-/* -- two runs ------------------------------------------------------------------------------------------------------ */
+/* -- some runs ----------------------------------------------------------------------------------------------------- */
 
-/* Of both fronts: from a fifth of their range below the best to the worst. */
-static void box_of(const Look *const look[2], double lower[], double reference[])
+/* Of all fronts: from a fifth of their range below the best to the worst. */
+static void box_of(size_t n, const Look *const look[], double lower[], double reference[])
 {
     const size_t m = look[0]->run.schema.n_obj;
     double f[OBJECTIVES_MAX];
@@ -57,7 +57,7 @@ static void box_of(const Look *const look[2], double lower[], double reference[]
         lower[k] = INFINITY;
         reference[k] = -INFINITY;
     }
-    for (int r = 0; r < 2; r++)
+    for (size_t r = 0; r < n; r++)
         for (size_t i = 0; i < look[r]->run.n_front; i++) {
             run_minimise(&look[r]->run, look[r]->run.front[i], f);
             for (size_t k = 0; k < m; k++) {
@@ -111,17 +111,17 @@ static Status growth_in(const Run *run, const double lower[], const double refer
     return STATUS_OK;
 }
 
-static Status check_pair(const Look *const look[2], Err *err)
+static Status check_same(const Schema *a, const Look *look, Err *err)
 {
-    const Schema *a = &look[0]->run.schema, *b = &look[1]->run.schema;
-    for (int r = 0; r < 2; r++)
-        if (look[r]->run.n_front == 0)
-            return fail(err, STATUS_MISSING, "%s: has no front yet", look[r]->run.folder);
+    const Schema *b = &look->run.schema;
+    if (look->run.n_front == 0)
+        return fail(err, STATUS_MISSING, "%s: has no front yet", look->run.folder);
     int same = a->n_obj == b->n_obj;
     for (size_t k = 0; same && k < a->n_obj; k++)
         same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
                schema_objective(a, k)->sense == schema_objective(b, k)->sense;
-    return same ? STATUS_OK : bad_data(err, "the two runs have other objectives: their fronts cannot be compared");
+    return same ? STATUS_OK
+                : bad_data(err, "%s: has other objectives: its front cannot be compared", look->run.folder);
 }
 
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */
@@ -129,23 +129,27 @@ static void name_difference(const char *key, unsigned flags, const char *was, co
 {
     (void)flags, (void)was, (void)is;
     if (strncmp(key, "search.", 7) != 0 && strncmp(key, "run.", 4) != 0)
-        json_array_append_new(user, json_string(key));
+        json_object_set_new(user, key, json_true());
 }
 
-Status answer_against(const Look *const look[2], const char *const name[2], json_t **out, Err *err)
+Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
-    TRY(check_pair(look, err));
-    box_of(look, lower, reference);
-    json_t *runs = json_array(), *differences = json_array();
+    for (size_t r = 0; r < n; r++)
+        TRY(check_same(&look[0]->run.schema, look[r], err));
+    box_of(n, look, lower, reference);
+    json_t *runs = json_array(), *differences = json_object(), *keys = json_array();
     Status status = STATUS_OK;
-    for (int r = 0; r < 2 && status == STATUS_OK; r++) {
+    for (size_t r = 0; r < n && status == STATUS_OK; r++) {
         json_t *one = json_of("name=%s f=%p", name[r], json_of_front(&look[r]->run));
         status = growth_in(&look[r]->run, lower, reference, one, err);
         json_array_append_new(runs, one);
+        settings_compare(look[0]->run.settings, look[r]->run.settings, name_difference, differences);
     }
-    settings_compare(look[0]->run.settings, look[1]->run.settings, name_difference, differences);
-    *out = json_of("runs=%p differences=%p", runs, differences);
+    for (void *at = json_object_iter(differences); at; at = json_object_iter_next(differences, at))
+        json_array_append_new(keys, json_string(json_object_iter_key(at)));
+    json_decref(differences);
+    *out = json_of("runs=%p differences=%p", runs, keys);
     if (status != STATUS_OK)
         json_decref(*out);
     return status;

@@ -5,10 +5,10 @@
  *            read has the state "unreadable", the "reason", and its last numbers if there are any
  *   front    {"generation", "knee", "ids": [n_front], "f": [n_front][n_obj]} in natural signs and units, and
  *            growth_json (report/report_json.h)
- *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same], "differences": settings in which they are two
- *            problems, whose fronts are no comparison}, both volumes in one
- *            box: from a fifth of the range of both fronts below their best to their worst, by fixed samples
- *            (base/hypervolume.h), of the designs that were on a front so far
+ *   against  {"runs": [{"name", "f", "simulated", "volume"}, ...], "differences": settings in which others are another
+ *            problem than the first, whose fronts are no comparison}, all volumes in one box: from a fifth of the range
+ *            of all fronts below their best to their worst, by fixed samples (base/hypervolume.h), of the designs that
+ *            were on a front so far
  *
  * Ownership  the caller's reference; NULL: no memory, or a name that is no UTF-8
  * Threads    pure functions */
@@ -23,6 +23,6 @@ json_t *answer_status(const View *view, const char *name);
 json_t *answer_front(const Look *look);
 
 /* Other objectives: STATUS_BAD_DATA. A front that is empty: STATUS_MISSING. */
-Status answer_against(const Look *const look[2], const char *const name[2], json_t **out, Err *err);
+Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err);
 
 #endif

@@ -44,20 +44,20 @@ static int is_token(const char *token, const char *url)
     return differs == 0;
 }
 
-/* Digits up to the next slash; *at moves behind it. */
+/* Digits up to the next slash or comma; *at moves behind it. */
 static int take_number(const char **at, long *number)
 {
     const size_t n = strspn(*at, "0123456789");
-    if (n == 0 || n > 9 || ((*at)[n] && (*at)[n] != '/'))
+    if (n == 0 || n > 9 || ((*at)[n] && !strchr("/,", (*at)[n])))
         return 0;
     *number = strtol(*at, NULL, 10);
-    *at += n + ((*at)[n] == '/');
+    *at += n + ((*at)[n] != 0);
     return 1;
 }
 
 PathVerdict guard_path(const char *token, const char *url, ServePath *out)
 {
-    *out = (ServePath){.run = -1, .number = -1};
+    *out = (ServePath){.run = -1};
     if (url[0] != '/' || !is_token(token, url + 1))
         return PATH_NONE;
     const char *at = url + TOKEN_TEXT;
@@ -65,16 +65,18 @@ PathVerdict guard_path(const char *token, const char *url, ServePath *out)
         return *at ? PATH_UNKNOWN : PATH_UNENDED;
     at++;
     if (take_number(&at, &out->run) && at[-1] != '/')
-        return PATH_UNENDED;
+        return at[-1] == ',' ? PATH_UNKNOWN : PATH_UNENDED;
     const size_t n = strspn(at, "abcdefghijklmnopqrstuvwxyz-");
     if (n >= WORD_MAX)
         return PATH_UNKNOWN;
     memcpy(out->word, at, n);
     at += n;
-    if (*at == '/' && n > 0) {
-        at++;
-        if (!take_number(&at, &out->number) || at[-1] == '/')
+    if (*at != '/' || n == 0)
+        return *at ? PATH_UNKNOWN : PATH_OK;
+    at++;
+    do
+        if (out->n_numbers == PATH_NUMBERS || !take_number(&at, &out->number[out->n_numbers++]))
             return PATH_UNKNOWN;
-    }
-    return *at ? PATH_UNKNOWN : PATH_OK;
+    while (at[-1] == ',');
+    return at[-1] == '/' ? PATH_UNKNOWN : PATH_OK;
 }

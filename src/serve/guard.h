@@ -5,7 +5,7 @@
  *            port: the browser at the other end of an ssh tunnel names that of the tunnel, and a page of another port
  *            has another Origin
  *   Origin   none, or http://HOST of the same request: other pages of the same browser are refused
- *   path     /TOKEN/WORD, /TOKEN/RUN/WORD or /TOKEN/RUN/WORD/NUMBER, RUN and NUMBER of digits: nothing of a request
+ *   path     /TOKEN/WORD, /TOKEN/RUN/WORD or /TOKEN/RUN/WORD/NUMBER,NUMBER..., all of digits: nothing of a request
  *            ever becomes a path of the disk
  *
  * Threads  pure functions
@@ -15,7 +15,7 @@
 
 #include "base/status.h"
 
-enum { TOKEN_TEXT = 49, WORD_MAX = 16 };
+enum { TOKEN_TEXT = 49, WORD_MAX = 16, PATH_NUMBERS = 3 };
 
 Status guard_token(char token[TOKEN_TEXT], Err *err);
 
@@ -24,8 +24,10 @@ int guard_host(const char *host);
 int guard_origin(const char *origin, const char *host);
 
 typedef struct {
-    long run, number;    /* -1: none */
+    long run;            /* -1: none */
     char word[WORD_MAX]; /* of a-z and -; empty: none */
+    size_t n_numbers;
+    long number[PATH_NUMBERS]; /* (n_numbers) */
 } ServePath;
 
 /* NONE: the token is wrong; UNENDED: /TOKEN or /TOKEN/RUN, whose pages end with a slash. */

@@ -9,12 +9,14 @@
 #include "base/dominance.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
+#include "report/elsewhere.h"
 #include "report/report_json.h"
 #include "settings/settings.h"
 
 /* What a scene is opened with. */
 typedef struct {
     double pga_g, stretch, restitution; /* pga_g 0: scaled as the run's */
+    int is_whole;                       /* all records and replicates of the run, not one simulation */
 } Ground;
 
 typedef struct {
@@ -33,7 +35,7 @@ struct OnDemand {
     size_t next_design;
     pthread_mutex_t scene; /* of the rest */
     Settings used;         /* those of the run, its records where they are now */
-    int is_single;         /* the run judges designs by one simulation */
+    size_t n_simulations;  /* by which the run judges a design */
     Ground own, ground;    /* of the run, pga_g as its motion has it; of the scene that is open */
     atomic_size_t n_var;   /* 0: none was opened yet; once it is set the settings, the run's ground and bounds stay */
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
@@ -41,6 +43,7 @@ struct OnDemand {
     Problem problem; /* on that ground */
     int is_open;
     SimResult no_core, result;
+    ReplicateSummary summary; /* of the result, where the ground is whole */
 };
 
 typedef struct {
@@ -121,11 +124,19 @@ static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_d
 {
     Settings s = *run->settings;
     Detail d;
+    OtherRecords others = {0};
     s.search.threads = 1;
     TRY(record_paths_find(&s, run->provenance, o->moved, err));
     run_steps(run, row, &s.sim);
-    const DetailOptions options = {
-        .floor = -1, .moved = *o->moved, .without_devices = !with_devices, .with_ladder = with_devices};
+    TRY(elsewhere_of_study(&others, &s.motion, err));
+    TRY(elsewhere_otherwise(&others, &s.motion, err));
+    const DetailOptions options = {.floor = -1,
+                                   .moved = *o->moved,
+                                   .without_devices = !with_devices,
+                                   .with_ladder = with_devices,
+                                   .other = &s,
+                                   .n_records = others.n,
+                                   .records = others.source};
     TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
     *text = text_of(run, row, &d);
     detail_free(&d);
@@ -165,7 +176,8 @@ Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *
 
 static int is_same(const Ground *a, const Ground *b)
 {
-    return a->pga_g == b->pga_g && a->stretch == b->stretch && a->restitution == b->restitution;
+    return a->pga_g == b->pga_g && a->stretch == b->stretch && a->restitution == b->restitution &&
+           a->is_whole == b->is_whole;
 }
 
 static Status open_scene(OnDemand *o, const Ground *g, Err *err)
@@ -182,7 +194,7 @@ static Status open_scene(OnDemand *o, const Ground *g, Err *err)
     }
     s.motion.stretch = g->stretch;
     s.contact.restitution = g->restitution;
-    TRY(tower_open(&o->problem, &s, TOWER_SINGLE, 1, err));
+    TRY(tower_open(&o->problem, &s, g->is_whole ? TOWER_AS_SET : TOWER_SINGLE, 1, err));
     o->is_open = 1;
     o->ground = *g;
     return tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_NO_CORE}, &o->no_core, err);
@@ -217,8 +229,8 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
         return fail(err, STATUS_MISSING, "%s: is no run of the tower: nothing to change", run->folder);
     o->used = o->settings;
     o->used.search.threads = 1;
-    o->is_single = o->used.sim.replicates == 1 && suite_count(&o->used.motion) == 1;
-    o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution};
+    o->n_simulations = (size_t)o->used.sim.replicates * suite_count(&o->used.motion);
+    o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution, 0};
     TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
     TRY(open_scene(o, &o->own, err));
     if (o->problem.n_var != run->schema.n_var)
@@ -257,14 +269,14 @@ Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err)
     char scalings[SCALINGS_TEXT_MAX], options[sizeof ONCE + sizeof CERTAIN];
     TRY(prepare(o, run, err));
     const int scales_otherwise = o->used.motion.pga_g == 0 && motion_scalings(&o->used.motion, scalings) > 0;
-    snprintf(options, sizeof options, "%s%s", o->is_single ? "" : ONCE,
+    snprintf(options, sizeof options, "%s%s", o->n_simulations == 1 ? "" : ONCE,
              is_uncertain(&o->used.sim.uncertain) ? CERTAIN : "");
     *bounds = json_of(
-        "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p is_comparable=%c options=%s pga_options=%s",
+        "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p simulations=%ld options=%s pga_options=%s",
         json_numbers(o->n_var, o->lower), json_numbers(o->n_var, o->upper), json_deep_copy(o->values),
         json_numbers(3, (double[]){g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE}),
         json_numbers(3, (double[]){g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE}),
-        json_numbers(3, (double[]){RESTITUTION[0], g->restitution, RESTITUTION[1]}), o->is_single, options,
+        json_numbers(3, (double[]){RESTITUTION[0], g->restitution, RESTITUTION[1]}), (long)o->n_simulations, options,
         scales_otherwise ? SCALED_OTHERWISE : "");
     return STATUS_OK;
 }
@@ -311,7 +323,8 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
         {"pga_g", own->pga_g / PGA_SHARE, own->pga_g * PGA_SHARE, 0, &q->ground.pga_g},
         {"stretch", own->stretch / STRETCH_SHARE, own->stretch * STRETCH_SHARE, own->stretch, &q->ground.stretch},
         {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
-    *q = (Question){.turn = json_integer_value(json_object_get(given, "turn"))};
+    *q = (Question){.turn = json_integer_value(json_object_get(given, "turn")),
+                    .ground.is_whole = json_integer_value(json_object_get(given, "whole")) > 0};
     Status status =
         json_is_object(given) ? take_design(o, given, q->x, err) : bad_data(err, "the question is no JSON object");
     for (size_t i = 0; status == STATUS_OK && i < N_OF(numbers); i++)
@@ -351,7 +364,7 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
     for (int j = 0; j < tower_n_floors(tower); j++)
         gap_m[j] = design_gap(&design, j);
     for (int k = 0; k < order->n_obj; k++)
-        natural[k] = measure_value(r, order->of[k]);
+        natural[k] = q->ground.is_whole ? o->summary.mean[order->of[k]] : measure_value(r, order->of[k]);
     const int ok = r->outcome == RUN_OK;
     json_t *answer = json_of(
         "turn=%ld outcome=%s reason=%s objectives=%p gap_m=%p peaks=%p no_core=%p beyond_law=%c seconds=%g", q->turn,
@@ -361,7 +374,7 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
         r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
-    if (ok && o->is_single && same_ground)
+    if (ok && (o->n_simulations == 1 || q->ground.is_whole) && same_ground)
         set_place(run, natural, answer);
     return answer;
 }
@@ -373,7 +386,9 @@ Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size
     TRY(take_question(o, question, n, &q, err));
     pthread_mutex_lock(&o->scene);
     Status status = open_scene(o, &q.ground, err);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK && q.ground.is_whole)
+        status = tower_replicate(&o->problem, 1, q.x, &o->result, &o->summary, err);
+    else if (status == STATUS_OK)
         status = tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_IMPACT, .x = q.x}, &o->result, err);
     if (status == STATUS_OK)
         *answer = json_of_answer(o, run, &q);

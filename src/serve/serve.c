@@ -12,6 +12,7 @@
 #include "report/report_json.h"
 #include "serve/answers.h"
 #include "serve/guard.h"
+#include "store/notes.h"
 
 /* FILES_OWN: of the process beside its connections. */
 enum { STALL_S = 15, EVENT_MAX = 2048, FILES_OWN = 40, PACKED_MIN = 16384 };
@@ -26,6 +27,7 @@ struct Server {
     RecordPaths moved;
     Watch *watch;
     struct MHD_Daemon *daemon;
+    pthread_mutex_t notes; /* of all runs */
     pthread_mutex_t mutex; /* of the rest */
     int waiting[PEERS_MAX /
                 2];         /* (n_waiting) sockets, in the order in which they began to wait for a request; -1: none */
@@ -266,7 +268,7 @@ static Status show_importance(Visit *v, Answer *a, Err *err)
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
-    return on_demand_design(v->view.look->on_demand, &v->view.look->run, v->request->path.number, &a->text, err);
+    return on_demand_design(v->view.look->on_demand, &v->view.look->run, v->request->path.number[0], &a->text, err);
 }
 
 static Status show_bounds(Visit *v, Answer *a, Err *err)
@@ -284,21 +286,56 @@ static Status show_what_if(Visit *v, Answer *a, Err *err)
     return answer_json(answer, 17, a);
 }
 
+static Status show_notes(Visit *v, Answer *a, Err *err)
+{
+    json_t *notes;
+    TRY(notes_read(v->view.look->run.folder, &notes, err));
+    return answer_json(notes, 6, a);
+}
+
+/* Of a design of the run; what is noted then is the answer. */
+static Status take_note(Visit *v, Answer *a, Err *err)
+{
+    const Run *run = &v->view.look->run;
+    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
+    const json_t *id = json_object_get(given, "id");
+    const char *text = json_string_value(json_object_get(given, "text"));
+    Status status = STATUS_OK;
+    if (!json_is_integer(id) || !text)
+        status = bad_data(err, "a note is {\"id\": number, \"text\": words}");
+    else if (run_find(run, json_integer_value(id)) == run->table.n)
+        status = fail(err, STATUS_MISSING, "%s: has no design %lld", run->folder, json_integer_value(id));
+    pthread_mutex_lock(&v->server->notes);
+    if (status == STATUS_OK)
+        status = notes_put(run->folder, json_integer_value(id), text, err);
+    pthread_mutex_unlock(&v->server->notes);
+    json_decref(given);
+    TRY(status);
+    return show_notes(v, a, err);
+}
+
 static Status show_against(Visit *v, Answer *a, Err *err)
 {
     Watch *w = v->server->watch;
-    const long number = v->request->path.number;
-    View other;
-    json_t *both;
-    if (number >= (long)watch_n(w))
-        return fail(err, STATUS_MISSING, "there is no run %ld", number);
-    TRY(watch_take(w, number, PAGE_S, &other, err));
-    const Look *const look[2] = {v->view.look, other.look};
-    const char *const name[2] = {watch_name(w, v->run), watch_name(w, number)};
-    const Status status = answer_against(look, name, &both, err);
-    watch_give(&other);
+    const ServePath *path = &v->request->path;
+    View other[PATH_NUMBERS] = {0};
+    const Look *look[PATH_NUMBERS + 1] = {v->view.look};
+    const char *name[PATH_NUMBERS + 1] = {watch_name(w, v->run)};
+    json_t *all = NULL;
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < path->n_numbers && status == STATUS_OK; i++) {
+        status = path->number[i] >= (long)watch_n(w)
+                     ? fail(err, STATUS_MISSING, "there is no run %ld", path->number[i])
+                     : watch_take(w, path->number[i], PAGE_S, &other[i], err);
+        look[i + 1] = other[i].look;
+        name[i + 1] = status == STATUS_OK ? watch_name(w, path->number[i]) : NULL;
+    }
+    if (status == STATUS_OK)
+        status = answer_against(path->n_numbers + 1, look, name, &all, err);
+    for (size_t i = 0; i < path->n_numbers; i++)
+        watch_give(&other[i]);
     TRY(status);
-    return answer_json(both, 6, a);
+    return answer_json(all, 6, a);
 }
 
 /* -- all runs ------------------------------------------------------------------------------------------------------ */
@@ -396,7 +433,8 @@ typedef Status (*ShowFn)(Visit *v, Answer *a, Err *err);
 
 struct Route {
     const char *word;
-    int has_run, has_number;
+    int has_run;
+    size_t n_numbers; /* at most, and one if not 0 */
     ShowFn get, post; /* NULL: not known */
 };
 
@@ -404,12 +442,14 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},        {"runs", 0,
                                {"", 1, 0, show_page, NULL},          {"events", 1, 0, show_events, NULL},
                                {"front", 1, 0, show_front, NULL},    {"importance", 1, 0, show_importance, NULL},
                                {"design", 1, 1, show_design, NULL},  {"what-if", 1, 0, show_bounds, show_what_if},
-                               {"against", 1, 1, show_against, NULL}};
+                               {"notes", 1, 0, show_notes, take_note},
+                               {"against", 1, PATH_NUMBERS, show_against, NULL}};
 
 static const Route *route_of(const ServePath *path)
 {
     for (const Route *r = ROUTES; r < ROUTES + N_OF(ROUTES); r++)
-        if (strcmp(path->word, r->word) == 0 && r->has_run == (path->run >= 0) && r->has_number == (path->number >= 0))
+        if (strcmp(path->word, r->word) == 0 && r->has_run == (path->run >= 0) &&
+            (r->n_numbers > 0) == (path->n_numbers > 0) && path->n_numbers <= r->n_numbers)
             return r;
     return NULL;
 }
@@ -545,6 +585,7 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err)
     s->moved = o->moved;
     memset(s->waiting, -1, sizeof s->waiting);
     pthread_mutex_init(&s->mutex, NULL);
+    pthread_mutex_init(&s->notes, NULL);
     Status status = guard_token(s->token, err);
     if (status == STATUS_OK)
         status = watch_open(&s->watch, o->folder, &s->moved, err);
@@ -578,5 +619,6 @@ void serve_close(Server *s)
     if (s->watch)
         watch_close(s->watch);
     pthread_mutex_destroy(&s->mutex);
+    pthread_mutex_destroy(&s->notes);
     free(s);
 }

@@ -39,7 +39,7 @@ int folder_is_run(const char *path)
 int folder_keeps(const char *path)
 {
     static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl", "lock",
-                                        "front.csv",    "nearest.csv",     "run.sqlite"};
+                                        "front.csv",    "nearest.csv",     "notes.json", "run.sqlite"};
     char real[PATH_MAX];
     if (!realpath(path, real))
         snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);

@@ -2,7 +2,7 @@
 //                                                   drive.mjs IMTET --bench RUN  prints how long a slider's update takes
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { openBrowser, tryAll } from "../report/browser.mjs";
 
@@ -214,13 +214,29 @@ const tried = {
     }
   },
   async "two runs lie over each other"() {
-    const row = await page.evaluate("Array.from(document.querySelectorAll('#all-runs tbody tr')).findIndex((tr) => tr.cells[0].textContent === 'b')");
-    await page.evaluate(`document.querySelectorAll("#all-runs tbody tr")[${row}].querySelector("button").click()`);
+    await page.evaluate("document.querySelector('[name=\"compare b\"]').click()");
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
   },
   async "everything live is reached by the Tab key"() {
     const found = new Set(await page.focusedByTab(330));
     for (const wanted of ["pga_g", "gap_07_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
+  },
+  async "a note is kept beside the run and shown again"() {
+    const path = join(root, "a", "notes.json"), field = "document.querySelector('#drawer textarea')";
+    const write = async (text) => {
+      await page.evaluate(`${field}.value = ${JSON.stringify(text)}; ${field}.dispatchEvent(new Event("change"))`);
+      for (let k = 0; k < 100 && (existsSync(path) ? Object.keys(JSON.parse(readFileSync(path, "utf8"))).length : 0) !== +(text.trim() !== ""); k++) await new Promise((done) => setTimeout(done, 50));
+      return JSON.parse(readFileSync(path, "utf8"));
+    };
+    await page.evaluate("document.querySelector('#designs tbody button').click()");
+    const id = await page.evaluate("document.querySelector('#designs tbody tr').dataset.id");
+    assert.deepEqual(await write("for the client"), { [id]: "for the client" });
+    await open("a");
+    await page.evaluate("document.querySelector('#designs tbody button').click()");
+    assert.equal(await page.evaluate(`${field}.value`), "for the client");
+    assert.match(await page.evaluate("document.querySelector('#designs tbody tr').title"), /for the client/);
+    assert.deepEqual(await write(" "), {});
+    rmSync(path);
   },
   async "the first screen keeps its place when what is compared with arrives"() {
     await open("b");

@@ -60,8 +60,8 @@ function designTable(host) {
     row.tr.dataset.id = ids[i];
     row.tr.className = [row.isMarked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
     row.name.textContent = String(ids[i]);
-    row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "") + (beyondLaw.has(ids[i]) ? " \u26a0" : "");
-    row.tr.title = beyondLaw.has(ids[i]) ? "maximum indentation beyond what the contact law is meant for" : "";
+    row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "") + (beyondLaw.has(ids[i]) ? " \u26a0" : "") + (run.notes[ids[i]] ? " \u270e" : "");
+    row.tr.title = [beyondLaw.has(ids[i]) && "maximum indentation beyond what the contact law is meant for", run.notes[ids[i]]].filter(Boolean).join("; ");
     shown.forEach((c, k) => (row.cells[k].textContent = known(c, i)));
   }
 

@@ -63,6 +63,13 @@ function commandsOf(id) {
   return ["evaluate", ...(run.tower ? ["simplify"] : []), "report"].map((command) => `imtet ${command} ${folder} --design ${id - k * run.id_step}`).join("\n");
 }
 
+// What was noted of a design, in notes.json beside the run; imtet serve takes it down.
+const noteOf = (id) => {
+  const text = run.notes[id] ?? "";
+  return drawerMore.takeNote ? element("label", { class: "note" }, "Note ", element("textarea", { name: "note", rows: 2, onchange: (event) => drawerMore.takeNote(id, event.target) }, text))
+    : text ? element("p", { class: "note" }, `Note: ${text}`) : "";
+};
+
 // The row of front.csv with its head.
 const exportDesign = (row) => saveFile(`${run.name}-${ids[row]}.csv`, csvOf((i) => i === row));
 
@@ -70,7 +77,7 @@ function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
     host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => exportDesign(row), { title: "its row of front.csv" })), numbersOf(row));
+      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => exportDesign(row), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
     if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);

@@ -19,6 +19,15 @@ drawerMore.buttons = (row, d) => [
   plainButton("Compare", () => compare({ name: `design ${ids[row]}`, raw: d.raw, gap_m: d.gap_m, peaks: d.with_core }), { disabled: !d?.raw })];
 drawerMore.rest = (host, d) => detailParts(folded(host, "Forces, energies and more"), d, true);
 
+// What cannot be written stays in its field, with the reason.
+drawerMore.takeNote = (id, field) => ask("notes", { id, text: field.value.trim() }).then((notes) => {
+  run.notes = notes;
+  field.classList.remove("bad");
+}).catch((error) => {
+  field.classList.add("bad");
+  field.title = error.message;
+});
+
 // The first screen compares the knee with what it stands beside: both come with the knee in detail.
 async function completeSummary() {
   const { detail } = await detailOf(run.knee);

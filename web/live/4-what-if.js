@@ -9,7 +9,7 @@ function whatIfPart() {
   const part = livePart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
-  part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once, under the first motion of the run."), element("div", { class: "what-if" }, sliders, pictures));
+  part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), element("div", { class: "what-if" }, sliders, pictures));
   const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
@@ -62,6 +62,13 @@ function whatIfPart() {
   function makeSliders() {
     moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v), bounds.values[j]));
     moving.ground = GROUND.map(([key, title, unit]) => slider(key, title, unit, 1, [bounds[key][0], bounds[key][2]], bounds[key][1], (v) => (ground[key] = v)));
+    // One simulation, or all by which the run judges a design.
+    const whole = element("input", { type: "checkbox", name: "whole", onchange: (event) => {
+      delete ground.whole;
+      if (whole.checked) ground.whole = 1;
+      moved(event.timeStamp);
+    } });
+    if (bounds.simulations > 1) moving.ground.push({ key: "whole", set: (v) => (whole.checked = v), row: element("label", {}, whole, ` all ${bounds.simulations} simulations by which the run judges a design`) });
     const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", {}, element("legend", {}, title), ...list.map(({ row }) => row)) : "");
     sliders.replaceChildren(
       group("Motion and contact", moving.ground), group("Core and others", moving.variables.filter((_, j) => !isGap(variables[j]))),
@@ -98,7 +105,7 @@ function whatIfPart() {
   function place() {
     if (!answer.objectives) return `This design could not be simulated: ${answer.reason}`;
     const law = answer.beyond_law ? " The indentation is beyond what the contact law is meant for." : "";
-    if (answer.dominated_by === undefined) return `Not comparable with the front: motion or restitution differ from the run\u2019s, or the run averages several simulations.${law}`;
+    if (answer.dominated_by === undefined) return `Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations.${law}`;
     if (answer.dominated_by) return `Dominated by ${count(answer.dominated_by)} of ${count(n)} designs of the front.${law}`;
     return `Nondominated${answer.dominates ? `: it dominates ${count(answer.dominates)} ${answer.dominates === 1 ? "design" : "designs"} of the front` : ""}.${law}`;
   }
@@ -110,7 +117,7 @@ function whatIfPart() {
   const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
 
   // Baselines of the run itself: under another motion only the building without core is simulated anew.
-  const beside = () => overlays.filter((o) => run.detail?.[o.key] && o.key !== "no_core" && !Object.keys(answer.ground).length);
+  const beside = () => overlays.filter((o) => run.detail?.[o.key] && o.key !== "no_core" && !GROUND.some(([key]) => key in answer.ground));
 
   // Within a picture its lines move, as long as they fit its axis: a picture takes ten times as long to make.
   function drawPeaks(isNew) {
@@ -166,7 +173,7 @@ function whatIfPart() {
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
   const options = { pga_g: "--pga ", stretch: "--set motion.stretch=", restitution: "--set contact.restitution=" };
-  const groundOptions = (g) => bounds.options + (g.pga_g === undefined ? "" : bounds.pga_options) + Object.entries(g).map(([key, v]) => ` ${options[key]}${v}`).join("");
+  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key]) => ` ${options[key]}${g[key]}`).join("");
 
   function showKept() {
     state.trials = shownKept = keptText();
@@ -197,7 +204,7 @@ function whatIfPart() {
     kept.splice(0);
     for (const [id, changes] of wanted) {
       const given = Object.fromEntries((changes ?? "").split(",").filter(Boolean).map((one) => one.split("=")).map(([key, v]) => [key, +v]));
-      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries(GROUND.filter(([key]) => key in given).map(([key]) => [key, given[key]]));
+      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries([...GROUND.map(([key]) => key), "whole"].filter((key) => key in given).map((key) => [key, given[key]]));
       const a = await ask("what-if", { turn: ++turn, x: design, ...on });
       if (state.trials !== text) return;
       if (a.objectives) kept.push(asKept({ ...a, x: design, ground: on }, +id));
@@ -215,10 +222,10 @@ function whatIfPart() {
 
   function set(values, on) {
     x.set(values);
-    for (const [key] of GROUND) delete ground[key];
+    for (const key of Object.keys(ground)) delete ground[key];
     Object.assign(ground, on);
     moving.variables.forEach((s, j) => s.set(x[j]));
-    moving.ground.forEach((s) => s.set(ground[s.key] ?? bounds[s.key][1]));
+    moving.ground.forEach((s) => s.set(ground[s.key] ?? bounds[s.key]?.[1]));
     moved(performance.now());
   }
 

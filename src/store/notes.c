@@ -1,0 +1,67 @@
+#include "store/notes.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "store/output.h"
+
+static Status path_in(const char *folder, char path[PATH_MAX], Err *err)
+{
+    return snprintf(path, PATH_MAX, "%s/notes.json", folder) < PATH_MAX
+               ? STATUS_OK
+               : fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
+}
+
+static int are_notes(const json_t *all)
+{
+    const char *key;
+    json_t *text;
+    int ok = json_is_object(all);
+    json_object_foreach((json_t *)all, key, text) ok = ok && json_is_string(text);
+    return ok;
+}
+
+Status notes_read(const char *folder, json_t **notes, Err *err)
+{
+    char path[PATH_MAX];
+    json_error_t error = {0};
+    TRY(path_in(folder, path, err));
+    if (access(path, F_OK) != 0) {
+        *notes = json_object();
+        return STATUS_OK;
+    }
+    *notes = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    if (are_notes(*notes))
+        return STATUS_OK;
+    json_decref(*notes);
+    *notes = NULL;
+    return bad_data(err, "%s:%d: is no object of notes, \"id\": \"text\"%s%s; mend it or move it away", path, error.line,
+                    error.text[0] ? ": " : "", error.text);
+}
+
+static Status write_notes(const char *path, const json_t *notes, Err *err)
+{
+    Output o;
+    TRY(output_open_inside(&o, path, err));
+    json_dumpf(notes, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS); /* a failed write is seen on closing */
+    fputc('\n', o.stream);
+    return output_close(&o, err);
+}
+
+Status notes_put(const char *folder, long id, const char *text, Err *err)
+{
+    char path[PATH_MAX], key[24];
+    json_t *notes;
+    snprintf(key, sizeof key, "%ld", id);
+    if (strlen(text) > NOTE_MAX)
+        return bad_data(err, "a note has at most %d bytes", NOTE_MAX);
+    TRY(path_in(folder, path, err));
+    TRY(notes_read(folder, &notes, err));
+    if (text[0])
+        json_object_set_new(notes, key, json_string(text));
+    else
+        json_object_del(notes, key);
+    const Status status = write_notes(path, notes, err);
+    json_decref(notes);
+    return status;
+}

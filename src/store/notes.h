@@ -1,0 +1,22 @@
+/* store/notes.h -- what people say of designs: RUN/notes.json, {"417": "for the client", ...}, beside the run and never read by a
+ * search. It may be edited by hand.
+ *
+ * Ownership  the caller's reference
+ * Threads    one writer at a time; a reader finds the notes of before or after
+ * Errors     a file that is none: STATUS_BAD_DATA; not to be written: STATUS_IO */
+#ifndef IMTET_STORE_NOTES_H
+#define IMTET_STORE_NOTES_H
+
+#include <jansson.h>
+
+#include "base/status.h"
+
+enum { NOTE_MAX = 4000 };
+
+/* No file, no notes: an empty object. */
+Status notes_read(const char *folder, json_t **notes, Err *err);
+
+/* text: at most NOTE_MAX bytes; empty takes the note away. */
+Status notes_put(const char *folder, long id, const char *text, Err *err);
+
+#endif
