@@ -218,6 +218,9 @@ class Search:
         Y = list(Y)
         if len(Y) != len(X) or (G is not None and len(G) != len(X)):
             raise ValueError(f"X has {len(X)} rows, Y {len(Y)}" + ("" if G is None else f", G {len(G)}"))
+        if len(X) == 0 and self._ids:
+            raise ImtetError(f"{len(self._ids)} designs were asked for and never told, so that nothing is left to ask: tell "
+                             "them, or save the search and load it, which asks for them again")
         keys = [x.tobytes() for x in X]
         for i, key in enumerate(keys):
             if key not in self._ids:

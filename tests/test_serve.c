@@ -805,8 +805,8 @@ static void test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now(
     assert_in_range(json_integer_value(json_object_get(bounds, "simulations")), 2, 100);
     json_decref(bounds);
     for (int whole = 0; whole < 2; whole++) { /* as the run judges it, and then in its place on the front */
-        now = post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:o}", "turn", 1, "whole", whole, "x",
-                                                   numbers_of_row(&front, 0, 1, 22)));
+        now = post_json("/%T/0/what-if",
+                        json_pack("{s:i, s:i, s:o}", "turn", 1, "whole", whole, "x", numbers_of_row(&front, 0, 1, 22)));
         assert_int_equal(json_is_integer(json_object_get(now, "dominated_by")), whole);
         const double j1 = json_number_value(json_array_get(json_object_get(now, "objectives"), 0));
         assert_int_equal(fabs(j1 - front.values[23]) <= 1e-3 * j1, whole);

@@ -71,8 +71,8 @@ static Status check_dossier(const Run *run, const char *path, Err *err)
     return dossier_check(path, err);
 }
 
-static Status dossier(const Args *args, const Run *run, const Report *r, const OtherRecords *records,
-                      const char *path, Err *err)
+static Status dossier(const Args *args, const Run *run, const Report *r, const OtherRecords *records, const char *path,
+                      Err *err)
 {
     Settings s = *run->settings;
     RecordPaths moved;

@@ -1,5 +1,5 @@
-/* report/elsewhere.h -- the other earthquakes of a design: the further records of its study first, then what was given, and where
- * there is neither the built-in motions that the study does not use.
+/* report/elsewhere.h -- the other earthquakes of a design: the further records of its study first, then what was given,
+ * and where there is neither the built-in motions that the study does not use.
  *
  * Ownership  the sources are copied into the list, which stays where it is while they are used
  * Errors     a folder or list that cannot be read; more than ELSEWHERE_MAX: STATUS_USAGE */

@@ -378,5 +378,6 @@ json_t *report_json(const Report *r)
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
         json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        json_of_pair(run, r->chosen), json_of_named(r), json_of_notes(run), json_of_settings(run->settings), run->provenance);
+        json_of_pair(run, r->chosen), json_of_named(r), json_of_notes(run), json_of_settings(run->settings),
+        run->provenance);
 }

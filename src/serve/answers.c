@@ -120,8 +120,7 @@ static Status check_same(const Schema *a, const Look *look, Err *err)
     for (size_t k = 0; same && k < a->n_obj; k++)
         same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
                schema_objective(a, k)->sense == schema_objective(b, k)->sense;
-    return same ? STATUS_OK
-                : bad_data(err, "%s: has other objectives: its front cannot be compared", look->run.folder);
+    return same ? STATUS_OK : bad_data(err, "%s: has other objectives: its front cannot be compared", look->run.folder);
 }
 
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */

@@ -6,9 +6,9 @@
  *          are kept
  * What if  a design changed a little: gaps, thicknesses, strength and length of the motion, restitution
  *
- *   question  {"turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R, "whole": 1}      the last
- *             four null or left out: as in the run, by one simulation; x within the bounds of the search, the others within those of
- *             on_demand_bounds
+ *   question  {"turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R, "whole": 1}
+ *             the last four null or left out: as in the run, by one simulation; x within the bounds of the search, the
+ *             others within those of on_demand_bounds
  *   answer    {"turn", "outcome", "reason", "objectives": [n_obj] or null, "dominated_by": n, "dominates": n (designs
  *             of the front; null where the front is of another motion or of several simulations), "gap_m", "peaks" and
  *             "no_core": result_json (report/report_json.h), "beyond_law", "seconds"}
@@ -44,8 +44,9 @@ int on_demand_is_of(const OnDemand *o, const Run *run);
 /* text: to be freed. */
 Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *err);
 
-/* {"lower": [n_var], "upper", "pga_g": [least, as in the run, most], "stretch", "restitution", "simulations": by which the run judges a design,
- * "options": of `imtet simulate` that make it the same simulation, "pga_options": those where the peak is changed} */
+/* {"lower": [n_var], "upper", "pga_g": [least, as in the run, most], "stretch", "restitution", "simulations": by which
+ * the run judges a design, "options": of `imtet simulate` that make it the same simulation, "pga_options": those where
+ * the peak is changed} */
 Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err);
 Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size_t n, json_t **answer, Err *err);
 

@@ -324,9 +324,8 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     json_t *all = NULL;
     Status status = STATUS_OK;
     for (size_t i = 0; i < path->n_numbers && status == STATUS_OK; i++) {
-        status = path->number[i] >= (long)watch_n(w)
-                     ? fail(err, STATUS_MISSING, "there is no run %ld", path->number[i])
-                     : watch_take(w, path->number[i], PAGE_S, &other[i], err);
+        status = path->number[i] >= (long)watch_n(w) ? fail(err, STATUS_MISSING, "there is no run %ld", path->number[i])
+                                                     : watch_take(w, path->number[i], PAGE_S, &other[i], err);
         look[i + 1] = other[i].look;
         name[i + 1] = status == STATUS_OK ? watch_name(w, path->number[i]) : NULL;
     }
@@ -438,10 +437,14 @@ struct Route {
     ShowFn get, post; /* NULL: not known */
 };
 
-static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},        {"runs", 0, 0, show_runs, NULL},
-                               {"", 1, 0, show_page, NULL},          {"events", 1, 0, show_events, NULL},
-                               {"front", 1, 0, show_front, NULL},    {"importance", 1, 0, show_importance, NULL},
-                               {"design", 1, 1, show_design, NULL},  {"what-if", 1, 0, show_bounds, show_what_if},
+static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
+                               {"runs", 0, 0, show_runs, NULL},
+                               {"", 1, 0, show_page, NULL},
+                               {"events", 1, 0, show_events, NULL},
+                               {"front", 1, 0, show_front, NULL},
+                               {"importance", 1, 0, show_importance, NULL},
+                               {"design", 1, 1, show_design, NULL},
+                               {"what-if", 1, 0, show_bounds, show_what_if},
                                {"notes", 1, 0, show_notes, take_note},
                                {"against", 1, PATH_NUMBERS, show_against, NULL}};
 

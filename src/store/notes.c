@@ -35,8 +35,8 @@ Status notes_read(const char *folder, json_t **notes, Err *err)
         return STATUS_OK;
     json_decref(*notes);
     *notes = NULL;
-    return bad_data(err, "%s:%d: is no object of notes, \"id\": \"text\"%s%s; mend it or move it away", path, error.line,
-                    error.text[0] ? ": " : "", error.text);
+    return bad_data(err, "%s:%d: is no object of notes, \"id\": \"text\"%s%s; mend it or move it away", path,
+                    error.line, error.text[0] ? ": " : "", error.text);
 }
 
 static Status write_notes(const char *path, const json_t *notes, Err *err)
