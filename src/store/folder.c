@@ -38,7 +38,7 @@ int folder_is_run(const char *path)
 
 int folder_keeps(const char *path)
 {
-    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl", "lock",
+    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl",  "lock",
                                         "front.csv",    "nearest.csv",     "notes.json", "run.sqlite"};
     char real[PATH_MAX];
     if (!realpath(path, real))
