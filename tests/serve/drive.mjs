@@ -270,6 +270,15 @@ const tried = {
     const report = JSON.parse(readFileSync(html, "utf8").match(/id="run">([^]*?)<\/script>/)[1]);
     assert.deepEqual(await page.evaluate("fetch('importance').then((answer) => answer.json())"), report.importance);
   },
+  async "a run that judges designs by several simulations has its page, and what-if asks for all of them"() {
+    if (!(await runs()).some((r) => r.name === "d")) return;
+    await open("d");
+    await until("document.querySelector('[name=whole]')");
+    const said = "document.getElementById('place').textContent";
+    await until(`/^Not comparable/.test(${said})`);
+    await page.evaluate("document.querySelector('[name=whole]').click()");
+    await until(`/ominated/.test(${said})`);
+  },
   async "a run of another problem has its front, its progress and no sliders"() {
     if (!(await runs()).some((r) => r.name === "c")) return;
     await open("c");

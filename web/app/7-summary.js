@@ -152,7 +152,7 @@ function summaryPart() {
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
-  if (run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
+  if (d && run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
     `${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`));
 }
 
