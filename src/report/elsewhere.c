@@ -3,8 +3,9 @@
 #include "motion/builtin.h"
 #include "motion/suite.h"
 
-static Status add(OtherRecords *r, const char *source, Err *err)
+static Status add(const char *source, void *user, Err *err)
 {
+    OtherRecords *r = user;
     if (r->n == ELSEWHERE_MAX)
         return misused(err, "more than %d earthquakes make no report", ELSEWHERE_MAX);
     TRY(option_put_path(r->text[r->n], source, err));
@@ -13,16 +14,11 @@ static Status add(OtherRecords *r, const char *source, Err *err)
     return STATUS_OK;
 }
 
-/* Of the study's own as many as there is room for, the first one apart. */
+/* The first one apart. */
 static Status add_own(const char *source, void *user, Err *err)
 {
     OtherRecords *r = user;
-    return r->n_seen++ > 0 && r->n < ELSEWHERE_MAX ? add(r, source, err) : STATUS_OK;
-}
-
-static Status add_given(const char *source, void *user, Err *err)
-{
-    return add(user, source, err);
+    return r->n_seen++ > 0 ? add(source, r, err) : STATUS_OK;
 }
 
 Status elsewhere_of_study(OtherRecords *r, const MotionOptions *study, Err *err)
@@ -32,15 +28,27 @@ Status elsewhere_of_study(OtherRecords *r, const MotionOptions *study, Err *err)
 
 Status elsewhere_add(OtherRecords *r, const char *source, Err *err)
 {
-    return suite_each(source, add_given, r, err);
+    return suite_each(source, add, r, err);
+}
+
+/* user: a source that is looked for; NULL once it was found. */
+static Status find_source(const char *source, void *user, Err *err)
+{
+    const char **wanted = user;
+    (void)err;
+    if (*wanted && strcmp(source, *wanted) == 0)
+        *wanted = NULL;
+    return STATUS_OK;
 }
 
 Status elsewhere_otherwise(OtherRecords *r, const MotionOptions *study, Err *err)
 {
     static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const int none = r->n == 0;
-    for (size_t i = 0; none && i < N_OF(BUILT_IN); i++)
-        if (strcmp(study->record, BUILT_IN[i]) != 0)
-            TRY(add(r, BUILT_IN[i], err));
+    for (size_t i = 0; none && i < N_OF(BUILT_IN); i++) {
+        const char *unused = BUILT_IN[i];
+        TRY(suite_of_study(study, find_source, &unused, err));
+        TRY(unused ? add(unused, r, err) : STATUS_OK);
+    }
     return STATUS_OK;
 }

@@ -8,7 +8,7 @@
 
 #include "settings/options.h"
 
-enum { ELSEWHERE_MAX = 32 };
+enum { ELSEWHERE_MAX = 31 };
 
 typedef struct {
     size_t n, n_seen; /* n_seen: with the first record of the study, which the design is simulated under anyway */

@@ -120,6 +120,7 @@ static char *text_of(const Run *run, size_t row, const Detail *d)
     return text;
 }
 
+/* What the further records of the run do is part of the detail already. */
 static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_devices, char **text, Err *err)
 {
     Settings s = *run->settings;
@@ -128,15 +129,11 @@ static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_d
     s.search.threads = 1;
     TRY(record_paths_find(&s, run->provenance, o->moved, err));
     run_steps(run, row, &s.sim);
-    TRY(elsewhere_of_study(&others, &s.motion, err));
     TRY(elsewhere_otherwise(&others, &s.motion, err));
-    const DetailOptions options = {.floor = -1,
-                                   .moved = *o->moved,
-                                   .without_devices = !with_devices,
-                                   .with_ladder = with_devices,
-                                   .other = &s,
-                                   .n_records = others.n,
-                                   .records = others.source};
+    DetailOptions options = {.floor = -1, .moved = *o->moved, .with_ladder = with_devices, .other = &s};
+    options.without_devices = !with_devices;
+    options.n_records = others.n;
+    options.records = others.source;
     TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
     *text = text_of(run, row, &d);
     detail_free(&d);
@@ -200,21 +197,16 @@ static Status open_scene(OnDemand *o, const Ground *g, Err *err)
     return tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_NO_CORE}, &o->no_core, err);
 }
 
-/* Of every variable that is not real the values that it takes, of a choice its words; of others null. */
-static json_t *values_of(const Problem *p, const Schema *schema)
+/* Of whole numbers and of steps the values that they take; of others null: the page has the words of a choice. */
+static json_t *values_of(const Problem *p)
 {
     json_t *all = json_array();
-    char word[KIND_WORD_MAX];
     for (size_t d = 0; d < p->n_var; d++) {
-        json_t *list = problem_is_discrete(p, d) ? json_array() : json_null();
-        const int is_stepped = problem_kind(p, d) == VARIABLE_STEPPED;
-        const size_t n = !json_is_array(list) ? 0
-                         : is_stepped         ? p->steps[d].n
-                                              : (size_t)(p->upper[d] - p->lower[d]) + 1;
-        for (size_t i = 0; i < n; i++) {
-            const double x = is_stepped ? steps_at(&p->steps[d], i) : p->lower[d] + (double)i;
-            json_array_append_new(list, schema_word(schema, d, x, word) ? json_words(word) : json_number(x));
-        }
+        const Steps *steps = problem_kind(p, d) == VARIABLE_STEPPED ? &p->steps[d] : NULL;
+        json_t *list = steps || problem_kind(p, d) == VARIABLE_WHOLE ? json_array() : json_null();
+        const size_t n = steps ? steps->n : (size_t)(p->upper[d] - p->lower[d]) + 1;
+        for (size_t i = 0; json_is_array(list) && i < n; i++)
+            json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p->lower[d] + (double)i));
         json_array_append_new(all, list);
     }
     return all;
@@ -238,7 +230,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
     o->own.pga_g = motion_peak(&tower_record(tower_of(&o->problem), 0)->motion) / GRAVITY;
     memcpy(o->lower, o->problem.lower, o->problem.n_var * sizeof *o->lower);
     memcpy(o->upper, o->problem.upper, o->problem.n_var * sizeof *o->upper);
-    o->values = values_of(&o->problem, &run->schema);
+    o->values = values_of(&o->problem);
     o->n_var = o->problem.n_var;
     return STATUS_OK;
 }

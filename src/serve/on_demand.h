@@ -1,9 +1,9 @@
 /* serve/on_demand.h -- designs of a run simulated when a page asks for them, with the run's settings.
  *
- * Design   any of the run as report/detail.h has it, with the other earthquakes of report/elsewhere.h: {"id",
- *          "objectives": [n_obj] as in the run, "detail"}. The knee stands beside all baselines; any other beside no
- *          core and rigidly connected, since the devices are searched for anew for each core. The last DESIGNS_KEPT
- *          are kept
+ * Design   any of the run as report/detail.h has it, and under the built-in motions that the study does not use:
+ *          {"id", "objectives": [n_obj] as in the run, "detail"}. The knee stands beside all baselines; any other
+ *          beside no core and rigidly connected, since the devices are searched for anew for each core. The last
+ *          DESIGNS_KEPT are kept
  * What if  a design changed a little: gaps, thicknesses, strength and length of the motion, restitution
  *
  *   question  {"turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R, "whole": 1}

@@ -12,12 +12,12 @@ static Status path_in(const char *folder, char path[PATH_MAX], Err *err)
                : fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
 }
 
-static int are_notes(const json_t *all)
+static int are_notes(json_t *all)
 {
     const char *key;
     json_t *text;
     int ok = json_is_object(all);
-    json_object_foreach((json_t *)all, key, text) ok = ok && json_is_string(text);
+    json_object_foreach(all, key, text) ok = ok && json_is_string(text);
     return ok;
 }
 

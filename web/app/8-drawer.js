@@ -43,7 +43,7 @@ function difference(value, before) {
 function numbersOf(row) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${!c.words && atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
       ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other])])]))]);
 }
 

@@ -60,7 +60,7 @@ function whatIfPart() {
 
   const moving = { variables: [], ground: [] };
   function makeSliders() {
-    moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v), bounds.values[j]));
+    moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v), c.words ?? bounds.values[j]));
     moving.ground = GROUND.map(([key, title, unit]) => slider(key, title, unit, 1, [bounds[key][0], bounds[key][2]], bounds[key][1], (v) => (ground[key] = v)));
     // One simulation, or all by which the run judges a design.
     const whole = element("input", { type: "checkbox", name: "whole", onchange: (event) => {
