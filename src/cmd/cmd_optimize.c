@@ -114,7 +114,7 @@ static void print_front(const Run *run, const StudySummary *summary)
     figures_print(table);
     if (summary->has_baselines) {
         putchar('\n');
-        show_verdicts(stdout, schema, run_x(run, knee), run_f(run, knee), summary->baseline);
+        show_verdicts(stdout, run, knee, summary->baseline);
         if (run->settings->sim.replicates > 1)
             puts("replicates are of designs with impacts; the others are as designed");
         explain_objectives(schema, run->settings->search.objectives);

@@ -127,7 +127,7 @@ static void write_summary(const Dossier *o)
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
     fputs("<p class=\"lines\">", o->out);
-    show_verdicts(o->out, &o->r->run->schema, o->x, run_f(o->r->run, o->r->chosen), d->baseline);
+    show_verdicts(o->out, o->r->run, o->r->chosen, d->baseline);
     fprintf(
         o->out,
         "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>, of a link or tuned mass: <b>%.3g MN</b>. Largest bending "

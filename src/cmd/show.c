@@ -584,10 +584,11 @@ json_t *json_review(const FrontReview *r)
     return o;
 }
 
-/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth; none
- * of what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share. */
+/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth and
+ * what is not known of them; none of what the baseline does not have: a core, whose mass is then 0, or what would
+ * dissipate a share. */
 static void print_better(FILE *out, const char *verb, const Schema *schema, double sign, const double natural[],
-                         const Baseline *b)
+                         const double error[], const Baseline *b)
 {
     static const double SHARE = 1e-3;
     int n = 0;
@@ -596,25 +597,28 @@ static void print_better(FILE *out, const char *verb, const Schema *schema, doub
         const int id = schema->order.of[k];
         const double other = b->value[id];
         if ((other != 0 || (c->sense > 0 && id != MEASURE_MCORE)) &&
-            sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
+            sign * c->sense * (other - natural[k]) > fmax(SHARE * fabs(other), error[k]))
             fprintf(out, "%s%s", n++ ? ", " : verb, c->name);
     }
     if (n == 0)
         fprintf(out, "%snothing", verb);
 }
 
-void show_verdicts(FILE *out, const Schema *schema, const double x[], const double natural[],
-                   const Baseline baseline[N_BASELINES])
+void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_BASELINES])
 {
+    double error[OBJECTIVES_MAX];
     char device[DEVICE_TEXT_MAX], has[PROTECTION_MAX];
     Design design;
-    design_of(&schema->design, x, &design);
+    const Schema *schema = &run->schema;
+    const double *natural = run_f(run, row);
+    run_likely(run, row, error);
+    design_of(&schema->design, run_x(run, row), &design);
     for (int k = 0; k < N_BASELINES; k++) {
         baseline_device_text(k, &baseline[k].device, device);
         fprintf(out, "against %s%s%s%s: with %s ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "",
                 design_protection(&schema->design, &design, has));
-        print_better(out, "better in ", schema, 1, natural, &baseline[k]);
-        print_better(out, "; worse in ", schema, -1, natural, &baseline[k]);
+        print_better(out, "better in ", schema, 1, natural, error, &baseline[k]);
+        print_better(out, "; worse in ", schema, -1, natural, error, &baseline[k]);
         fputc('\n', out);
     }
 }

@@ -84,10 +84,9 @@ json_t *figures_design(json_t *table, const char *label, long id, const Schema *
  * closes in none of the designs that were simulated again, where some were. */
 json_t *json_review(const FrontReview *r);
 
-/* "against viscous links (...): with impacts better in ...; worse in ..." by more than a thousandth; x and natural
- * values of a design. */
-void show_verdicts(FILE *out, const Schema *schema, const double x[], const double natural[],
-                   const Baseline baseline[N_BASELINES]);
+/* "against viscous links (...): with impacts better in ...; worse in ..." by more than a thousandth and than the likely
+ * errors; of the design in that row. */
+void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_BASELINES]);
 
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);

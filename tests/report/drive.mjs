@@ -278,14 +278,17 @@ const tried = {
     for (const word of [`${run.detail.gap_m.length} storeys`, run.evaluated.toLocaleString("en-US"), `design ${run.chosen}`, `peak ${+run.detail.pga_g.toPrecision(3)} g`]) assert.ok(lead.includes(word), `${word} in: ${lead}`);
     const alone = run.detail.baselines.find((b) => b.key === "no_core").objectives;
     for (const [k, o] of run.schema.objectives.entries()) {
-      const isWorse = alone[k] && o.sense * (run.chosen_f[k] - alone[k]) > 1e-3 * Math.abs(alone[k]);
+      const isWorse = alone[k] && o.sense * (run.chosen_f[k] - alone[k]) > Math.max(1e-3 * Math.abs(alone[k]), (run.chosen_error ?? run.detail.error)[k]);
       if (isWorse) assert.match(warned, new RegExp(`Worse than without core in [^.]*${o.title}`));
     }
     assert.match(warned, /Storeys that yield dissipate/);
     assert.equal(/beyond the contact law/.test(warned), run.beyond_law.length > 0);
     assert.equal(/never close/.test(warned), run.detail.with_core.closings.includes(0));
+    const { stress_pa: stress, buckling_pa: buckling } = run.detail.forces;
+    assert.equal(/yield stress of S235/.test(warned), Math.max(...stress) > 235e6);
+    assert.equal(/buckles its bare wall/.test(warned), stress.some((v, j) => v > buckling[j]));
   },
-  async "where the ranking turns over by the settings that the ladder calls enough, the first screen says so"() {
+  async "what the errors leave out by the ladder, and where the ranking turns over with it, the first screen says"() {
     if (!run.tower) return;
     const by = (name) => run.schema.objectives.findIndex((o) => o.name === name), { with_core: own, ladder } = run.detail;
     for (const [name, key] of [["j1_m", "rigid"], ["drift_ratio", "no_core"]]) {
@@ -297,6 +300,7 @@ const tried = {
         await open("", doctored);
         const said = await page.evaluate("document.querySelector('.warnings').textContent");
         assert.equal(/The ranking turns over/.test(said), turns, `${name}: ${said}`);
+        assert.ok(said.includes(`J3 is ${(+set.with_core.j3_g.toPrecision(3)).toString()} g instead of`), said);
         if (turns) assert.ok(said.includes(name === "j1_m" ? "rigidly connected (by" : "without core (by"), said);
       }
     }

@@ -20,11 +20,14 @@ function change(value, before) {
   return value > 2 * before ? (value > 50 * before ? `${show(before)} with` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
 }
 
-// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth; NaN: not known, or of what
-// the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
-function verdict(raw, b, k) {
+// The likely errors of the chosen design.
+const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.error);
+
+// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth and its error; NaN: not known, or of
+// what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
+function verdict(raw, b, k, error = chosenError()?.[k] ?? 0) {
   const before = b.raw[k], { sense, name } = objectives[k], gain = sense * (before - raw[k]);
-  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : Math.abs(gain) <= 1e-3 * Math.abs(before) ? 0 : Math.sign(gain);
+  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : Math.abs(gain) <= Math.max(1e-3 * Math.abs(before), error) ? 0 : Math.sign(gain);
 }
 
 // The first objective that gains against the building alone, and the one that pays most.
@@ -83,18 +86,29 @@ function boundWarning(d) {
 
 const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
 
-// What the ranking is by the settings that the ladder calls enough, where it is another one: of J1 against the rigid connection, of the
-// drift against the building alone.
-function turnovers(d) {
-  const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])) });
-  const lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without);
+// What the ± of the numbers leaves out: J1, drift ratio and J3 by the settings that the ladder calls enough, and where with them the ranking is
+// another one, of J1 against the rigid connection, of the drift against the building alone.
+function leftOut(d) {
+  const set = d.ladder?.by_the_set, lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without) ?? [];
+  if (!lacks.length || set.with_core.j1_m === null || d.with_core.reason) return [];
+  const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])), j3_g: Math.max(...r.acceleration_g) });
+  const here = peaks(d.with_core), list = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]]
+    .map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`);
   const turned = [["rigid", "j1_m", "J1", "m", 1], ["no_core", "drift_ratio", "drift ratio", "%", 100]].flatMap(([key, name, title, unit, factor]) => {
-    const before = [d.with_core, d[key]], after = [d.ladder?.by_the_set?.with_core, d.ladder?.by_the_set?.[key]];
-    if (![...before, ...after].every((r) => r && !r.reason)) return [];
-    const [a, b, c, e] = [...before.map((r) => peaks(r)[name]), ...after.map((r) => r[name])].map((v) => v * factor);
+    if (d[key].reason || set[key].reason || set[key][name] === null) return [];
+    const [a, b, c, e] = [here[name], peaks(d[key])[name], set.with_core[name], set[key][name]].map((v) => v * factor);
     return a > b === c > e ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
   });
-  return turned.length ? [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `The ranking turns over with ${listed(lacks)}, which this design needs: ${turned.map(([, words]) => words).join(", ")}.`]] : [];
+  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ")}.` +
+    (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
+}
+
+// Of the core beside the yield stress of S235, the lowest of EN 10025-2, and the bare wall's buckling stress.
+const S235_PA = 235e6;
+function coreWarnings({ forces }) {
+  const stress = forces?.stress_pa ?? [], most = Math.max(...stress), buckling = Math.max(...stress.map((v, j) => v / (forces?.buckling_pa?.[j] ?? Infinity)));
+  return [most > S235_PA ? `Stress of the core ${show(most / 1e6)} MPa: beyond the yield stress of S235, 235 MPa.` : "",
+    buckling > 1 ? `Stress of the core is ${show(buckling)} times what buckles its bare wall: it needs stiffeners, whose mass is not in this model.` : ""].filter(Boolean).map((text) => ["worse", text]);
 }
 
 function warnings(d) {
@@ -104,7 +118,8 @@ function warnings(d) {
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
     d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}.`] : null,
-    ...turnovers(d),
+    ...leftOut(d),
+    ...coreWarnings(d),
     ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
     d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,
     d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
@@ -146,7 +161,7 @@ function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(190) : "", cards(run.chosen_f, run.chosen_error ?? (run.rule ? null : d?.error)));
+  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(190) : "", cards(run.chosen_f, chosenError()));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 250);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
