@@ -5,6 +5,8 @@
 
 #include "base/linalg.h"
 #include "base/random.h"
+#include "evaluate/replicates.h"
+#include "report/elsewhere.h"
 #include "report/importance.h"
 #include "report/report.h"
 #include "report/report_json.h"
@@ -284,6 +286,28 @@ TEST(an_objective_of_several_simulations_says_of_which)
         words_of_rule(&s, text);
         assert_string_equal(text, CASES[i].wanted);
     }
+}
+
+TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
+{
+    Err err = {0};
+    OtherRecords *r = calloc(1, sizeof *r);
+    Settings s;
+    settings_defaults(&s);
+    MotionOptions study = s.motion;
+    char list[40 * TOWER_RECORDS_MAX] = "";
+    for (int i = 1; i < TOWER_RECORDS_MAX; i++)
+        snprintf(list + strlen(list), 40, "builtin:elcentro-like factor=%d\n", i);
+    write_in_place("many_list.txt", list);
+    char *path = in_place("many_list.txt");
+    snprintf(study.records, sizeof study.records, "%s", path);
+    CHECK_OK(elsewhere_of_study(r, &study, &err), &err);
+    assert_int_equal(r->n, TOWER_RECORDS_MAX - 1);
+    CHECK_OK(elsewhere_add(r, path, &err), &err);
+    assert_int_equal(r->n, 2 * (TOWER_RECORDS_MAX - 1));
+    assert_string_equal(r->source[r->n - 1], "builtin:elcentro-like factor=63");
+    free(path);
+    free(r);
 }
 
 /* The band of the page ends where the worst of the records, simulated each on its own, ends. */

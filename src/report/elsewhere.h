@@ -8,7 +8,7 @@
 
 #include "settings/options.h"
 
-enum { ELSEWHERE_MAX = 31 };
+enum { ELSEWHERE_MAX = 127 }; /* those of the largest study and as many again */
 
 typedef struct {
     size_t n, n_seen; /* n_seen: with the first record of the study, which the design is simulated under anyway */
