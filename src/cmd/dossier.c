@@ -186,14 +186,20 @@ static void list_devices(const Dossier *o, const Design *design)
     const SimResult *r = &d->result[SCENE_IMPACT];
     json_t *table = json_array();
     char link[64];
+    const int is_even = d->gap_sides == GAPS_BOTH;
     snprintf(link, sizeof link, "link [MN (s/m)^%g]", o->s->design.link_exponent);
     for (int j = 0; j < d->n_floors; j++) {
-        const char *const columns[] = {
-            "gap right [mm]", "gap left [mm]",   "bumper [MN/m]",   "contact force [MN]", link,
-            "friction [MN]",  "link force [MN]", "link stroke [mm]"};
+        const char *const columns[] = {is_even ? "gap [mm]" : "gap right [mm]",
+                                       "gap left [mm]",
+                                       "bumper [MN/m]",
+                                       "contact force [MN]",
+                                       link,
+                                       "friction [MN]",
+                                       "link force [MN]",
+                                       "link stroke [mm]"};
         const int has_stop = d->gap_m[j] < INFINITY;
         const double values[] = {1e3 * d->gap_side_m[0][j],
-                                 1e3 * d->gap_side_m[1][j],
+                                 is_even ? 0 : 1e3 * d->gap_side_m[1][j],
                                  has_stop * 1e-6 * d->bumper_n_m[j],
                                  1e-6 * fmax(r->forces.contact_force_n[0][j], r->forces.contact_force_n[1][j]),
                                  1e-6 * design->link[j],
@@ -204,8 +210,6 @@ static void list_devices(const Dossier *o, const Design *design)
         for (size_t k = 0; row && k < N_OF(values); k++)
             if (values[k] > 0 && isfinite(values[k]))
                 figures_put(row, columns[k], values[k], NAN, NAN);
-            else
-                put_text(row, columns[k], "");
     }
     figures_html(o->out, table);
     if (design->mass_kg > 0)
