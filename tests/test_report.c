@@ -288,6 +288,14 @@ TEST(an_objective_of_several_simulations_says_of_which)
     }
 }
 
+TEST(damaged_notes_on_designs_are_named_by_the_report)
+{
+    write_in_place("dtlz/notes.json", "{\"1\": \"good\",\n 2}");
+    expect(65, "dtlz/notes.json:2: is no object of notes", "report @/dtlz --out @/never.html");
+    write_in_place("dtlz/notes.json", "{\"1\": \"good\"}");
+    expect(0, "", "report @/dtlz --out @/noted.html");
+}
+
 TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 {
     Err err = {0};

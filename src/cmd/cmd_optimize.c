@@ -185,7 +185,8 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     print_front(run, summary);
     if (summary->has_baselines && summary->review.n_gaps > 0) {
         json_t *review = json_review(&summary->review);
-        puts("\nthe front, gap by gap: designs on a bound of the search, floors whose gap never closes");
+        puts("\ngaps of the front, from the ground up: how many designs have each at a bound of the search,\n"
+             "and the floors at which it closes in none of the designs simulated again");
         figures_list(2, review);
         json_decref(review);
     }

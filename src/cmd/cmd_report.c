@@ -9,6 +9,7 @@
 #include "report/elsewhere.h"
 #include "report/report.h"
 #include "settings/options.h"
+#include "store/notes.h"
 
 static Status take_records(const Args *args, const Settings *run, OtherRecords *r, Err *err)
 {
@@ -87,7 +88,10 @@ static Status report(const Args *args, const Run *run, Err *err)
     char path[PATH_MAX];
     Report r = {0};
     OtherRecords records = {0};
+    json_t *notes;
     const int is_dossier = args_has(args, "--dossier");
+    TRY(notes_read(run->folder, &notes, err)); /* damaged ones are not left out in silence */
+    json_decref(notes);
     TRY(take_target(args, path, err));
     TRY(is_dossier ? check_dossier(run, path, err) : STATUS_OK);
     Status status = open_report(args, run, &records, &r, err);
