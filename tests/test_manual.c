@@ -129,30 +129,48 @@ TEST(bash_offers_commands_options_keys_and_words)
     expect_offer("spectrum LICEN", "LICENSE\n");
 }
 
-/* zsh is typed to in a terminal of its own. */
-TEST(zsh_and_fish_offer_what_bash_does_and_what_is_installed_is_gone_again)
+/* Skipped where the shell is not on this machine, and for a program that is not to be installed. */
+static void install_for(const char *name)
 {
-    static const char *const OFFERS[][2] = {{"opti", "optimize"},
-                                            {"simulate --des", "--design"},
-                                            {"simulate x.ini --set motion.pg", "motion.pga_g="},
-                                            {"simulate x.ini --set=sim.accuracy=f", "--set=sim.accuracy=fine"},
-                                            {"simulate x.ini --record LICEN", "LICENSE"},
-                                            {"help spec", "spectrum"}};
-    if (access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
+    char *found = shell("which %s || true", name);
+    const int is_there = found[0] != 0;
+    free(found);
+    if (!is_there || access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
         skip();
     free(shell("make -s -o imtet install PREFIX=@/opt"));
-    for (size_t k = 0; k < N_OF(OFFERS); k++) {
-        const char *words = OFFERS[k][0], *offer = OFFERS[k][1];
-        free(shell(
-            "export PATH=@/opt/bin:$PATH; which fish || exit 0; fish -c 'source "
-            "@/opt/share/fish/vendor_completions.d/imtet.fish; complete -C \"imtet %s\"' | cut -f1 | grep -xFe '%s'",
-            words, offer));
-        free(shell("export PATH=@/opt/bin:$PATH; which zsh || exit 0; timeout 60 zsh -f -c 'zmodload zsh/zpty; "
+}
+
+static const char *const OFFERS[][2] = {{"opti", "optimize"},
+                                        {"simulate --des", "--design"},
+                                        {"simulate x.ini --set motion.pg", "motion.pga_g="},
+                                        {"simulate x.ini --set=sim.accuracy=f", "--set=sim.accuracy=fine"},
+                                        {"simulate x.ini --record LICEN", "LICENSE"},
+                                        {"help spec", "spectrum"}};
+
+TEST(fish_offers_what_bash_does)
+{
+    install_for("fish");
+    for (size_t k = 0; k < N_OF(OFFERS); k++)
+        free(shell("export PATH=@/opt/bin:$PATH; fish -c 'source @/opt/share/fish/vendor_completions.d/imtet.fish; "
+                   "complete -C \"imtet %s\"' | cut -f1 | grep -xFe '%s'",
+                   OFFERS[k][0], OFFERS[k][1]));
+}
+
+/* It is typed to in a terminal of its own. */
+TEST(zsh_offers_what_bash_does)
+{
+    install_for("zsh");
+    for (size_t k = 0; k < N_OF(OFFERS); k++)
+        free(shell("export PATH=@/opt/bin:$PATH; timeout 60 zsh -f -c 'zmodload zsh/zpty; "
                    "zpty z zsh -f -i; zpty -w z \"fpath=(@/opt/share/zsh/site-functions \\$fpath); "
                    "autoload -U compinit; compinit -u -D; print REA''DY\"; zpty -r z out \"*READY*\"; "
                    "zpty -w -n z \"imtet %s\"$'\\''\\t'\\''; zpty -r z out \"*imtet* %s*\"'",
-                   words, offer));
-    }
+                   OFFERS[k][0], OFFERS[k][1]));
+}
+
+TEST(what_is_installed_is_gone_again)
+{
+    install_for("make");
     char *left = shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l");
     assert_string_equal(left, "");
     free(left);
