@@ -320,6 +320,30 @@ TEST(every_message_about_a_setting_names_its_place_in_the_file)
            "spectrum foo.csv"); /* of no settings file: nothing is put before it */
 }
 
+/* Its folder is a building of it. */
+TEST(a_settings_file_beside_its_building_is_named_once)
+{
+    char wanted[128];
+    write_building(1, 1, 0);
+    write_in_place("six/study.ini", "[building]\nmodel = .\n[motion]\npga_g = much\n");
+    snprintf(wanted, sizeof wanted, "imtet: %s/six/study.ini:4:9: motion.pga_g: 'much' is", place.folder);
+    expect(65, wanted, "simulate @/six/study.ini --design none");
+    snprintf(wanted, sizeof wanted, "imtet: %s/six/study.ini: 1 fault", place.folder);
+    expect(65, wanted, "check @/six/study.ini");
+}
+
+TEST(a_study_that_was_begun_beside_its_files_is_checked_from_elsewhere)
+{
+    char command[512], *here = realpath(getenv("IMTET"), NULL);
+    write_building(1, 1, 0);
+    snprintf(command, sizeof command,
+             "cd %s && %s new begun --set building.model=six >said && cd begun && %s check study.ini --set "
+             "sim.duration_s=1 >sound && cd /proc && %s check %s/begun/study.ini --set sim.duration_s=1 >/dev/null",
+             place.folder, here, here, here, place.folder);
+    assert_int_equal(system(command), 0);
+    free(here);
+}
+
 TEST(faults_come_as_json_too)
 {
     Said s;

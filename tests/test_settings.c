@@ -251,10 +251,11 @@ TEST(what_is_not_written_keeps_its_default)
 
 TEST(a_misspelt_key_is_answered_with_the_nearest)
 {
-    static const char *const PAIRS[][2] = {{"motion.strech=2", "motion.stretch"},
-                                           {"contact.restitutoin=0.5", "contact.restitution"},
-                                           {"search.max_eval=10", "search.max_evals"},
-                                           {"sim.duration=3", "sim.duration_s"}};
+    static const char *const PAIRS[][2] = {
+        {"motion.strech=2", "motion.stretch"},           {"contact.restitutoin=0.5", "contact.restitution"},
+        {"search.max_eval=10", "search.max_evals"},      {"sim.duration=3", "sim.duration_s"},
+        {"pga_g=0.3", "did you mean motion.pga_g?"},     {"damping=0.02", "did you mean building.damping?"},
+        {"recrds=a.csv", "did you mean motion.records?"}};
     Settings s;
     settings_defaults(&s);
     for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
@@ -434,6 +435,32 @@ TEST(paths_become_absolute_where_they_lead_somewhere)
     assert_string_equal(s.building.model, "guyan");
 }
 
+TEST(paths_from_a_folder_lead_to_the_same_files)
+{
+    static const struct {
+        const char *path, *folder, *wanted;
+    } CASES[] = {{"tests/bad", "tests", "./bad"},
+                 {"tests", "tests", "."},
+                 {"configs/quick.ini", "tests/bad", "../../configs/quick.ini"},
+                 {"tests/bad", "tests/bad/config", ".."},
+                 {"/proc/self/cwd/tests", "tests", "/proc/self/cwd/tests"},
+                 {"not-there", "tests", "not-there"},
+                 {"guyan", "tests", "guyan"}};
+    Settings s;
+    char folder[PATH_MAX], list[OPTION_TEXT_MAX];
+    for (size_t i = 0; i < N_OF(CASES); i++) {
+        settings_defaults(&s);
+        set(&s, "building.model", CASES[i].path);
+        snprintf(list, sizeof list, "%s factor=2,builtin:sylmar-like", CASES[i].path);
+        set(&s, "motion.records", list);
+        assert_non_null(realpath(CASES[i].folder, folder));
+        settings_make_relative(&s, folder);
+        assert_string_equal(s.building.model, CASES[i].wanted);
+        snprintf(list, sizeof list, "%s factor=2,builtin:sylmar-like", CASES[i].wanted);
+        assert_string_equal(s.motion.records, list);
+    }
+}
+
 /* As in an editor. */
 TEST(columns_count_characters_and_not_the_mark_of_utf_8)
 {
@@ -469,6 +496,9 @@ TEST(a_missing_file_is_told_from_a_bad_one)
     assert_int_equal(read_file("tests/bad/config/not_there.ini", &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "not_there.ini"));
     assert_int_equal(read_file("tests", &err), STATUS_MISSING);
+    assert_string_equal(err.text, "tests: is a folder without a settings file (*.ini)");
+    assert_int_equal(read_file("tests/bad/config", &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "is a folder; did you mean tests/bad/config/"));
 }
 
 /* Whatever has no end is given up after 1 MiB. */

@@ -126,8 +126,10 @@ const char *nearest_word(const char *word, const char *const list[], int n)
     const size_t length = strlen(word);
     int least = 2 + (int)length / 3;
     for (int i = 0; i < n && length >= BEGINNING_MIN; i++)
-        if (strncmp(word, list[i], length) == 0)
-            return list[i];
+        if (strncmp(word, list[i], length) == 0 && (!nearest || strlen(list[i]) < strlen(nearest))) {
+            nearest = list[i];
+            least = 0;
+        }
     for (int i = 0; i < n; i++) {
         const int d = edit_distance(word, list[i]);
         if (d < least) {

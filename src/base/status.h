@@ -76,7 +76,7 @@ Status fail_errno(Err *err, const char *path, const char *what);
 const char *status_words(Status code);
 int status_exit_code(Status code);
 
-/* The word of list[0..n) nearest to `word` by edit distance, else the first that begins with it; NULL: none is near
+/* The word of list[0..n) nearest to `word`: the shortest that begins with it, else by edit distance; NULL: none is near
  * enough to be meant. */
 const char *nearest_word(const char *word, const char *const list[], int n);
 

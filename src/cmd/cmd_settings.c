@@ -50,6 +50,10 @@ static Status begin(const Args *args, Err *err)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
     if (access(path, F_OK) == 0)
         return misused(err, "%s: is there already; name another folder", path);
+    char *folder = realpath(args->operand, NULL);
+    if (folder)
+        settings_make_relative(&s, folder);
+    free(folder);
     TRY(output_open(&o, path, err));
     fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
     settings_write(&s, o.stream, SETTINGS_BASIC);
@@ -66,7 +70,8 @@ const Command CMD_NEW = {
     .operand = "FOLDER",
     .summary = "begin a study: a folder with the fifteen settings that a first one touches",
     .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
-    .details = "Writes FOLDER/study.ini, each setting after its meaning, unit and range.",
+    .details =
+        "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files by their path from FOLDER.",
     .options = NEW_OPTIONS,
     .run = begin,
     .only_reads = 1,

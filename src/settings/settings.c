@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <limits.h>
 
 #include "base/list.h"
 #include "base/text.h"
@@ -538,15 +539,19 @@ void settings_defaults(Settings *s)
 
 Status table_find(const char *key, int *found, Err *err)
 {
-    const char *keys[N_OPTIONS];
+    const char *names[N_OPTIONS]; /* behind the section where the key has none */
+    const char *near;
     for (int i = 0; i < N_OPTIONS; i++) {
-        keys[i] = OPTIONS[i].key;
-        if (strcmp(key, keys[i]) == 0) {
+        names[i] = OPTIONS[i].key + (strchr(key, '.') ? 0 : strcspn(OPTIONS[i].key, ".") + 1);
+        if (strcmp(key, OPTIONS[i].key) == 0) {
             *found = i;
             return STATUS_OK;
         }
     }
-    const char *near = nearest_word(key, keys, N_OPTIONS);
+    near = nearest_word(key, names, N_OPTIONS);
+    for (int i = 0; near && i < N_OPTIONS; i++)
+        if (near == names[i])
+            near = OPTIONS[i].key;
     return near ? bad_data(err, "%s: no such setting; did you mean %s?", key, near)
                 : bad_data(err, "%s: no such setting; `imtet settings` lists all", key);
 }
@@ -595,6 +600,33 @@ void settings_make_absolute(Settings *s)
 {
     for (int i = 0; i < N_OPTIONS; i++)
         table_change_files(s, i, make_absolute, NULL);
+}
+
+/* From folder, which is absolute as realpath makes it; what begins with a point is no word of the program. */
+static void make_relative(char path[OPTION_TEXT_MAX], void *folder)
+{
+    const char *from = folder;
+    char *to = path[0] == '/' ? NULL : realpath(path, NULL), relative[2 * PATH_MAX] = "";
+    size_t same = 0, n = 0;
+    for (size_t i = 0; to; i++) {
+        if ((!from[i] || from[i] == '/') && (!to[i] || to[i] == '/'))
+            same = i;
+        if (!from[i] || from[i] != to[i])
+            break;
+    }
+    for (const char *c = from + same; (c = strchr(c, '/')); c++)
+        n += snprintf(relative + n, sizeof relative - n, n ? "/.." : "..");
+    if (to)
+        snprintf(relative + n, sizeof relative - n, "%s%s", n ? "" : ".", to + same);
+    if (to && strlen(relative) < OPTION_TEXT_MAX)
+        memcpy(path, relative, strlen(relative) + 1);
+    free(to);
+}
+
+void settings_make_relative(Settings *s, char *folder)
+{
+    for (int i = 0; i < N_OPTIONS; i++)
+        table_change_files(s, i, make_relative, folder);
 }
 
 typedef struct {

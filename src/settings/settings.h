@@ -56,6 +56,9 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 
+/* The same as paths from a folder (as realpath names it), but for absolute ones: what a file there is to say. */
+void settings_make_relative(Settings *s, char *folder);
+
 /* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or
  * levels. */
 int settings_screens(const Settings *s);

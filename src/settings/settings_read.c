@@ -1,6 +1,8 @@
 #include "settings/settings.h"
 
 #include <ctype.h>
+#include <glob.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/csv.h"
@@ -246,10 +248,27 @@ static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
 }
 
+/* A folder in the place of a settings file: the first two that lie in it. */
+static Status name_those_in(const char *folder, Err *err)
+{
+    char pattern[OPTION_TEXT_MAX];
+    glob_t g = {0};
+    snprintf(pattern, sizeof pattern, "%s/*.ini", folder);
+    const size_t n = glob(pattern, 0, NULL, &g) == 0 ? g.gl_pathc : 0;
+    const Status status = n == 0 ? fail(err, STATUS_MISSING, "%s: is a folder without a settings file (*.ini)", folder)
+                                 : fail(err, STATUS_MISSING, "%s: is a folder; did you mean %s%s%s?", folder,
+                                        g.gl_pathv[0], n > 1 ? " or " : "", n > 1 ? g.gl_pathv[1] : "");
+    globfree(&g);
+    return status;
+}
+
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
 {
     char *text;
     size_t length;
+    struct stat st;
+    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode))
+        return name_those_in(path, err);
     TRY(file_read(path, LARGEST, &text, &length, err));
     Reading r = {.s = s, .path = path, .faults = faults, .first = err};
     const Status status = read_text(&r, text, length, n_faults);
@@ -298,7 +317,8 @@ void settings_place(const char *path, SettingGivenFn is_given, const void *user,
     Reading r = {.s = &s, .path = path, .first = &ignored};
     const char *key;
     settings_defaults(&s);
-    if (file_read(path, LARGEST, &text, &length, &ignored) != STATUS_OK)
+    /* Of the file itself it says where already, also where a key names the folder that the file lies in. */
+    if (begins(was.text, path, ":") || file_read(path, LARGEST, &text, &length, &ignored) != STATUS_OK)
         return;
     read_text(&r, text, length, NULL);
     free(text);
