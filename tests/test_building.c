@@ -324,6 +324,8 @@ TEST(faults_of_storeys_are_named)
     expect_refusal_of(&o, "storeys.csv:2: yield_drift is 0; it must be above 0");
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
     expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n4.5,1e5,1e8\n4500,1e5,1e8\n");
+    expect_refusal_of(&o, "storeys.csv:3: height_m is 4500; a storey has 0.1 to 100 m: write metres");
     write_file(&o, "storeys.csv", "height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n");
     expect_refusal_of(&o, "has both mass_kg and mass_t");
     write_file(&o, "storeys.csv", "height_m;mass_t;stiffness_kn_m\n3,5;100;200.000\n"); /* a mark of thousands */

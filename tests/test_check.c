@@ -215,6 +215,18 @@ TEST(units_are_taken_from_the_comments_of_the_files)
     free(output_of("building @/units0 --set building.units=kN_m_t"));
 }
 
+TEST(heights_that_were_assumed_or_are_no_storeys_are_noticed)
+{
+    write_building(1, 1, 0);
+    expect_warnings("building.heights_m", "--set building.heights_m=5.4864,3.9624");
+    expect_text("the files have no heights: those of the built-in tower are assumed, 25.3 m in all; give "
+                "building.heights_m = FIRST, OTHERS in m, from the bottom",
+                "--set building.heights_m=5.4864,3.9624");
+    expect_warnings("building.model", "--set building.heights_m=3,31");
+    expect_warnings("building.model", "--set building.heights_m=0.9,3");
+    expect_warnings("", "--set building.heights_m=1,30");
+}
+
 TEST(floors_from_the_top_down_are_noticed)
 {
     write_building(1, 1, 1);
@@ -337,7 +349,8 @@ TEST(a_study_that_was_begun_beside_its_files_is_checked_from_elsewhere)
     char command[512], *here = realpath(getenv("IMTET"), NULL);
     write_building(1, 1, 0);
     snprintf(command, sizeof command,
-             "cd %s && %s new begun --set building.model=six >said && cd begun && %s check study.ini --set "
+             "cd %s && %s new begun --set building.model=six --set building.heights_m=3.5 >said && cd begun && %s "
+             "check study.ini --set "
              "sim.duration_s=1 >sound && cd /proc && %s check %s/begun/study.ini --set sim.duration_s=1 >/dev/null",
              place.folder, here, here, here, place.folder);
     assert_int_equal(system(command), 0);

@@ -197,15 +197,28 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
     free(said);
 }
 
-TEST(what_stores_nothing_says_so_by_its_status)
+/* Whoever asks for the same once more gets the same answer, and the run keeps one design of it. */
+TEST(a_second_time_it_is_the_design_of_the_first)
+{
+    static const char *const AGAIN[] = {"simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%",
+                                        "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0"};
+    char *before = all_of("run");
+    for (size_t i = 0; i < N_OF(AGAIN); i++) {
+        char *said = output_of(AGAIN[i]);
+        assert_non_null(strstr(said, "it is design 41 of the run: nothing new to store"));
+        free(said);
+    }
+    char *after = all_of("run");
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
+}
+
+TEST(what_cannot_be_simplified_says_so_by_its_status)
 {
     expect(69, "not stored: on these steps it loses more than may be lost",
            "simplify @/run --plates 8 --keep j1_m=0.1%");
-    expect(69, "not stored: it is design 41, as simple as it can be",
-           "simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%");
     expect(2, "--zones", "simplify @/run --zones 21");
-    expect(69, "not stored: it is design 41, as simple as it can be",
-           "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0");
 }
 
 int main(void)

@@ -97,47 +97,55 @@ static void show_design(const Work *w, const double x[])
     }
 }
 
-/* Whether the end of the path is a design that the run does not have, and keeps what is to be kept. */
-static Status check_end(const Work *w, Err *err)
+/* The design of the run that the end of the path is; 0: it has none such. */
+static long known_id(const Work *w)
 {
     const Simplified *r = &w->result;
     const EvaluationTable *has = &w->run->table;
+    for (size_t i = 0; i < has->n; i++)
+        if (memcmp(r->designs.row[r->n - 1].x, has->row[i].x, w->run->schema.n_var * sizeof(double)) == 0)
+            return has->row[i].id;
+    return 0;
+}
+
+static Status store_end(Work *w, Err *err)
+{
+    const Simplified *r = &w->result;
+    Evaluation *last = &r->designs.row[r->n - 1];
+    const long known = known_id(w);
+    char reason[48];
     if (r->loss[r->n - 1] > 1.0)
         return fail(err, STATUS_UNMET,
                     "%s: not stored: on these steps it loses more than may be lost, or violates limits: finer steps, "
                     "more plates or another --keep",
                     w->run->folder);
-    for (size_t i = 0; i < has->n; i++)
-        if (memcmp(r->designs.row[r->n - 1].x, has->row[i].x, w->run->schema.n_var * sizeof(double)) == 0)
-            return fail(err, STATUS_UNMET,
-                        "%s: not stored: it is design %ld, as simple as it can be (steps, idle stops, --keep)",
-                        w->run->folder, has->row[i].id);
+    if (known) { /* as where the same is asked for a second time */
+        printf("it is design %ld of the run: nothing new to store.\n", known);
+        return STATUS_OK;
+    }
+    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, w->run->table.row[w->from.row].id);
+    last->reason = reason;
+    TRY(improve_store(&w->from, last, err));
+    improve_say(&w->from);
     return STATUS_OK;
 }
 
 static Status simplify(const Args *args, Work *w, Err *err)
 {
     const char *word = args_value(args, "--design");
-    char reason[48];
     TRY(improve_open(&w->from, args, word ? word : "knee", err));
     w->run = &w->from.run;
     TRY(take_options(args, w, err));
     TRY(simplify_design(w->run, w->from.row, &w->config, &w->result, err));
     const Simplified *r = &w->result;
-    Evaluation *last = &r->designs.row[r->n - 1];
     printf("design %ld of %s, %zu designs simulated, %.1f s\n\n", w->run->table.row[w->from.row].id, w->run->folder,
            r->n_evaluated, r->seconds);
     show_path(w);
-    show_design(w, last->x);
+    show_design(w, r->designs.row[r->n - 1].x);
     putchar('\n');
     if (r->designs.row[0].violation > 0.0)
         puts("The design violates the limits of its run, and so may what is made of it.");
-    TRY(check_end(w, err));
-    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, w->run->table.row[w->from.row].id);
-    last->reason = reason;
-    TRY(improve_store(&w->from, last, err));
-    improve_say(&w->from);
-    return STATUS_OK;
+    return store_end(w, err);
 }
 
 static Status run(const Args *args, Err *err)

@@ -16,6 +16,9 @@ static const double BUILT_IN_FIRST_M = 5.4864, BUILT_IN_M = 3.9624;
 
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
+    const int is_own =
+        o->heights_m.n == 2 && o->heights_m.at[0] == BUILT_IN_FIRST_M && o->heights_m.at[1] == BUILT_IN_M;
+    b->heights_assumed = !files->storey_m && !model_is_built_in(o->model) && is_own;
     for (int j = 0; j < b->n && model_is_built_in(o->model); j++)
         if (list_at(&o->heights_m, j) != (j == 0 ? BUILT_IN_FIRST_M : BUILT_IN_M))
             return bad_data(err,

@@ -52,16 +52,17 @@ typedef struct {
 } BuildingModel;
 
 typedef struct {
-    int n;             /* floors */
-    double *K, *M;     /* (n, n) [N/m], [kg] */
-    double *phi;       /* (n, n) column i is mode i [1/sqrt(kg)] */
-    double *omega;     /* (n) [rad/s] ascending */
-    double *gamma;     /* (n) [sqrt(kg)] */
-    double *zeta;      /* (n) [-] damping ratios of the modes */
-    double *storey_m;  /* (n) heights */
-    double *yield_m;   /* (n) [m] drift at which a storey yields; 0: it stays elastic */
-    double *yield_n_m; /* (n) [N/m] the part of its stiffness that then yields */
-    int yields;        /* any storey does */
+    int n;               /* floors */
+    double *K, *M;       /* (n, n) [N/m], [kg] */
+    double *phi;         /* (n, n) column i is mode i [1/sqrt(kg)] */
+    double *omega;       /* (n) [rad/s] ascending */
+    double *gamma;       /* (n) [sqrt(kg)] */
+    double *zeta;        /* (n) [-] damping ratios of the modes */
+    double *storey_m;    /* (n) heights */
+    double *yield_m;     /* (n) [m] drift at which a storey yields; 0: it stays elastic */
+    double *yield_n_m;   /* (n) [N/m] the part of its stiffness that then yields */
+    int yields;          /* any storey does */
+    int heights_assumed; /* the files have none, and building.heights_m is left at those of the built-in tower */
     int hardening_raised;
     double hardening; /* [-] share that is left, as it was asked for or more (see above) */
     uint64_t hash;    /* FNV-1a of the numbers in the files */

@@ -177,6 +177,9 @@ static Status choose(const SheetRow *r, int plain, const char *names, double *va
                                                   : STATUS_OK;
 }
 
+/* As in building.heights_m; what is implausible within them is warned of (scene/summary.h). */
+static const double HEIGHT_MIN_M = 0.1, HEIGHT_MAX_M = 100;
+
 static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
@@ -184,6 +187,9 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
         return bad_data(err, "%zu storeys; at most %d are supported", r->n_rows, FLOORS_MAX);
     Storey *storey = &all->storey[all->n++];
     storey->height = r->x[0];
+    if (storey->height < HEIGHT_MIN_M || storey->height > HEIGHT_MAX_M)
+        return bad_data(err, "height_m is %g; a storey has %g to %g m: write metres", storey->height, HEIGHT_MIN_M,
+                        HEIGHT_MAX_M);
     TRY(choose(r, 1, "mass_kg and mass_t", &storey->mass, err));
     TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &storey->shear, err));
     TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));

@@ -82,11 +82,16 @@ static void summarise_building(SceneSummary *s, const Building *b)
 {
     *s = (SceneSummary){.n_floors = b->n,
                         .note = b->note,
+                        .lowest_m = HUGE_VAL,
+                        .heights_assumed = b->heights_assumed,
                         .top_first = falls_from_row_to_row(b),
                         .hardening_raised = b->hardening_raised ? b->hardening : 0};
     summarise_mass(s, b);
-    for (int j = 0; j < b->n; j++)
+    for (int j = 0; j < b->n; j++) {
         s->height_m += b->storey_m[j];
+        s->lowest_m = fmin(s->lowest_m, b->storey_m[j]);
+        s->highest_m = fmax(s->highest_m, b->storey_m[j]);
+    }
     for (int i = 0; i < 3 && i < b->n; i++) {
         s->period_s[i] = 2 * M_PI / b->omega[i];
         s->damping[i] = b->zeta[i];
@@ -143,6 +148,14 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
         warn_of_mass(w, s->lightest, s->floor_mass_min_kg);
     if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
         warn_of_mass(w, s->heaviest, s->floor_mass_max_kg);
+    if (s->heights_assumed)
+        say(w, "building.heights_m",
+            "the files have no heights: those of the built-in tower are assumed, %.4g m in all; give "
+            "building.heights_m = FIRST, OTHERS in m, from the bottom",
+            s->height_m);
+    if (s->lowest_m < STOREY_MIN_M || s->highest_m > STOREY_MAX_M)
+        say(w, "building.model", "storeys of %.4g to %.4g m; they usually have %g to %g m", s->lowest_m, s->highest_m,
+            STOREY_MIN_M, STOREY_MAX_M);
     if (s->hardening_raised > 0)
         say(w, "building.hardening", "raised to %.3g: with less the building would not stand where all storeys yield",
             s->hardening_raised);

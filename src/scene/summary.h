@@ -14,14 +14,16 @@ typedef struct {
     int n_floors;
     double mass_kg, height_m;
     double floor_mass_min_kg, floor_mass_max_kg;
-    int lightest, heaviest;  /* floors, from 1 */
-    double period_s[3];      /* the first; 0 where there are fewer */
-    double damping[3];       /* [-] of these modes */
-    double first_mode_mass;  /* [-] share of the mass */
-    const char *note;        /* what of an OpenSees model was skipped; empty: nothing */
-    double hardening_raised; /* [-] of storeys that yield, where building.hardening was too little; 0: it was not */
-    int top_first;           /* the first mode is largest at the first row and falls from row to row */
-    double base_shear;       /* [-] share of the weight */
+    int lightest, heaviest;     /* floors, from 1 */
+    double period_s[3];         /* the first; 0 where there are fewer */
+    double damping[3];          /* [-] of these modes */
+    double first_mode_mass;     /* [-] share of the mass */
+    const char *note;           /* what of an OpenSees model was skipped; empty: nothing */
+    double hardening_raised;    /* [-] of storeys that yield, where building.hardening was too little; 0: it was not */
+    double lowest_m, highest_m; /* storeys */
+    int heights_assumed;        /* of the built-in tower (scene/building.h) */
+    int top_first;              /* the first mode is largest at the first row and falls from row to row */
+    double base_shear;          /* [-] share of the weight */
     double core_mass_kg;
     double core_hz, timoshenko_hz, euler_bernoulli_hz; /* the core's first mode by core.theory and by either */
     double clamped_hz;                                 /* the same on ground that does not give way */
@@ -36,6 +38,7 @@ Status scene_summarise(SceneSummary *out, const Building *b, const CoreOptions *
 /* Ranges outside which a warning is given. */
 static const double PERIOD_PER_STOREY_MIN_S = 0.03, PERIOD_PER_STOREY_MAX_S = 0.3;
 static const double FLOOR_MASS_MIN_KG = 1e3, FLOOR_MASS_MAX_KG = 1e7;
+static const double STOREY_MIN_M = 1, STOREY_MAX_M = 30;
 static const double DAMPING_MAX = 0.2, PEAK_MAX_G = 3, GAP_MAX_M = 1;
 
 typedef void (*WarnFn)(const char *key, const char *text, void *user);
