@@ -30,6 +30,8 @@ typedef struct {
     Status fatal; /* no fault of the configuration: nothing more can be said about it */
 } Check;
 
+enum { TRIED_MAX = 5 };
+
 /* The scene that a tower's configuration makes. */
 typedef struct {
     const Settings *s;
@@ -37,8 +39,11 @@ typedef struct {
     Motion motion;
     double recorded_g; /* its peak before scaling */
     DesignSpace space;
-    double x[DESIGN_VARIABLES_MAX]; /* a design to try */
-    Design design;                  /* the same */
+    size_t n_tried; /* designs */
+    double tried[TRIED_MAX][DESIGN_VARIABLES_MAX];
+    const double *x; /* the one of them that stands for the others */
+    long impacts;    /* of it */
+    Design design;   /* the first */
     SceneSummary summary;
 } CheckedScene;
 
@@ -58,8 +63,6 @@ static void fault(Check *c, const char *text)
             return;
     }
     json_array_append_new(c->faults, json_string(text));
-    if (!c->as_json)
-        fprintf(stderr, "%s\n", text);
 }
 
 /* Does the text begin with "section.key:"? */
@@ -90,8 +93,6 @@ static void warn(const char *key, const char *text, void *user)
 {
     Check *c = user;
     json_array_append_new(c->warnings, json_of("key=%s text=%s", key, text));
-    if (!c->as_json)
-        fprintf(stderr, "warning: %s: %s\n", key, text);
 }
 
 /* The faults of a settings file, one per line. */
@@ -145,25 +146,44 @@ static double duration(const Motion *m)
     return (double)(m->n - 1) * m->dt_s;
 }
 
-/* A design inside the search box, its gaps spread over it, or the first of --design. */
-static int choose_design(Check *c, CheckedScene *p, const char *path)
+/* Designs that are spread over the search box, their gaps and what else is searched by its logarithm by that; the core
+ * is the same, in the middle. */
+static void spread_designs(CheckedScene *p)
 {
-    const DesignOptions *box = &p->s->design;
-    const int n = p->building.n;
-    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
-    Err e = {0};
-    if (!note(c, design_space_make(&p->space, box, core_section(&p->s->core), n, &e), "design", &e))
-        return 0;
     const DesignSpace *s = &p->space;
-    design_bounds(s, box, lower, upper);
-    for (int j = 0; j < s->n_var; j++)
-        p->x[j] = lower[j] + (upper[j] - lower[j]) * (j < s->n_gaps ? fmod(GOLDEN_RATIO * (j + 1), 1) : 0.5);
+    const int walls_end = s->n_gaps + s->n_walls, side = walls_end + s->n_bumpers;
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    design_bounds(s, &p->s->design, lower, upper);
+    p->n_tried = TRIED_MAX;
+    for (int j = 0; j < s->n_var; j++) {
+        const int is_core = (j >= s->n_gaps && j < walls_end) || (j == side && s->has_side);
+        const double least = j < s->n_gaps ? fmax(lower[j], 1e-3 * upper[j]) : lower[j];
+        for (int k = 0; k < TRIED_MAX; k++) {
+            const double share = is_core ? 0.5 : fmod(GOLDEN_RATIO * (j + 1) + (double)k / TRIED_MAX, 1);
+            double *x = &p->tried[k][j];
+            *x = j < s->n_gaps || design_is_log(s, j) ? least * pow(upper[j] / least, share)
+                                                      : lower[j] + (upper[j] - lower[j]) * share;
+            *x = design_word(s, j, *x) ? round(*x) : *x;
+        }
+    }
+}
+
+/* Those of the box, or the first of --design. */
+static int choose_designs(Check *c, CheckedScene *p, const char *path)
+{
+    Err e = {0};
+    DesignSpace *s = &p->space;
+    if (!note(c, design_space_make(s, &p->s->design, core_section(&p->s->core), p->building.n, &e), "design", &e))
+        return 0;
+    spread_designs(p);
+    p->x = p->tried[0];
     if (!path)
         return 1;
     Designs d;
     if (!note(c, designs_take(&d, path, s, NULL, 0, NULL, &e), "--design", &e))
         return 0;
-    memcpy(p->x, d.x, s->n_var * sizeof *p->x);
+    memcpy(p->tried[0], d.x, s->n_var * sizeof *d.x);
+    p->n_tried = 1;
     warn_of_designs(&d, path, warn, c);
     design_free(&d);
     return 1;
@@ -302,26 +322,57 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
         json_put(c->out, "missing=%s", missing);
 }
 
-/* The design to try is simulated once, with forces where the core stands on ground that it may lift from. */
-static void describe_study(Check *c, const CheckedScene *p, const Problem *problem)
+/* Of those that collide the one in the middle by its impacts; where none does the first. */
+static size_t typical_of(size_t n, const SimResult r[])
+{
+    size_t colliding = 0;
+    for (size_t i = 0; i < n; i++)
+        colliding += r[i].impacts > 0;
+    for (size_t i = 0; i < n; i++) {
+        size_t fewer = 0, more = 0;
+        for (size_t k = 0; k < n; k++) {
+            fewer += r[k].impacts > 0 && r[k].impacts < r[i].impacts;
+            more += r[k].impacts > r[i].impacts;
+        }
+        if (r[i].impacts > 0 && 2 * fewer <= colliding && 2 * more <= colliding)
+            return i;
+    }
+    return 0;
+}
+
+/* The designs to try are simulated once, with forces where the core stands on ground that it may lift from. */
+static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
 {
     Err e = {0};
-    SimResult r;
+    SimResult r[TRIED_MAX];
+    SimTask task[TRIED_MAX];
     char text[NOTE_MAX];
+    double seconds = 0;
     const Settings *s = p->s;
-    const SimTask task = {.kind = SCENE_IMPACT, .x = p->x};
-    if (!note(c, tower_simulate(problem, 1, &task, &r, &e), "simulation", &e))
+    json_t *impacts = json_array();
+    for (size_t i = 0; i < p->n_tried; i++)
+        task[i] = (SimTask){.kind = SCENE_IMPACT, .x = p->tried[i]};
+    if (!note(c, tower_simulate(problem, p->n_tried, task, r, &e), "simulation", &e)) {
+        json_decref(impacts);
         return;
-    if (foundation_lifts(&r))
-        warn("core.foundation", uplift_words(&r, text), c);
+    }
+    for (size_t i = 0; i < p->n_tried; i++) {
+        seconds += r[i].seconds / (double)p->n_tried;
+        json_array_append_new(impacts, json_integer(r[i].impacts));
+    }
+    const size_t typical = typical_of(p->n_tried, r);
+    p->x = p->tried[typical];
+    p->impacts = r[typical].impacts;
+    if (foundation_lifts(&r[typical]))
+        warn("core.foundation", uplift_words(&r[typical], text), c);
     const long threads = threads_of(&s->search);
     const long records = suite_count(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     json_t *study =
-        json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%ld",
+        json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%p",
                 p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
-                simulations, threads, r.seconds, r.impacts);
-    put_times(study, p, simulations, threads, r.seconds, json_array_size(json_object_get(c->out, "objectives")));
+                simulations, threads, seconds, impacts);
+    put_times(study, p, simulations, threads, seconds, json_array_size(json_object_get(c->out, "objectives")));
     json_put(c->out, "study=%p", study);
 }
 
@@ -346,7 +397,7 @@ static void describe_worker(Check *c, const Settings *s, Adapter *a)
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */
-static void open_study(Check *c, const Settings *s, const CheckedScene *p)
+static void open_study(Check *c, const Settings *s, CheckedScene *p)
 {
     Err e = {0};
     Adapter *adapter;
@@ -388,6 +439,21 @@ static void list_ladder(json_t *ladder)
     figures_list(0, ladder);
 }
 
+/* What was left out of: its gaps as a list, what else it has by name. */
+static json_t *ladder_design(const CheckedScene *p)
+{
+    char name[TABLE_NAME_MAX];
+    json_t *o = json_of("impacts=%ld", p->impacts);
+    if (p->space.n_gaps > 0)
+        json_put(o, "gaps_m=%p", json_numbers(p->space.n_gaps, p->x));
+    for (int j = p->space.n_gaps; j < p->space.n_var; j++) {
+        const char *word = design_word(&p->space, j, p->x[j]);
+        design_variable_name(&p->space, j, name);
+        json_object_set_new(o, name, word ? json_string(word) : json_number(p->x[j]));
+    }
+    return o;
+}
+
 static void climb(Check *c, const CheckedScene *p)
 {
     Err e = {0};
@@ -395,8 +461,18 @@ static void climb(Check *c, const CheckedScene *p)
     const double period = 2 * M_PI / p->building.omega[0];
     const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), 0, ladder, &e)
                                  : fail_memory(&e, 1, "a ladder");
-    if (note(c, status, "--ladder", &e))
-        json_put(c->out, "ladder=%p", ladder_json(ladder));
+    if (note(c, status, "--ladder", &e)) {
+        json_t *o = ladder_json(ladder);
+        json_put(o, "design=%p", ladder_design(p));
+        json_put(c->out, "ladder=%p", o);
+    }
+    if (p->impacts == 0)
+        warn("--ladder",
+             p->n_tried == 1
+                 ? "the design has no impact: what the core and its contacts need cannot be said by it"
+                 : "no gap closes in any of the designs that were tried over design.gap_m: what the core and "
+                   "its contacts need cannot be said; take narrower gaps, or a --design",
+             c);
     free(ladder);
 }
 
@@ -420,7 +496,7 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
     CheckedScene p = {.s = s};
     check_names(c, s);
     const int building = open_building(c, &p), motion = open_motion(c, &p);
-    if (building && motion && choose_design(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
+    if (building && motion && choose_designs(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
         scene_json(c, &p);
         if (json_array_size(c->faults) == 0)
             open_study(c, s, &p);
@@ -433,8 +509,18 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
 
 /* ---- the command ---------------------------------------------------------------------------------------------- */
 
-/* Faults and warnings were said as they were found. */
-static void list_findings(json_t *o)
+/* What is wrong comes last, below everything else on the screen. */
+static void say_findings(const Check *c)
+{
+    size_t i;
+    json_t *found;
+    fflush(stdout);
+    json_array_foreach(c->warnings, i, found) warn_on_stderr(json_string_value(json_object_get(found, "key")),
+                                                             json_string_value(json_object_get(found, "text")), NULL);
+    json_array_foreach(c->faults, i, found) fprintf(stderr, "%s\n", json_string_value(found));
+}
+
+static void list_figures(json_t *o)
 {
     json_t *found = json_copy(o);
     json_object_del(found, "faults");
@@ -449,12 +535,14 @@ static void list_findings(json_t *o)
 static Status verdict(const Args *args, const Check *c, Err *err)
 {
     const int faults = (int)json_array_size(c->faults), warnings = (int)json_array_size(c->warnings);
+    if (c->as_json)
+        TRY(c->fatal == STATUS_OK ? show_json(json_incref(c->out), err) : STATUS_OK);
+    else {
+        list_figures(c->out);
+        say_findings(c);
+    }
     if (c->fatal != STATUS_OK)
         return fail(err, c->fatal, "%s: could not be checked", args->operand);
-    if (c->as_json)
-        TRY(show_json(json_incref(c->out), err));
-    else
-        list_findings(c->out);
     if (faults)
         return bad_data(err, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
     if (!c->as_json && warnings)
@@ -508,7 +596,8 @@ const Command CMD_CHECK = {
     .example = "imtet check configs/quick.ini",
     .details =
         "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion, base\n"
-        "shear, search box and expected time of the study (one simulation is run). Every fault is named on standard\n"
+        "shear, search box and expected time of the study (five designs of the box are simulated). Every fault is "
+        "named on standard\n"
         "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
         "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"
         "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
