@@ -17,6 +17,15 @@ static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/wor
                              "objectives = 2\nnoisy = yes\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 150\n"
                              "surrogate = off\nthreads = 1\n";
 
+/* Designs see two of eight motions first; which, every session finds out anew. */
+static const char RACE[] = "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"
+                           "[design]\ngap_m = 0.001, 0.05\n[motion]\nrecord = builtin:suite-01\n"
+                           "records = builtin:suite-02, builtin:suite-03, builtin:suite-04, builtin:suite-05, "
+                           "builtin:suite-06, builtin:suite-07, builtin:suite-08\n"
+                           "[sim]\nduration_s = 4\naccuracy = coarse\n"
+                           "[search]\nobjectives = j3_g, loss, p(drift_ratio>0.012)\nlimits = p(j1_m>0.2)<=0.5\n"
+                           "fidelity = records\ninitial = 24\npopulation = 16\nmax_evals = 40\nthreads = 1\n";
+
 static const char *program(void)
 {
     const char *name = getenv("IMTET_MPI");
@@ -81,13 +90,25 @@ static void expect_not_said(const char *words)
     free(said);
 }
 
-static void assert_same_files(const char *a, const char *b)
+static void assert_same_text(char *first, char *second, const char *a, const char *b, const char *what)
 {
-    char *first = all_of(a), *second = all_of(b);
     if (strcmp(first, second) != 0)
-        fail_msg("%s differs from %s", b, a);
+        fail_msg("%s differs from %s: %s", b, a, what);
     free(first);
     free(second);
+}
+
+static char *front_of(const char *run)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s/front.csv", run);
+    return read_in_place(name);
+}
+
+static void assert_same_files(const char *a, const char *b)
+{
+    assert_same_text(all_of(a), all_of(b), a, b, "evaluations");
+    assert_same_text(front_of(a), front_of(b), a, b, "front.csv");
 }
 
 /* The ranks are mpirun's children, in their order; how many there are. */
@@ -158,6 +179,20 @@ TEST(a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads)
             expect_code(launch(RANKS[i], "optimize @/tower.ini --out @/%s --threads %d", run_name, threads), 0);
             assert_same_files("alone", run_name);
         }
+}
+
+TEST(a_race_over_a_suite_has_the_same_bytes_at_any_number_of_ranks)
+{
+    static const int RANKS[] = {1, 2, 4};
+    program();
+    write_in_place("race.ini", RACE);
+    free(output_of("optimize @/race.ini --out @/race"));
+    for (size_t i = 0; i < N_OF(RANKS); i++) {
+        char run_name[32];
+        snprintf(run_name, sizeof run_name, "race-on-%d", RANKS[i]);
+        expect_code(launch(RANKS[i], "optimize @/race.ini --out @/%s", run_name), 0);
+        assert_same_files("race", run_name);
+    }
 }
 
 TEST(polishing_goes_over_the_ranks)
@@ -289,13 +324,19 @@ TEST(other_commands_give_their_tasks_to_the_ranks)
 
 enum { MPIRUN = -1 };
 
+static void remove_run(const char *name)
+{
+    char command[256];
+    snprintf(command, sizeof command, "rm -rf '%s/%s'", place.folder, name);
+    assert_int_equal(system(command), 0);
+}
+
 static void kill_and_resume(const char *study, int rank, int code)
 {
     program();
     write_in_place("killed.ini", study);
-    char command[256];
-    snprintf(command, sizeof command, "rm -rf '%s/killed' '%s/whole'", place.folder, place.folder);
-    assert_int_equal(system(command), 0);
+    remove_run("killed");
+    remove_run("whole");
     const pid_t mpirun = launch(4, "optimize @/killed.ini --out @/killed");
     wait_for_evaluations("killed");
     const size_t before = finished_in("killed");
@@ -318,6 +359,39 @@ TEST(a_killed_rank_is_named_and_the_same_command_goes_on)
                                  "[search]\ninitial = 24\npopulation = 16\nmax_evals = 160\nsurrogate = off\n"
                                  "threads = 1\n";
     kill_and_resume(LONGER, 2, 128 + SIGKILL);
+}
+
+/* Also while it finds out which motions are seen first; every start has another number of ranks. A run that ends before
+ * it is killed makes room for the next. */
+TEST(a_race_that_is_killed_at_random_moments_ends_with_the_same_bytes)
+{
+    enum { STARTS = 5 };
+    static const char START[] = "optimize @/race.ini --out @/killed";
+    int n_killed = 0;
+    program();
+    remove_run("killed");
+    write_in_place("race.ini", RACE);
+    const double begun = now_s();
+    expect_code(launch(3, "optimize @/race.ini --out @/race-on-3"), 0);
+    const double whole = now_s() - begun;
+    srand(7);
+    for (int i = 0; i < STARTS; i++) {
+        long pid[16];
+        const pid_t mpirun = launch(2 + i % 3, "%s", START);
+        rest(whole * rand() / RAND_MAX);
+        const int n = ranks_of(mpirun, pid);
+        if (n > 0)
+            kill((pid_t)pid[rand() % n], SIGKILL);
+        if (code_of(mpirun) != 0) {
+            n_killed++;
+            continue;
+        }
+        assert_same_files("race-on-3", "killed");
+        remove_run("killed");
+    }
+    assert_less(0, n_killed);
+    expect_code(launch(4, "%s", START), 0);
+    assert_same_files("race-on-3", "killed");
 }
 
 TEST(a_killed_rank_0_loses_nothing)
