@@ -470,6 +470,29 @@ TEST(what_is_wrong_stands_below_everything_else)
     forget(&s);
 }
 
+static double search_time(const char *settings)
+{
+    char words[400];
+    snprintf(words, sizeof words,
+             "check configs/quick.ini --json --set motion.record=builtin:suite-01 --set "
+             "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
+             settings);
+    json_t *o = json_of(words);
+    const double seconds = number(json_object_get(o, "study"), "search_s");
+    json_decref(o);
+    return seconds;
+}
+
+/* Screened by one of four records and one in five finished, a design takes 1/4 + 3/4/5 of an evaluation. */
+TEST(the_time_of_a_search_counts_what_it_screens_and_its_limits)
+{
+    const double plain = search_time("");
+    assert_less(0, plain);
+    assert_close(search_time("--set search.fidelity=records") / plain, 1 / (0.25 + 0.75 / 5), 1e-9);
+    assert_close(search_time("--set search.objectives=j1_m,j3_g") / plain, 2.0 / 7, 1e-9);
+    assert_close(search_time("--set search.objectives=j1_m,j3_g --set 'search.limits=j2_m<=1'") / plain, 3.0 / 7, 1e-9);
+}
+
 TEST(a_study_of_the_most_floors_ends_with_its_baselines)
 {
     char storeys[64 * (FLOORS_MAX + 1)] = "height_m,mass_kg,stiffness_n_m\n";

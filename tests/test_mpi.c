@@ -17,7 +17,7 @@ static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/wor
                              "objectives = 2\nnoisy = yes\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 150\n"
                              "surrogate = off\nthreads = 1\n";
 
-/* Designs see two of eight motions first; which, every session finds out anew. */
+/* Designs see one of eight motions first; which, every session finds out anew. */
 static const char RACE[] = "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"
                            "[design]\ngap_m = 0.001, 0.05\n[motion]\nrecord = builtin:suite-01\n"
                            "records = builtin:suite-02, builtin:suite-03, builtin:suite-04, builtin:suite-05, "

@@ -10,6 +10,7 @@
 #include "cmd/designs.h"
 #include "cmd/selftest.h"
 #include "cmd/show.h"
+#include "moga/constants.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "motion/motion.h"
@@ -20,6 +21,7 @@
 #include "evaluate/adapter.h"
 #include "evaluate/device.h"
 #include "evaluate/limits.h"
+#include "evaluate/race.h"
 #include "evaluate/tower.h"
 #include "scene/neighbour.h"
 
@@ -274,19 +276,29 @@ static void scene_json(Check *c, const CheckedScene *p)
 
 /* ---- the study ------------------------------------------------------------------------------------------------ */
 
-/* What a study does beside its simulations, for the time that it takes: per evaluation and objective, growing with the
- * root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and
+/* What a study does beside its simulations, for the time that it takes: per design and objective or limit, growing with
+ * the root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and
  * record. Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives,
  * within 30 %, and of `imtet evaluate` of the quick study and of configs/engineer.ini. Their simulations: of 16 designs
  * for the gaps, and some with baselines. */
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 2;
 enum { CLOSING_SIMULATIONS = 24 };
 
-/* [s] beside the simulations of a search. */
-static double search_seconds(const SearchOptions *o, size_t n_var, size_t n_obj)
+/* Designs that a study looks at: of those that are screened one in SCREENED_PER_FINISHED is simulated to its end. */
+static double designs_of(const Settings *s)
 {
-    const double growth = sqrt((double)n_var / VARIABLES);
-    return o->surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * (double)n_obj * (double)o->max_evals;
+    const size_t records = (size_t)suite_count(&s->motion);
+    const double part = s->search.fidelity == FIDELITY_RECORDS ? (double)race_first(records) / (double)records
+                                                               : 1.0 / (double)s->sim.replicates;
+    const double each = settings_screens(s) ? part + (1 - part) / SCREENED_PER_FINISHED : 1;
+    return (double)s->search.max_evals / each;
+}
+
+/* [s] beside the simulations of a search. */
+static double search_seconds(const Settings *s, const Problem *p)
+{
+    const double growth = sqrt((double)p->n_var / VARIABLES), outputs = (double)(p->n_obj + p->n_con);
+    return s->search.surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * outputs * designs_of(s);
 }
 
 static long threads_of(const SearchOptions *o)
@@ -296,12 +308,13 @@ static long threads_of(const SearchOptions *o)
 }
 
 /* Wall times [s] of a study: search and baselines beside the simulations, of each_s, and all of it. */
-static void put_times(json_t *study, const CheckedScene *p, long simulations, long threads, double each_s, size_t n_obj)
+static void put_times(json_t *study, const CheckedScene *p, const Problem *problem, long simulations, long threads,
+                      double each_s)
 {
     const SearchOptions *o = &p->s->search;
     const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
     const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
-    const double search_s = search_seconds(o, p->space.n_var, n_obj);
+    const double search_s = search_seconds(p->s, problem);
     const double baselines_s = DEVICES_S * p->building.n * n_records * (p->building.yields ? YIELDING : 1);
     json_put(study, "search_s=%g baselines_s=%g seconds=%g", search_s, baselines_s,
              all * each_s / (double)threads + search_s + baselines_s);
@@ -372,7 +385,7 @@ static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
         json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%p",
                 p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
                 simulations, threads, seconds, impacts);
-    put_times(study, p, simulations, threads, seconds, json_array_size(json_object_get(c->out, "objectives")));
+    put_times(study, p, problem, simulations, threads, seconds);
     json_put(c->out, "study=%p", study);
 }
 
@@ -390,7 +403,7 @@ static void describe_worker(Check *c, const Settings *s, Adapter *a)
         note(c, STATUS_BAD_DATA, "problem.command", &why);
     else if (outcome != OUTCOME_OK)
         warn("problem.command", why.text, c);
-    const double search_s = search_seconds(&s->search, p->n_var, p->n_obj);
+    const double search_s = search_seconds(s, p);
     json_put(c->out, "study=%p",
              json_of("simulations=%ld threads=%ld simulation_s=%g search_s=%g seconds=%g", n, threads, each_s, search_s,
                      (double)n * each_s / (double)threads + search_s));
