@@ -1,11 +1,12 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
 #include "bench/distribution.h"
 #include "bench/search/factors.h"
+#include "bench/search/loop.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
 #include "bench/throughput.h"
@@ -286,6 +287,35 @@ static const ArgOption FACTOR_OPTIONS[] = {
     OPTION_END,
 };
 
+static Status run_loop(const Args *args, Err *err)
+{
+    Settings s;
+    Output o;
+    LoopPlan plan = {.settings = &s};
+    paper_defaults(&s);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    TRY(args_whole(args, "--seeds", 1, 100, 3, &plan.n_seeds, err));
+    TRY(args_whole(args, "--iterations", 1, 10000, 100, &plan.iterations, err));
+    TRY(args_number(args, "--error", 0.0, 1e9, 0.15, &plan.error_max, err));
+    TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
+    const Status status = loop_run(&plan, o.stream, err);
+    if (status == STATUS_OK)
+        return output_close(&o, err);
+    output_abandon(&o);
+    return status;
+}
+
+static const ArgOption LOOP_OPTIONS[] = {
+    {"--iterations", "N", NULL, 0, "100 unless given"},
+    {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
+    {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"},
+    OPTION_CSV,
+    OPTIONS_MOTION,
+    OPTION_SET,
+    OPTION_END,
+};
+
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
 static const Command COMMANDS[] = {
@@ -344,6 +374,14 @@ static const Command COMMANDS[] = {
          "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
      .options = FACTOR_OPTIONS,
      .run = run_factors,
+     .program = "imtet-bench"},
+    {.name = "loop",
+     .summary = "the loop of the paper's Fig. 6a beside the search",
+     .example = "imtet-bench loop --iterations 20 --seeds 1",
+     .details = "The paper's genetic algorithm on radial basis functions, and this program's search with as many\n"
+                "simulations from the same first designs: a row of every iteration and generation, as CSV.",
+     .options = LOOP_OPTIONS,
+     .run = run_loop,
      .program = "imtet-bench"},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };

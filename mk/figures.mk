@@ -33,8 +33,8 @@ compare: $(PROGRAM) $(BENCH) setup-figures ## the search on textbook problems, o
 	@scripts/tables --from build/search.md search search-plain search-families search-aside
 	@cp build/search.svg docs
 
-paper: $(PROGRAM) setup-figures ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
-	@scripts/paper --program ./$(PROGRAM) $(ARGS)
+paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
+	@scripts/paper --program ./$(PROGRAM) --bench $(BENCH) $(ARGS)
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@rm -f build/constants.md

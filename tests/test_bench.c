@@ -10,6 +10,7 @@
 #include "bench/promise.h"
 #include "bench/search/families.h"
 #include "bench/search/factors.h"
+#include "bench/search/loop.h"
 #include "bench/search/reference.h"
 #include "motion/motion_scale.h"
 #include "scene_options.h"
@@ -325,6 +326,47 @@ TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
     assert_false(found);
     unlink(path);
     course_free(&c);
+}
+
+/* Of dtlz2: simulations of the first sample, after the last iteration, with the last population, of the search. */
+static void loop_simulations(double error_max, size_t found[4], double volume[2])
+{
+    Err err;
+    Settings s;
+    char *text;
+    size_t size, n = 0;
+    settings_defaults(&s);
+    s.problem.kind = PROBLEM_DTLZ2;
+    s.search.population = 20;
+    const LoopPlan plan = {.settings = &s, .n_seeds = 1, .iterations = 3, .error_max = error_max};
+    FILE *out = open_memstream(&text, &size);
+    CHECK_OK(loop_run(&plan, out, &err), &err);
+    fclose(out);
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"), n++) {
+        char which[8] = "";
+        size_t iteration = 0, simulations = 0;
+        double share = 0.0;
+        sscanf(line, "1,%7[a-z],%zu,%zu,%lf", which, &iteration, &simulations, &share);
+        if (strcmp(which, "loop") == 0 && (simulations == 100 || iteration >= 3))
+            found[iteration == 4 ? 2 : iteration == 3] = simulations;
+        if (iteration == 0 && simulations == 100)
+            volume[which[0] == 's'] = share;
+        found[3] = simulations;
+    }
+    assert_true(n > 6);
+    free(text);
+}
+
+TEST(the_loop_simulates_what_fails_the_error_test_and_the_search_as_many_from_the_same_sample)
+{
+    size_t strict[4] = {0}, never[4] = {0};
+    double volume[2] = {0.0, -1.0};
+    loop_simulations(0.0, strict, volume);
+    assert_memory_equal(strict, ((size_t[]){100, 160, 160, 160}), sizeof strict);
+    assert_true(volume[0] > 0.0 && volume[0] == volume[1]);
+    loop_simulations(1e9, never, volume);
+    assert_int_equal(never[1], 100);
+    assert_true(never[2] > 100 && never[2] <= 120 && never[3] == never[2]);
 }
 
 int main(void)
