@@ -8,13 +8,15 @@
  *     size_t n;
  *     imtet_error error;
  *     imtet_search *s;
+ *     imtet_status bad;
  *     const char *settings[] = {"search.max_evals=200", "search.seed=1", NULL};
  *     imtet_search_options o = {.size = sizeof o, .variables = 2, .objectives = 2, .settings = settings};
- *     if (imtet_search_create(&o, &s, &error)) return puts(error.text);
- *     while (!imtet_search_ask(s, 8, ids, X, &n, &error) && n > 0) {
+ *     bad = imtet_search_create(&o, &s, &error);
+ *     while (!bad && !(bad = imtet_search_ask(s, 8, ids, X, &n, &error)) && n > 0) {
  *         for (size_t i = 0; i < n; i++) evaluate(X + 2 * i, F + 2 * i);
- *         if (imtet_search_tell(s, n, ids, F, NULL, NULL, &error)) return puts(error.text);
+ *         bad = imtet_search_tell(s, n, ids, F, NULL, NULL, &error);
  *     }
+ *     if (bad) fprintf(stderr, "%s\n", error.text);
  *     imtet_search_free(&s);
  *
  * Link with `pkg-config --cflags --libs imtet`. The simulator of towers: imtet_scene.h.
@@ -28,7 +30,8 @@
  *            `imtet optimize` with the same settings. On processors of several kinds: with OPENBLAS_CORETYPE=Haswell in
  *            the environment, as the program has it
  * Failures   a design that failed is told with a reason in words. The search avoids designs like it. Where
- *            search.failures_max designs in a row have failed, ask says so once, and goes on when it is called again
+ *            search.failures_max designs in a row have failed, ask says so once, and goes on when it is called again.
+ *            Where none has succeeded when the search is done, its front is IMTET_INTERNAL, with the commonest reason
  * Ownership  a search belongs to the caller, who frees it; what is passed in is copied, what comes out is written into
  *            the caller's arrays
  * Threads    any: calls on one search exclude each other, searches do not know of each other. Between two calls no
@@ -98,8 +101,10 @@ IMTET_API imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids
                                         imtet_error *error);
 
 /* What n designs are worth, in any order: F (n, objectives), G (n, constraints; NULL without constraints), failed (n):
- * NULL, or why it failed, and then its F and G are not read; failed NULL: all succeeded. Refused as a whole where an id
- * is none, stands there twice or was told before, or where a number is not finite. */
+ * NULL, or why it failed, and then its F and G are not read; failed NULL: all succeeded. An id is one that ask has given;
+ * of a search that was loaded also one from before it was saved that has no answer yet (up to the end of the generation
+ * under way), whether ask has given it again or not: told, it is not given again. Refused as a whole where an id is
+ * another one, stands there twice or was told before, or where a number is not finite. */
 IMTET_API imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[], const double F[],
                                          const double G[], const char *const failed[], imtet_error *error);
 

@@ -3,12 +3,17 @@
  *
  *     const char *settings[] = {"motion.record=builtin:kobe-like", NULL};
  *     imtet_scene *scene;
- *     imtet_result *result;
+ *     imtet_result *result = NULL;
+ *     imtet_error error;
  *     const double *j1;
- *     double x[22] = {...};             gap_01_m..gap_20_m, t_base_m, t_top_m
- *     imtet_scene_open("configs/quick.ini", settings, &scene, &error);
- *     imtet_scene_simulate(scene, IMTET_IMPACTS, x, 22, &result, &error);
- *     imtet_result_numbers(result, "j1_m", &j1, NULL, NULL, &error);     *j1 in m
+ *     double x[22] = {[20] = 0.012, [21] = 0.008}; // gap_01_m..gap_20_m, t_base_m, t_top_m
+ *     for (int j = 0; j < 20; j++) x[j] = 0.05;
+ *     if (imtet_scene_open("configs/quick.ini", settings, &scene, &error) ||
+ *         imtet_scene_simulate(scene, IMTET_IMPACTS, x, 22, &result, &error) ||
+ *         imtet_result_numbers(result, "j1_m", &j1, NULL, NULL, &error))
+ *         fprintf(stderr, "%s\n", error.text);
+ *     else
+ *         printf("%s: %g m\n", imtet_result_text(result, "outcome"), *j1);
  *     imtet_result_free(&result);
  *     imtet_scene_free(&scene);
  *

@@ -92,6 +92,13 @@ static void must(imtet_status status, const imtet_error *error)
         fail_msg("%s", error->text);
 }
 
+static void assert_says(imtet_status status, const imtet_error *error, imtet_status wanted, const char *words)
+{
+    if (status != wanted || !strstr(error->text, words))
+        fail_msg("status %d (wanted %d), said: %s; wanted: %s", (int)status, (int)wanted, error->text, words);
+    assert_int_equal(error->status, wanted);
+}
+
 /* -- the same designs as `imtet optimize` -------------------------------------------------------------------------- */
 
 typedef struct {
@@ -220,6 +227,7 @@ TEST(answers_of_designs_that_were_under_way_when_it_was_saved_are_taken_by_the_o
     const Exercise *e = &EXERCISES[0];
     imtet_search *s = search_of(e);
     UnderWay u = {0}, again = {0};
+    const double F[OBJ_MAX] = {1, 1, 1};
     imtet_error error;
     must(imtet_search_ask(s, 8, u.id, u.X, &u.n, &error), &error);
     save_and_load(&s);
@@ -228,6 +236,11 @@ TEST(answers_of_designs_that_were_under_way_when_it_was_saved_are_taken_by_the_o
     must(imtet_search_ask(s, 8, again.id, again.X, &again.n, &error), &error);
     assert_int_equal(again.id[0], 5);
     assert_memory_equal(again.X, u.X, 4 * e->n_var * sizeof *u.X);
+    must(imtet_search_tell(s, 1, (const long[]){16}, F, NULL, NULL, &error), &error); /* it may have been asked for */
+    must(imtet_search_ask(s, 8, again.id, again.X, &again.n, &error), &error);
+    assert_true(again.n == 3 && again.id[2] == 15);
+    assert_says(imtet_search_tell(s, 1, (const long[]){17}, F, NULL, NULL, &error), &error, IMTET_MISUSED,
+                "no design has the id 17; 16 were asked for");
     imtet_search_free(&s);
 }
 
@@ -292,13 +305,6 @@ TEST(given_designs_come_first)
 }
 
 /* -- what makes no sense ------------------------------------------------------------------------------------------- */
-
-static void assert_says(imtet_status status, const imtet_error *error, imtet_status wanted, const char *words)
-{
-    if (status != wanted || !strstr(error->text, words))
-        fail_msg("status %d (wanted %d), said: %s; wanted: %s", (int)status, (int)wanted, error->text, words);
-    assert_int_equal(error->status, wanted);
-}
 
 static void create_fails(imtet_search_options o, imtet_status wanted, const char *words)
 {
@@ -365,6 +371,9 @@ TEST(answers_that_make_no_sense_are_refused_as_a_whole)
     memcpy(bad, ids, sizeof bad);
     bad[3] = 1000;
     assert_says(imtet_search_tell(s, 4, bad, F, G, NULL, &error), &error, IMTET_MISUSED, "no design has the id 1000");
+    bad[3] = 5; /* the search has it, and nobody has asked for it */
+    assert_says(imtet_search_tell(s, 4, bad, F, G, NULL, &error), &error, IMTET_MISUSED,
+                "no design has the id 5; 4 were asked for");
     bad[3] = -5;
     assert_says(imtet_search_tell(s, 4, bad, F, G, NULL, &error), &error, IMTET_MISUSED, "id -5");
     bad[3] = ids[0];
@@ -424,10 +433,10 @@ TEST(a_fork_is_told_to_load_a_saved_search)
     imtet_search_free(&s);
 }
 
-TEST(designs_that_all_fail_are_said_once_and_then_asked_for_on)
+TEST(designs_that_all_fail_are_said_once_then_asked_for_on_and_the_front_says_the_commonest_reason)
 {
     static const char *const settings[] = {"search.failures_max=5", "search.max_evals=40", NULL};
-    const char *failed[] = {"no licence"};
+    const char *failed[1];
     const imtet_search_options o = {.size = sizeof o, .variables = 2, .objectives = 1, .settings = settings};
     imtet_search *s;
     imtet_error error;
@@ -446,10 +455,14 @@ TEST(designs_that_all_fail_are_said_once_and_then_asked_for_on)
         }
         if (n == 0)
             break;
+        must(imtet_search_designs(s, IMTET_FRONT, 0, NULL, NULL, NULL, NULL, &n, &error), &error);
+        failed[0] = id < 3 ? "a rare fault" : "no licence";
         must(imtet_search_tell(s, 1, &id, NULL, NULL, failed, &error), &error);
         told++;
     }
     assert_true(told == 40 && said == 8);
+    assert_says(imtet_search_designs(s, IMTET_FRONT, 0, NULL, NULL, NULL, NULL, &n, &error), &error, IMTET_INTERNAL,
+                "none of 40 simulations succeeded; 38 failed with: no licence");
     imtet_search_free(&s);
 }
 

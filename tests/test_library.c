@@ -214,7 +214,7 @@ TEST(what_makes_no_sense_is_named)
     says(imtet_scene_simulate(scene, IMTET_IMPACTS, x, 8, &r, &error), &error, "x: number 3 is nan");
     assert_null(r);
     says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, 1e-9, &r, &error), &error, "every_s: 1e-09");
-    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, -1, &r, &error), &error, "every_s");
+    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, -1, &r, &error), &error, "every_s: -1 is not");
     says(imtet_scene_simulate(none, IMTET_IMPACTS, x, 8, &r, &error), &error, "the scene is NULL");
     r = response(scene, IMTET_ALONE);
     says(imtet_result_numbers(r, "j3g", &at, NULL, NULL, &error), &error, "did you mean j3_g?");
@@ -274,6 +274,28 @@ TEST(the_headers_stand_alone_in_c_and_in_cpp)
                "-Iinclude "
                "-fsyntax-only -x c - && echo \"#include <$h.h>\" | c++ -Wall -Wextra -Werror -Iinclude -fsyntax-only "
                "-x c++ - || exit 1; done"));
+}
+
+TEST(the_examples_in_the_headers_compile_run_and_say_what_fails)
+{
+    static const char BUILD[] =
+        "for h in imtet imtet_scene; do { echo '#include <'$h'.h>'; echo '#include <stdio.h>'; echo 'void "
+        "evaluate(const "
+        "double x[], double f[]) { f[0] = x[0]; f[1] = %s(1 - x[0] * x[1]); }'; echo 'int main(void) {'; sed -n "
+        "'/^ \\*     [^ ]/,/^ \\*$/s/^ \\*     //p' include/$h.h; echo '}'; } | cc -std=c11 -Wall -Wextra -Werror "
+        "-Wno-unused-function -Iinclude -x c - -o %s/$h -Lbuild/release -limtet -Wl,-rpath,$PWD/build/release && "
+        "%s/$h || exit 1; done";
+    char command[2048];
+    if (!is_built())
+        skip();
+    snprintf(command, sizeof command, BUILD, "", place.folder, place.folder);
+    char *said = shell(command);
+    assert_memory_equal(said, "ok: ", 4); /* of the scene; the search says nothing */
+    free(said);
+    snprintf(command, sizeof command, BUILD, "0 / 0. * ", place.folder, place.folder);
+    said = shell(command);
+    assert_non_null(strstr(said, "F of design 1: number 2 is"));
+    free(said);
 }
 
 TEST(the_examples_run)

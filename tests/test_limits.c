@@ -192,7 +192,7 @@ TEST(a_run_without_a_front_says_why_there_is_none)
 
     write_in_place("deaf.ini", DEAF);
     expect(70, "none of 8 simulations succeeded", "optimize @/deaf.ini --out @/failed --set problem.command=false");
-    expect(70, "none of 8 simulations succeeded; the first: ", "choose @/failed");
+    expect(70, "none of 8 simulations succeeded; 8 failed with: ", "choose @/failed");
     expect(70, "none of 8 simulations succeeded", "report @/failed");
 }
 

@@ -22,6 +22,7 @@ struct imtet_search {
     double aspire[OBJECTIVES_MAX];
     Asking asking;
     size_t next;    /* no design before it is free */
+    size_t known;   /* designs of the file it was loaded from, any of which may have been asked for */
     size_t failing; /* of the last that were told, in a row, */
     size_t failed;  /* up to this row */
 };

@@ -151,6 +151,7 @@ static Status read_search(Pack *p, const char *path, imtet_search **out, Err *er
     walk(p, *out, err);
     if (!pack_finished(p))
         return bad_data(err, "%s: is damaged", path);
+    (*out)->known = (*out)->asking.table.n;
     return handle_open(*out, err);
 }
 

@@ -111,6 +111,7 @@ typedef struct {
     const double *x;
     size_t n;
     double every_s;
+    int is_history;
     SceneKind kind;
     imtet_result *result;
 } Question;
@@ -123,9 +124,9 @@ static Status check_kind(Question *q, const SimOptions *o, Err *err)
     if ((unsigned)q->asked >= N_OF(KINDS))
         return misused(err, "kind: %d is none of IMTET_IMPACTS, IMTET_ALONE, IMTET_RIGID", (int)q->asked);
     q->kind = KINDS[q->asked];
-    if (o->engine != ENGINE_FAST && (q->kind == SCENE_RIGID || q->every_s >= 0))
+    if (o->engine != ENGINE_FAST && (q->kind == SCENE_RIGID || q->is_history))
         return misused(err, "IMTET_RIGID and histories are of sim.engine = fast alone");
-    return q->every_s <= 0 || (q->every_s >= 1e-5 && q->every_s <= 1e6)
+    return q->every_s == 0 || (q->every_s >= 1e-5 && q->every_s <= 1e6)
                ? STATUS_OK
                : misused(err, "every_s: %g is not between 1e-5 and 1e6 s, and not 0", q->every_s);
 }
@@ -221,7 +222,7 @@ static Status describe(const Problem *p, const Question *q, Err *err)
 
 imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error)
 {
-    return ask(scene, describe, (Question){.asked = IMTET_ALONE, .every_s = -1}, out, error);
+    return ask(scene, describe, (Question){.asked = IMTET_ALONE}, out, error);
 }
 
 /* -- one response -------------------------------------------------------------------------------------------------- */
@@ -247,7 +248,7 @@ static Status simulate(const Problem *p, const Question *q, Err *err)
 imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
                                   imtet_result **out, imtet_error *error)
 {
-    return ask(scene, simulate, (Question){.asked = kind, .x = x, .n = n, .every_s = -1}, out, error);
+    return ask(scene, simulate, (Question){.asked = kind, .x = x, .n = n}, out, error);
 }
 
 /* -- over time ----------------------------------------------------------------------------------------------------- */
@@ -287,8 +288,8 @@ static Status history(const Problem *p, const Question *q, Err *err)
 imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n, double every_s,
                                  imtet_result **out, imtet_error *error)
 {
-    const double every = every_s >= 0 ? every_s : NAN;
-    return ask(scene, history, (Question){.asked = kind, .x = x, .n = n, .every_s = every}, out, error);
+    return ask(scene, history, (Question){.asked = kind, .x = x, .n = n, .every_s = every_s, .is_history = 1}, out,
+               error);
 }
 
 /* -- a record ------------------------------------------------------------------------------------------------------ */

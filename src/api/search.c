@@ -261,9 +261,14 @@ static const char *failure_of(const Answers *t, size_t i)
     return t->failed ? t->failed[i] : NULL;
 }
 
+static size_t last_asked_for(const imtet_search *s)
+{
+    return s->next > s->known ? s->next : s->known;
+}
+
 static int is_design(const imtet_search *s, long id)
 {
-    return id >= 1 && (size_t)id <= s->asking.table.n;
+    return id >= 1 && (size_t)id <= last_asked_for(s);
 }
 
 /* Before anything is changed. */
@@ -275,7 +280,7 @@ static Status check_answer(imtet_search *s, const Answers *t, size_t i, Err *err
     Asking *a = &s->asking;
     char what[64];
     if (!is_design(s, id))
-        return misused(err, "no design has the id %ld; the last one is %zu", id, a->table.n);
+        return misused(err, "no design has the id %ld; %zu were asked for", id, last_asked_for(s));
     if (a->design[id - 1].place == DESIGN_TOLD || a->design[id - 1].is_named)
         return misused(err, "design %ld is told %s", id, a->design[id - 1].is_named ? "twice" : "already");
     a->design[id - 1].is_named = 1;
@@ -405,6 +410,8 @@ static Status write_rows(const imtet_search *s, const Wanted *w, Archive *archiv
 {
     const Asking *a = &s->asking;
     size_t at = 0;
+    if (w->which == IMTET_FRONT && a->is_over)
+        TRY(evaluation_table_check(&a->table, err));
     if (w->which == IMTET_FRONT)
         TRY(fill_archive(s, archive, err));
     for (size_t i = 0; i < a->table.n; i++) {

@@ -169,6 +169,35 @@ Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *
     return STATUS_OK;
 }
 
+static int by_words(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+Status evaluation_table_check(const EvaluationTable *t, Err *err)
+{
+    const char **reason;
+    size_t n = 0, most = 0, end = 0;
+    while (n < t->n && t->row[n].outcome != OUTCOME_OK)
+        n++;
+    if (n == 0 || n < t->n)
+        return STATUS_OK;
+    TRY_ROOM(reason, n, "reasons", err);
+    for (size_t i = 0; i < n; i++)
+        reason[i] = t->row[i].reason;
+    qsort(reason, n, sizeof *reason, by_words);
+    for (size_t i = 0, first = 0; i < n; i++) {
+        first = strcmp(reason[i], reason[first]) == 0 ? first : i;
+        if (i + 1 - first > most) {
+            most = i + 1 - first;
+            end = i;
+        }
+    }
+    fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %zu failed with: %s", n, most, reason[end]);
+    free(reason);
+    return STATUS_INTERNAL;
+}
+
 void evaluation_table_free(EvaluationTable *t)
 {
     for (size_t i = 0; i < t->n_used; i++)

@@ -112,4 +112,7 @@ Status evaluation_table_give_room(Evaluation *row, Err *err); /* for its reason 
 /* The same filled with a copy of `from`, whose shapes are those of the table; NULL arrays are not known. */
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);
 
+/* STATUS_INTERNAL where there are rows and all failed, with the reason that most of them have. */
+Status evaluation_table_check(const EvaluationTable *t, Err *err);
+
 void evaluation_table_free(EvaluationTable *t); /* its shapes stay; {0} is fine */

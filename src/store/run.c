@@ -354,11 +354,11 @@ Status run_why_empty(const Run *run, Err *err)
     char nearest[PATH_MAX + 16], limits[160];
     const size_t n_ok = run->table.n - run->n_failed;
     const Settings *s = run->settings;
+    Err why;
     snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
-    if (run->table.n > 0 && n_ok == 0)
-        return fail(err, STATUS_INTERNAL,
-                    "%s: none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
-                    run->folder, run->table.n, run->table.row[0].reason, run->folder);
+    if (evaluation_table_check(&run->table, &why) != STATUS_OK)
+        return fail(err, STATUS_INTERNAL, "%s: %s; `imtet export %s --all --csv FILE` has all", run->folder, why.text,
+                    run->folder);
     if (run->n_finished == 0)
         return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
                         run->folder, run->table.n);
