@@ -15,6 +15,7 @@ the call returns (milliseconds; a generation of a search takes some 10 ms to sec
 import concurrent.futures
 import ctypes
 import ctypes.util
+import difflib
 import json
 import os
 import sqlite3
@@ -111,12 +112,17 @@ def _assignments(section, settings):
             for key, value in settings.items()]
 
 
-def _matrix(what, values, columns):
-    """(n, columns) of float64, or ValueError with the shape that is wanted."""
+def _numbers(what, values, wanted):
+    """An array of float64, or ValueError with the shape that is wanted."""
     try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
+        return np.asarray(values, dtype=np.float64, order="C")
     except (TypeError, ValueError) as fault:
-        raise ValueError(f"{what}: {fault}; wanted numbers of shape (n, {columns})") from None
+        raise ValueError(f"{what}: {fault}; wanted numbers of shape {wanted}") from None
+
+
+def _matrix(what, values, columns):
+    """(n, columns); one row of them may be a plain list."""
+    array = _numbers(what, values, f"(n, {columns})")
     if array.ndim == 1 and array.size == columns:
         array = array.reshape(1, columns)
     if array.ndim != 2 or array.shape[1] != columns:
@@ -124,9 +130,42 @@ def _matrix(what, values, columns):
     return array
 
 
+def _row(what, values, n):
+    """(n,); where n is 1 a number will do."""
+    array = _numbers(what, values, f"({n},)")
+    if array.shape != (n,) and not (n == 1 and array.ndim == 0):
+        raise ValueError(f"{what} has shape {array.shape}, wanted ({n},)")
+    return array
+
+
+def _rows(what, values, n, columns):
+    """A list of n rows, whatever each of them is."""
+    try:
+        rows = list(values)
+    except TypeError:
+        raise ValueError(f"{what} is {values!r}, wanted rows of shape ({n}, {columns})") from None
+    if len(rows) != n:
+        raise ValueError(f"X has {n} rows, {what} {len(rows)}: wanted shape ({n}, {columns})")
+    return rows
+
+
+class _Handle:
+    """What the library owns has one owner here: a copy would free it once more."""
+
+    def __reduce_ex__(self, protocol):
+        raise TypeError(f"a {type(self).__name__} cannot be copied or pickled: {self._instead}")
+
+
+class _Copied:
+    """Values; the scene behind them stays with the original."""
+
+    def __getstate__(self):
+        return {**self.__dict__, "_scene": None}
+
+
 # -- the search --------------------------------------------------------------------------------------------------------
 
-class Search:
+class Search(_Handle):
     """The Pareto front of `objectives` functions of len(lower) variables, by `evaluations` designs at most.
 
     lower, upper  (variables,) bounds
@@ -140,6 +179,8 @@ class Search:
     Same arguments and answers: the same designs to the last bit, however many are asked for at a time, in whatever order
     they are told, saved and loaded in between or not.
     """
+
+    _instead = "save it, and imtet.Search.load the file wherever it is wanted again"
 
     def __init__(self, lower, upper, objectives, kinds=None, seed=1, evaluations=500, constraints=0, senses=None,
                  start=None, **settings):
@@ -215,11 +256,10 @@ class Search:
         a row is None or an exception the design failed; with constraints a row is a pair (f, g), or G (n, constraints)
         has their values. Refused as a whole where a shape is wrong or a number is not finite."""
         X = _matrix("X", X, self.variables)
-        Y = list(Y)
-        if len(Y) != len(X) or (G is not None and len(G) != len(X)):
-            raise ValueError(f"X has {len(X)} rows, Y {len(Y)}" + ("" if G is None else f", G {len(G)}"))
+        Y = _rows("Y", Y, len(X), self.objectives)
+        G = None if G is None else _rows("G", G, len(X), self.constraints)
         if len(X) == 0 and self._ids:
-            raise ImtetError(f"{len(self._ids)} designs were asked for and never told, so that nothing is left to ask: tell "
+            raise ImtetError(1, f"{len(self._ids)} designs were asked for and never told, so that nothing is left to ask: tell "
                              "them, or save the search and load it, which asks for them again")
         keys = [x.tobytes() for x in X]
         for i, key in enumerate(keys):
@@ -231,23 +271,18 @@ class Search:
             if y is None or isinstance(y, BaseException):
                 failed[i] = _reason(y).encode(errors="replace")
                 continue
-            f, g = (y, G[i] if G is not None else ()) if not self._is_pair(y) else y
-            F[i] = self._row("Y", i, f, self.objectives)
-            H[i] = self._row("G", i, g, self.constraints)
+            if self.constraints > 0 and G is None and not self._is_pair(y):
+                raise ValueError(f"row {i} of Y is no tuple (f, g), and there is no G of shape ({len(X)}, {self.constraints})")
+            f, g = y if self._is_pair(y) else (y, G[i] if G is not None else ())
+            F[i] = _row(f"row {i} of Y", f, self.objectives)
+            H[i] = _row(f"row {i} of G", g, self.constraints)
         ids = (ctypes.c_long * max(len(X), 1))(*(self._ids[k] for k in keys))
         _call("imtet_search_tell", self._search, len(X), ids, _pointer(F), _pointer(H), failed)
         for key in keys:
             del self._ids[key]
 
     def _is_pair(self, y):
-        return self.constraints > 0 and isinstance(y, tuple) and len(y) == 2 and np.ndim(y[0]) == 1
-
-    @staticmethod
-    def _row(what, i, values, n):
-        values = np.asarray(values, dtype=np.float64)
-        if values.shape != (n,) and not (n == 1 and values.shape == ()):
-            raise ValueError(f"row {i} of {what} has shape {values.shape}, wanted ({n},)")
-        return values
+        return self.constraints > 0 and isinstance(y, tuple) and len(y) == 2 and (self.objectives == 1 or np.ndim(y[0]) == 1)
 
     def evaluate(self, f, X, threads=1):
         """[f(x) for x of X], for tell. Where f raises, returns None, or numbers that are not finite, the design failed;
@@ -292,7 +327,7 @@ def _reason(fault):
 
 # -- the simulator -----------------------------------------------------------------------------------------------------
 
-class Result:
+class Result(_Copied):
     """Named numbers, arrays and texts of the library, as attributes: r.j1_m, r.peak_drift_m, r.outcome. `names` lists
     them; units stand at the ends of the names. One number is a float, a column an array (n,), a table (rows, columns)."""
 
@@ -314,6 +349,12 @@ class Result:
         finally:
             _lib.imtet_result_free(ctypes.byref(handle))
 
+    def __getattr__(self, name):
+        names = self.__dict__.get("names", [])
+        near = [n for n in names if n.startswith(name)] or difflib.get_close_matches(name, names, 1)
+        raise AttributeError(f"no result is called {name}; " + (f"did you mean {near[0]}? " if near else "")
+                             + f"There are {', '.join(names)}")
+
     def __getitem__(self, name):
         return getattr(self, name)
 
@@ -325,13 +366,15 @@ class Result:
         """The same response over time, simulated once more: a Result of t_s (n,), floor_m, accel_g, core_m, contact_n
         (n, floors) and energies. every: seconds between rows at most; None or 0: the step of the motion."""
         if self._scene is None:
-            raise ValueError("this result is no response")
+            raise ValueError("this result is no response, or a copy, which has no scene")
+        if every and not 1e-5 <= every <= 1e6:
+            raise ValueError(f"every is {every!r}, wanted seconds from 1e-5 to 1e6, or 0 for the step of the motion")
         kind, x = self._question
         return self._scene._ask("imtet_scene_history", kind, _pointer(x), 0 if x is None else x.size,
                                 ctypes.c_double(every or 0))
 
 
-class Scene:
+class Scene(_Handle):
     """A tower, the core inside it and a ground motion, of a settings file (None: the defaults) and settings by name:
 
         Scene("configs/kobe.ini", record="KOBE.AT2", **{"sim.forces": "yes"})
@@ -340,6 +383,8 @@ class Scene:
     variables, lower, upper (n,): what a design x is and the box of a search; objectives, senses; floors. Threads may
     simulate on one scene at once.
     """
+
+    _instead = "open another imtet.Scene of the same settings; threads may share one"
 
     def __init__(self, path=None, settings=(), **changes):
         self._scene = _handle()
@@ -365,14 +410,14 @@ class Scene:
     def design(self, gaps=None, thickness=None, **others):
         """x (n,) of gaps [m] (one number for all, or one of each), thickness [m] (one number, or that at the foot and at
         the top), and further variables by their names: side_m=9."""
-        given = {name: float(value) for name, value in others.items()}
+        given = {name: _row(name, value, 1).item() for name, value in others.items()}
         for what, values, start in (("gaps", gaps, "gap_"), ("thickness", thickness, "t_")):
-            names = [n for n in self.variables if n.startswith(start)]
+            names = [n for n in self.variables if n.startswith(start)] or [what]
             if values is not None:
-                try:
-                    given.update(zip(names, np.broadcast_to(np.asarray(values, dtype=np.float64), (len(names),))))
-                except ValueError:
-                    raise ValueError(f"{what}: {np.size(values)} numbers, wanted 1 or {len(names)}") from None
+                values = _numbers(what, values, f"() or ({len(names)},)")
+                if values.shape not in ((), (1,), (len(names),)):
+                    raise ValueError(f"{what} has shape {values.shape}, wanted one number or ({len(names)},)")
+                given.update(zip(names, np.broadcast_to(values, len(names))))
         missing = [n for n in self.variables if n not in given]
         unknown = [n for n in given if n not in self.variables]
         if missing or unknown:
@@ -387,9 +432,13 @@ class Scene:
         kinds = {"impacts": 0, "alone": 1, "rigid": 2}
         if kind not in kinds:
             raise ValueError(f"kind {kind!r} is none of {', '.join(kinds)}")
-        if x is None and kind != "alone":
-            x = self.design(gaps, thickness, **others)
-        x = None if x is None else np.ascontiguousarray(x, dtype=np.float64).ravel()
+        named = {k: v for k, v in {"gaps": gaps, "thickness": thickness, **others}.items() if v is not None}
+        if x is not None and named:
+            raise TypeError(f"x and {', '.join(named)} are given: give x alone, or no x; scene.design({next(iter(named))}=...) "
+                            "makes an x")
+        if named or (x is None and kind != "alone"):
+            x = self.design(**named)
+        x = None if x is None else _row("x", x, len(self.variables))
         return self._ask("imtet_scene_simulate", kinds[kind], _pointer(x), 0 if x is None else x.size,
                          question=(kinds[kind], x))
 
@@ -416,7 +465,7 @@ def read_motion(path, **settings):
 _MORE_IS_BETTER = {"ed5_10_pct", "edcs_pct", "ed_devices_pct"}  # of a tower's measures
 
 
-class Run:
+class Run(_Copied):
     """A run of `imtet optimize`, read from its run.sqlite; it may be under way.
 
     designs  record array of every evaluated design: id, generation, kind, outcome, variables, objectives, what else was

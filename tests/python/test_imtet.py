@@ -1,6 +1,8 @@
 """python/imtet.py against the program and against itself. test_imtet.py FOLDER: where its files go; $IMTET is the program."""
+import copy
 import math
 import os
+import pickle
 import random
 import signal
 import subprocess
@@ -117,10 +119,17 @@ class Searching(unittest.TestCase):
         X = s.ask(3)
         with self.assertRaisesRegex(ValueError, r"X has shape \(3, 2\), wanted \(n, 4\)"):
             s.tell(X[:, :2], np.ones((3, 2)))
-        with self.assertRaisesRegex(ValueError, "X has 3 rows, Y 2"):
-            s.tell(X, np.ones((2, 2)))
-        with self.assertRaisesRegex(ValueError, r"row 0 of Y has shape \(3,\), wanted \(2,\)"):
-            s.tell(X, np.ones((3, 3)))
+        for Y, words in ((np.ones((2, 2)), r"X has 3 rows, Y 2: wanted shape \(3, 2\)"),
+                         (np.ones((3, 3)), r"row 0 of Y has shape \(3,\), wanted \(2,\)"),
+                         (None, r"Y is None, wanted rows of shape \(3, 2\)"),
+                         ([[1, 2], ["a", "b"], [1, 2]], r"row 1 of Y: .*'a'; wanted numbers of shape \(2,\)")):
+            with self.assertRaisesRegex(ValueError, words):
+                s.tell(X, Y)
+        with self.assertRaisesRegex(ValueError, r"row 0 of Y is no tuple \(f, g\), and there is no G of shape \(1, 1\)"):
+            bounded = imtet.Search([0] * 3, [1] * 3, 2, constraints=1)
+            bounded.tell(bounded.ask(1), [[[1, 2], [3]]])
+        with self.assertRaisesRegex(imtet.ImtetError, "3 designs were asked for and never told"):
+            s.tell(np.empty((0, 4)), [])
         with self.assertRaisesRegex(ValueError, "row 1 of X was not asked for"):
             s.tell(np.array([X[0], X[1] + 1e-9, X[2]]), np.ones((3, 2)))
         with self.assertRaisesRegex(imtet.ImtetError, "F of design 2: number 1 is nan"):
@@ -139,6 +148,27 @@ class Searching(unittest.TestCase):
             imtet.Search([0], [1], objectives=-1)
         with self.assertRaisesRegex(imtet.ImtetError, "start: variable 2 of design 1 is 3.5; it is a whole number"):
             imtet.Search([0, 0], [1, 5], 2, kinds="real,int", start=[[0.5, 3.5]])
+
+    def test_where_every_design_fails_the_front_says_why(self):
+        s = imtet.Search([0] * 4, [1] * 4, 2, evaluations=40)
+        while not s.done:
+            X = s.ask(7)
+            s.tell(X, [None, *[RuntimeError("no licence")] * (len(X) - 1)])
+        with self.assertRaisesRegex(imtet.ImtetError, "none of 40 simulations succeeded; 34 failed with: RuntimeError: no licence"):
+            s.front()
+        self.assertEqual(len(s.told()[0]), 40)
+
+    def test_handles_cannot_be_copied_and_values_can(self):
+        scene = imtet.Scene(None, **SIX)
+        for handle in (search(), scene):
+            for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+                with self.assertRaisesRegex(TypeError, f"a {type(handle).__name__} cannot be copied or pickled: "):
+                    copied(handle)
+        r = scene.simulate(gaps=0.004, thickness=0.02)
+        for other in (copy.copy(r), pickle.loads(pickle.dumps(r))):
+            self.assertEqual((other.j1_m, other.names), (r.j1_m, r.names))
+            with self.assertRaisesRegex(ValueError, "a copy, which has no scene"):
+                other.history()
 
     def test_a_driver_that_is_killed_at_random_moments_loses_nothing(self):
         state = os.path.join(PLACE, "killed.search")
@@ -182,10 +212,22 @@ class Simulating(unittest.TestCase):
         self.assertLessEqual(np.diff(h.t_s).max(), 0.01 * (1 + 1e-9))
         self.assertAlmostEqual(abs(h.floor_m).max(), r.j1_m, delta=0.02 * r.j1_m)
         self.assertGreater(scene.simulate(kind="alone").j1_m, 0)
-        for wrong, words in ((dict(gaps=[1, 2], thickness=0.01), "gaps: 2 numbers, wanted 1 or 6"),
+        for every in (-1, math.nan, 1e7):
+            with self.assertRaisesRegex(ValueError, f"every is {every}, wanted seconds"):
+                r.history(every)
+        with self.assertRaisesRegex(AttributeError, "no result is called j1; did you mean j1_m?.* There are j1_m, j2_m, j3_g"):
+            r.j1
+        with self.assertRaisesRegex(AttributeError, "did you mean peak_drift_m?"):
+            r.peak_drft_m
+        self.assertFalse(hasattr(r, "j1"))
+        with self.assertRaisesRegex(TypeError, "x and gaps, side_m are given: give x alone"):
+            scene.simulate(scene.lower, gaps=0.004, side_m=3)
+        with self.assertRaisesRegex(ValueError, "no variable of this scene: side_m"):
+            scene.simulate(kind="alone", gaps=0.004, thickness=0.01, side_m=3)
+        for wrong, words in ((dict(gaps=[1, 2], thickness=0.01), r"gaps has shape \(2,\), wanted one number or \(6,\)"),
                              (dict(gaps=0.01), "missing: t_base_m, t_top_m"),
                              (dict(gaps=0.01, thickness=0.01, side_m=3), "no variable of this scene: side_m"),
-                             (dict(x=[1, 2, 3]), "x: has 3 numbers")):
+                             (dict(x=np.ones((2, 4))), r"x has shape \(2, 4\), wanted \(8,\)")):
             with self.assertRaisesRegex((ValueError, imtet.ImtetError), words):
                 scene.simulate(**wrong)
 
