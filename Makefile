@@ -263,7 +263,7 @@ install: all install-library ## program, library, manual pages, completion, exam
 	@./imtet --man > $(SHARE)/man/man1/imtet.1
 	@for c in $$(./imtet --commands); do ./imtet --man $$c > $(SHARE)/man/man1/imtet-$$c.1; done
 	@for f in $(COMPLETIONS); do sed 's|@SHARE@|$(PREFIX)/share|' scripts/completion.$${f%%[-/]*} > $(SHARE)/$$f; done
-	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/*; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
+	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/* examples/* python/README.md python/examples/*.py; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
 # The library alone: libimtet, headers, imtet.pc and, where Python is, its module.
@@ -279,6 +279,7 @@ install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, python
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/imtet.pc
 	@for f in $(INCLUDED); do install -D -m 644 include/$$f $(DESTDIR)$(PREFIX)/include/$$f; done
 	@install -D -m 644 python/imtet.py $(DESTDIR)$(PYTHON_DIR)/imtet.py
+	@[ "$(DESTDIR)$(PREFIX)" != /usr/local ] || ldconfig 2>/dev/null || true # so that programs find the library
 
 uninstall-library:
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,$(notdir $(SHARED)) $(SONAME) libimtet.so libimtet.a pkgconfig/imtet.pc) \

@@ -23,6 +23,12 @@ static void evaluate(const double x[], double f[])
     f[1] = (x[0] - 1) * (x[0] - 1) + x[2] * x[2] + x[3] * x[3];
 }
 
+static int complain(const imtet_error *error)
+{
+    fprintf(stderr, "%s\n", error->text);
+    return 1;
+}
+
 /* Calls of the library exclude each other; evaluations do not. */
 static void *work(void *user)
 {
@@ -44,7 +50,7 @@ static void *work(void *user)
             break;
     }
     if (error.status != IMTET_OK)
-        fprintf(stderr, "%s\n", error.text);
+        complain(&error);
     return NULL;
 }
 
@@ -57,16 +63,15 @@ int main(void)
     imtet_error error;
     pthread_t thread[THREADS];
     size_t n;
-    if (imtet_search_create(&options, &search, &error) != IMTET_OK) {
-        fprintf(stderr, "%s\n", error.text);
-        return 1;
-    }
+    if (imtet_search_create(&options, &search, &error) != IMTET_OK)
+        return complain(&error);
     for (int i = 0; i < THREADS; i++)
         if (pthread_create(&thread[i], NULL, work, search) != 0)
             return 1;
     for (int i = 0; i < THREADS; i++)
         pthread_join(thread[i], NULL);
-    imtet_search_designs(search, IMTET_TOLD, 0, NULL, NULL, NULL, NULL, &n, &error);
+    if (imtet_search_designs(search, IMTET_TOLD, 0, NULL, NULL, NULL, NULL, &n, &error) != IMTET_OK)
+        return complain(&error);
     printf("%zu evaluations by %d threads\n", n, THREADS);
     imtet_search_free(&search);
     return 0;

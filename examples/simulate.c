@@ -2,6 +2,7 @@
  *
  *   cc simulate.c $(pkg-config --cflags --libs imtet) -o simulate && ./simulate */
 #include <imtet_scene.h>
+#include <math.h>
 #include <stdio.h>
 
 static int complain(const imtet_error *error)
@@ -14,9 +15,10 @@ static double number(const imtet_result *result, const char *name)
 {
     const double *value;
     imtet_error error;
-    if (imtet_result_numbers(result, name, &value, NULL, NULL, &error) != IMTET_OK)
-        return complain(&error);
-    return *value;
+    if (imtet_result_numbers(result, name, &value, NULL, NULL, &error) == IMTET_OK)
+        return *value;
+    complain(&error);
+    return NAN;
 }
 
 int main(void)

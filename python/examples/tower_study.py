@@ -43,5 +43,6 @@ else:
     right.set(xlabel="time [s]", ylabel="roof [m]")
     right.legend()
     fig.savefig("tower_study.png", dpi=120)
-    print("tower_study.png")
+    print("written: tower_study.png")
 np.savetxt("tower_front.csv", F, delimiter=",", header=",".join(scene.objectives), comments="")
+print("written: tower_front.csv")
