@@ -52,7 +52,9 @@ scale-cost: $(PROGRAM) ## what a study costs beside its simulations, from 10^3 t
 	@scripts/tables --from build/scale.md $(if $(filter surrogate,$(PART)),,scale scale-commands) $(if $(filter plain,$(PART)),,scale-surrogate)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
-	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html --pictures $(BUILD)/pictures
+	@mkdir -p $(BUILD)/pictures
+	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
+	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --pictures $(BUILD)/pictures
 	@cp $(foreach p,front gaps peaks modes energies displacement elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
 	@$(REPORT_PICTURE)/report-first.jpg '#summary' 880
 	@$(REPORT_PICTURE)/report-front.jpg '#front' 880 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'

@@ -1,6 +1,6 @@
 // A picture of a report, JPEG or PNG by its name:
 //   picture.mjs REPORT.html OUT [SELECTOR [HEIGHT [LABEL=VALUE ...]]]
-// What the selector finds, unfolded, at most HEIGHT high; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
+// What the selector finds, unfolded, at most HEIGHT high, two dots of the picture for one of the page; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
 import { writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -19,9 +19,9 @@ try {
   await page.evaluate(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); if (e.localName === "details") e.open = true; })()`);
   await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
   const clip = await page.evaluate(`(() => { const r = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
-    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 1 }; })()`);
+    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 2 }; })()`);
   const { data } = await page.call("Page.captureScreenshot", { clip, captureBeyondViewport: true,
-    ...(out.endsWith(".jpg") ? { format: "jpeg", quality: 82 } : { format: "png" }) });
+    ...(out.endsWith(".jpg") ? { format: "jpeg", quality: 70 } : { format: "png" }) });
   writeFileSync(out, Buffer.from(data, "base64"));
 } finally {
   await browser.close();
