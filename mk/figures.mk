@@ -61,6 +61,7 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-pairs.jpg '#all-pairs-of-objectives-with-their-rank-correlations' 1000
 	@$(REPORT_PICTURE)/report-variables.jpg '#which-variables-matter' 600
 	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
+	@d=$$(mktemp -d) && cp -r $(RUN) $$d/kobe && node tests/serve/drive.mjs $(abspath $(PROGRAM)) --pictures $$d docs/pictures; rm -r $$d
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
 
 ladder: $(PROGRAM) ## docs/ladder.md: which effects five scenes need

@@ -1,6 +1,6 @@
 // Headless Chromium over its debugging pipe: file descriptors 3 and 4, one JSON message up to each NUL byte.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -131,4 +131,16 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
     rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
   }
   return { openPage, close, send };
+}
+
+// What the selector finds, at most `height` high, or what is in the window, as JPEG or PNG by the name of the file; two dots for one of the page.
+export async function picture(page, file, selector, height = 1e5) {
+  await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
+  const clip = await page.evaluate(`(() => { if (!${!!selector}) return { x: scrollX, y: scrollY, width: innerWidth, height: innerHeight, scale: 2 };
+    const bar = document.getElementById("parts"), r = document.querySelector(${JSON.stringify(selector ?? "body")}).getBoundingClientRect();
+    if (bar) bar.style.position = "static"; // it would lie over what is long
+    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 2 }; })()`);
+  const { data } = await page.call("Page.captureScreenshot", { clip, captureBeyondViewport: !!selector,
+    ...(file.endsWith(".jpg") ? { format: "jpeg", quality: 70 } : { format: "png" }) });
+  writeFileSync(file, Buffer.from(data, "base64"));
 }

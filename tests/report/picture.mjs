@@ -1,10 +1,9 @@
 // A picture of a report, JPEG or PNG by its name:
 //   picture.mjs REPORT.html OUT [SELECTOR [HEIGHT [LABEL=VALUE ...]]]
-// What the selector finds, unfolded, at most HEIGHT high, two dots of the picture for one of the page; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
-import { writeFileSync } from "node:fs";
+// What the selector finds, unfolded, at most HEIGHT high; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { openBrowser } from "./browser.mjs";
+import { openBrowser, picture } from "./browser.mjs";
 
 const [report, out, selector = "body", height = "100000", ...fields] = process.argv.slice(2);
 const browser = await openBrowser();
@@ -17,12 +16,7 @@ try {
     await page.evaluate(`(() => { const e = document.querySelector('input[aria-label="${label}"]'); e.value = "${value}"; e.dispatchEvent(new Event("change")); })()`);
   }
   await page.evaluate(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); if (e.localName === "details") e.open = true; })()`);
-  await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
-  const clip = await page.evaluate(`(() => { const r = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
-    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 2 }; })()`);
-  const { data } = await page.call("Page.captureScreenshot", { clip, captureBeyondViewport: true,
-    ...(out.endsWith(".jpg") ? { format: "jpeg", quality: 70 } : { format: "png" }) });
-  writeFileSync(out, Buffer.from(data, "base64"));
+  await picture(page, out, selector, +height);
 } finally {
   await browser.close();
 }

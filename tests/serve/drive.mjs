@@ -1,13 +1,14 @@
 // The page of imtet serve as a person would try it: drive.mjs IMTET FOLDER      FOLDER/runs holds the finished runs a and b
 //                                                   drive.mjs IMTET --bench RUN  prints how long a slider's update takes
+//                                                   drive.mjs IMTET --pictures FOLDER OUT  of FOLDER/kobe, a finished run
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { openBrowser, tryAll } from "../report/browser.mjs";
+import { openBrowser, picture, tryAll } from "../report/browser.mjs";
 
-const [imtet, folder, benchRun] = process.argv.slice(2);
-const isBench = folder === "--bench", root = resolve(isBench ? benchRun : join(folder, "runs"));
+const [imtet, folder, given, pictures] = process.argv.slice(2);
+const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given : join(folder, "runs"));
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const children = [];
 
@@ -74,6 +75,29 @@ async function benchSlider(what, nth, moves) {
   const before = await spent(), times = await dragSlider(nth, moves), after = await spent();
   tell(`${what} dragged`, times);
   console.log(`  processor time of an update: server ${((after[0] - before[0]) / times.length).toFixed(1)} ms, page ${((after[1] - before[1]) / times.length).toFixed(1)} ms`);
+}
+
+// The pictures of docs/serve.md.
+async function takePictures() {
+  await open("kobe");
+  await until("document.getElementById('what-if').dataset.turn && document.querySelector('#summary .chart svg')");
+  await dragSlider(10, 16);
+  await click("#keep-trial");
+  await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if");
+  await click("#kept li button");
+  await click("#designs tbody td button", 1);
+  await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
+  await until("document.querySelectorAll('#drawer svg').length >= 4");
+  await picture(page, join(pictures, "serve-design.jpg"));
+  await click("#drawer .bar + .bar button", 1);
+  await until("document.querySelectorAll('#compared tbody tr').length === 2");
+  await picture(page, join(pictures, "serve-compare.jpg"), "#compare", 900);
+  const live = start("optimize", "configs/quick.ini", "--threads", "1", "--out", join(root, "quick"));
+  live.stdout.resume();
+  while (!(await runs()).some((r) => r.name === "quick")) await pause(50);
+  await open("quick");
+  await until("+document.getElementById('live').dataset.generation > 5", 60);
+  await picture(page, join(pictures, "serve-live.jpg"), "#live");
 }
 
 // ---- what is tried
@@ -315,7 +339,8 @@ try {
     await benchSlider("a gap", 10, 60);
     await benchSlider("the peak of the motion", 0, 40);
     await benchSlider("its stretch", 1, 40);
-  } else failed = await tryAll(tried);
+  } else if (isPictures) await takePictures();
+  else failed = await tryAll(tried);
 } finally {
   await browser.close();
   for (const child of children) child.kill("SIGINT");

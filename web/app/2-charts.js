@@ -95,7 +95,7 @@ window.addEventListener("afterprint", () => {
 function heightChart(width, height, label, lines, floor = "floor", band = null) {
   const rows = lines.flatMap(({ values, ...one }) => values.map((v, j) => ({ ...one, v, floor: j + 1 })));
   return chart({
-    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: 4 }, y: { ...floorAxis(lines[0].values.length), label: floor },
+    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: Math.max(2, Math.min(4, Math.floor((width - 72) / 75))) }, y: { ...floorAxis(lines[0].values.length), label: floor },
     color: { type: "identity" }, symbol: { type: "identity" },
     marks: [
       band ? charts.rectX(band[0].map((low, j) => ({ low, high: band[1][j], floor: j + 1 })), { x1: "low", x2: "high", y1: (r) => r.floor - 0.5, y2: (r) => r.floor + 0.5, fill: lines[0].colour, fillOpacity: 0.18, title: (r) => `all records, ${floor} ${r.floor}: ${show(r.low)} to ${show(r.high)}` }) : null,

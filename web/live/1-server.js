@@ -69,7 +69,7 @@ function frontStrip(host, label, height = 208) {
         const word = element("span", { title: c.what }, v === null ? titleUnit(c) : show(v));
         word.style.left = `${at(k)}px`;
         word.style.top = `${where}px`;
-        word.style.width = `${(width - 2 * side) / Math.max(1, objectives.length - 1)}px`;
+        word.style.width = `${Math.min(2 * side, (width - 2 * side) / Math.max(1, objectives.length - 1))}px`; // the outer ones have no more room
         return word;
       });
     }));
