@@ -161,7 +161,7 @@ function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(190) : "", cards(run.chosen_f, chosenError()));
+  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards(run.chosen_f, chosenError()));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 250);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
