@@ -353,7 +353,7 @@ class Result(_Copied):
         names = self.__dict__.get("names", [])
         near = [n for n in names if n.startswith(name)] or difflib.get_close_matches(name, names, 1)
         raise AttributeError(f"no result is called {name}; " + (f"did you mean {near[0]}? " if near else "")
-                             + f"There are {', '.join(names)}")
+                             + f"there are {', '.join(names)}")
 
     def __getitem__(self, name):
         return getattr(self, name)
@@ -420,9 +420,12 @@ class Scene(_Handle):
                 given.update(zip(names, np.broadcast_to(values, len(names))))
         missing = [n for n in self.variables if n not in given]
         unknown = [n for n in given if n not in self.variables]
-        if missing or unknown:
-            raise ValueError(f"{'missing' if missing else 'no variable of this scene'}: "
-                             f"{', '.join((missing or unknown)[:5])}; it has {', '.join(self.variables)}")
+        if unknown:
+            near = difflib.get_close_matches(unknown[0], ["gaps", "thickness", *self.variables], 1)
+            raise ValueError(f"no variable of this scene: {', '.join(unknown)}" + (f"; did you mean {near[0]}?" if near else "")
+                             + f"; it has {', '.join(self.variables)}")
+        if missing:
+            raise ValueError(f"missing: {', '.join(missing)}")
         return np.array([given[n] for n in self.variables])
 
     def simulate(self, x=None, *, gaps=None, thickness=None, kind="impacts", **others):

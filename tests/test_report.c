@@ -303,18 +303,22 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
     Settings s;
     settings_defaults(&s);
     MotionOptions study = s.motion;
-    char list[40 * TOWER_RECORDS_MAX] = "";
-    for (int i = 1; i < TOWER_RECORDS_MAX; i++)
-        snprintf(list + strlen(list), 40, "builtin:elcentro-like factor=%d\n", i);
-    write_in_place("many_list.txt", list);
-    char *path = in_place("many_list.txt");
-    snprintf(study.records, sizeof study.records, "%s", path);
-    CHECK_OK(elsewhere_of_study(r, &study, &err), &err);
-    assert_int_equal(r->n, TOWER_RECORDS_MAX - 1);
-    CHECK_OK(elsewhere_add(r, path, &err), &err);
+    static const char *const NAMES[] = {"elcentro", "sylmar"};
+    for (int k = 0; k < 2; k++) {
+        char list[40 * TOWER_RECORDS_MAX] = "";
+        for (int i = 1; i < TOWER_RECORDS_MAX; i++)
+            snprintf(list + strlen(list), 40, "builtin:%s-like factor=%d\n", NAMES[k], i);
+        write_in_place("many_list.txt", list);
+        char *path = in_place("many_list.txt");
+        snprintf(study.records, sizeof study.records, "%s", path);
+        CHECK_OK(k == 0 ? elsewhere_of_study(r, &study, &err) : elsewhere_add(r, path, &err), &err);
+        assert_int_equal(r->n, (k + 1) * (TOWER_RECORDS_MAX - 1));
+        free(path);
+    }
+    assert_string_equal(r->source[r->n - 1], "builtin:sylmar-like factor=63");
+    CHECK_OK(elsewhere_add(r, r->source[5], &err), &err); /* what is there, and the first record of the study */
+    CHECK_OK(elsewhere_add(r, study.record, &err), &err);
     assert_int_equal(r->n, 2 * (TOWER_RECORDS_MAX - 1));
-    assert_string_equal(r->source[r->n - 1], "builtin:elcentro-like factor=63");
-    free(path);
     free(r);
 }
 

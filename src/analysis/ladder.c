@@ -111,10 +111,14 @@ static Status list_effects(Job *job, Err *err)
 
 /* -- what each changes --------------------------------------------------------------------------------------------- */
 
+/* Of two orders of the same sums. */
+static const double ROUNDING = 1e-11;
+
 static double change(const Measured *to, const Measured *from, int k)
 {
     const int is_known = to->outcome == RUN_OK && from->outcome == RUN_OK;
-    return is_known ? to->value[LADDER_MEASURE[k]] / from->value[LADDER_MEASURE[k]] - 1 : NAN;
+    const double by = is_known ? to->value[LADDER_MEASURE[k]] / from->value[LADDER_MEASURE[k]] - 1 : NAN;
+    return fabs(by) < ROUNDING ? 0 : by;
 }
 
 static int is_within(const double changes[], const double tolerance[])

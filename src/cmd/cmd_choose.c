@@ -153,8 +153,8 @@ static void show_table(const Run *run, const Picks *p)
     }
     figures_print(table);
     if (n_unknown > 0)
-        printf("\n%zu of them are not among the designs that the study named, and no error of theirs is known: `imtet "
-               "evaluate %s --design ID` estimates it\n",
+        printf("\nnot among the designs that the study named, and without a known error: %zu; `imtet "
+               "evaluate %s --design ID` estimates one\n",
                n_unknown, run->id_step > 0 ? "RUN" : run->folder);
     if (p->n > 0)
         tell_knees(run, p);

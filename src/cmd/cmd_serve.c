@@ -49,7 +49,7 @@ const Command CMD_SERVE = {
         "Serves the page of `imtet report` on this machine alone (127.0.0.1), at an address that nobody guesses, and\n"
         "with it the progress of a run under way, any design simulated at a click, and sliders that change gaps,\n"
         "thickness, motion and restitution of a design and show its response at once. RUN may be a folder of runs:\n"
-        "they are listed, and two are compared. Nothing is written. Ctrl-C ends it.",
+        "they are listed, and two are compared. Nothing but notes on designs is written. Ctrl-C ends it.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -346,9 +346,16 @@ static void write_demand(const Dossier *o)
         figures_put(row, "value", w.factor * value, w.factor * o->d->error[DEMAND[i]], NAN);
         put_limit(o, row, DEMAND[i], value);
     }
+    if (f->core_shear_stress_pa > 0)
+        figures_put(json_put(figures_row(table), "=%s", "core shear stress [MPa]"), "value",
+                    1e-6 * f->core_shear_stress_pa, NAN, NAN);
     figures_html(o->out, table);
-    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa%s. Stops that never close, on floors: ",
-            1e-6 * YIELD_PA, f->core_stress_pa > YIELD_PA ? ", which the core exceeds" : "");
+    fprintf(
+        o->out,
+        "<p>For comparison: ordinary steel yields at %.0f MPa%s, in shear at %.0f MPa%s. Stops that never close, on "
+        "floors: ",
+        1e-6 * YIELD_PA, f->core_stress_pa > YIELD_PA ? ", which the core exceeds" : "", 1e-6 * YIELD_PA / sqrt(3),
+        f->core_shear_stress_pa > YIELD_PA / sqrt(3) ? ", which its shear stress exceeds" : "");
     int n = 0;
     for (int j = 0; j < o->d->n_floors; j++)
         if (r->closings[j] == 0 && o->d->gap_m[j] < INFINITY)
@@ -428,21 +435,27 @@ static void write_intensities(const Dossier *o, Evaluations *e)
 {
     json_t *table = json_array();
     double level[LEVELS];
-    size_t n_at[LEVELS], exceeded[LEVELS] = {0};
+    size_t n_at[LEVELS], exceeded[LEVELS] = {0}, n_exceeded = 0;
     char text[400], spread[64];
     for (size_t l = 0; l < LEVELS; l++) {
         level[l] = e->level[l];
         n_at[l] = e->n_read;
         add_level(table, e, l, &exceeded[l]);
+        n_exceeded += exceeded[l];
     }
     figures_html(o->out, table);
     const Fragility f = fragility_fit(LEVELS, level, n_at, exceeded);
     snprintf(spread, sizeof spread, isfinite(f.beta) ? "logarithmic deviation %.2f" : "deviation not known", f.beta);
-    snprintf(text, sizeof text,
-             "Median (16 to 84 %%) of %zu records scaled to each peak. A drift ratio of %.0f %% is exceeded with "
-             "probability one half at %.2g g (%s): lognormal, by maximum likelihood%s.",
-             e->n_read, 100 * DRIFT_LIMIT, f.median, spread,
-             isfinite(f.median) ? "" : "; the intensities do not reach it");
+    int n = snprintf(text, sizeof text,
+                     "Median (16 to 84 %%) of %zu records scaled to each peak. A drift ratio of %.0f %% is ", e->n_read,
+                     100 * DRIFT_LIMIT);
+    if (isfinite(f.median))
+        snprintf(text + n, sizeof text - (size_t)n,
+                 "exceeded with probability one half at %.2g g (%s): lognormal, by maximum likelihood.", f.median,
+                 spread);
+    else
+        snprintf(text + n, sizeof text - (size_t)n,
+                 "exceeded by %zu of these simulations: too few or too many for a curve.", n_exceeded);
     say(o, text);
 }
 
@@ -497,7 +510,8 @@ static void write_as_built(const Dossier *o)
         for (size_t i = 0; i < N_OF(RESPONSE); i++)
             put_named(row, RESPONSE[i], summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
     figures_html(o->out, table);
-    snprintf(text, sizeof text, "%d structures whose gaps differ from the drawing by %g mm (standard deviation)%s.",
+    snprintf(text, sizeof text,
+             "%d structures whose gaps differ from the drawing by %g mm (standard deviation; none below 0)%s.",
              AS_BUILT, 1e3 * s.sim.gap_tolerance_m,
              spread_word(0, &s.sim.uncertain)[0] == 'a' ? ", with what sim.uncertain of the study says" : "");
     say(o, status != STATUS_OK ? e.text : text);

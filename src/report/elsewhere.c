@@ -1,11 +1,37 @@
 #include "report/elsewhere.h"
 
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "motion/builtin.h"
 #include "motion/suite.h"
+
+/* The file of a source, or what it is called. */
+static void place_of(const char *source, char place[PATH_MAX])
+{
+    if (!realpath(source, place))
+        snprintf(place, PATH_MAX, "%s", source);
+}
+
+static int is_there(const OtherRecords *r, const char *source)
+{
+    char place[PATH_MAX], other[PATH_MAX];
+    place_of(source, place);
+    place_of(r->own, other);
+    int is = strcmp(place, other) == 0;
+    for (size_t i = 0; i < r->n && !is; i++) {
+        place_of(r->source[i], other);
+        is = strcmp(place, other) == 0;
+    }
+    return is;
+}
 
 static Status add(const char *source, void *user, Err *err)
 {
     OtherRecords *r = user;
+    if (is_there(r, source))
+        return STATUS_OK;
     if (r->n == ELSEWHERE_MAX)
         return misused(err, "more than %d earthquakes make no report", ELSEWHERE_MAX);
     TRY(option_put_path(r->text[r->n], source, err));
@@ -18,7 +44,7 @@ static Status add(const char *source, void *user, Err *err)
 static Status add_own(const char *source, void *user, Err *err)
 {
     OtherRecords *r = user;
-    return r->n_seen++ > 0 ? add(source, r, err) : STATUS_OK;
+    return r->n_seen++ > 0 ? add(source, r, err) : option_put_path(r->own, source, err);
 }
 
 Status elsewhere_of_study(OtherRecords *r, const MotionOptions *study, Err *err)

@@ -151,7 +151,8 @@ static json_t *json_of_loads(const Detail *d)
     return json_of("columns=%p rows=%p", columns, rows);
 }
 
-/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey;
+/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey,
+ * its shear stress;
  * null where they were not computed. */
 static json_t *json_of_forces(const SimResult *r)
 {
@@ -159,9 +160,10 @@ static json_t *json_of_forces(const SimResult *r)
     const size_t n = r->n_floors;
     if (r->outcome != RUN_OK || !r->forces_known)
         return json_null();
-    return json_of("contact_n=%p stress_pa=%p buckling_pa=%p",
+    return json_of("contact_n=%p stress_pa=%p shear_pa=%p buckling_pa=%p",
                    json_pair(n, f->contact_force_n[0], f->contact_force_n[1]),
                    f->stress_known ? json_numbers(n, f->core_storey_stress_pa) : json_null(),
+                   f->stress_known ? json_number(f->core_shear_stress_pa) : json_null(),
                    f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
 }
 

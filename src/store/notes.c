@@ -36,7 +36,7 @@ Status notes_read(const char *folder, json_t **notes, Err *err)
     json_decref(*notes);
     *notes = NULL;
     return bad_data(err, "%s:%d: is no object of notes, \"id\": \"text\"%s%s; mend it or move it away", path,
-                    error.line, error.text[0] ? ": " : "", error.text);
+                    error.line > 0 ? error.line : 1, error.text[0] ? ": " : "", error.text);
 }
 
 static Status write_notes(const char *path, const json_t *notes, Err *err)

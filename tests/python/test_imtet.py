@@ -215,7 +215,7 @@ class Simulating(unittest.TestCase):
         for every in (-1, math.nan, 1e7):
             with self.assertRaisesRegex(ValueError, f"every is {every}, wanted seconds"):
                 r.history(every)
-        with self.assertRaisesRegex(AttributeError, "no result is called j1; did you mean j1_m?.* There are j1_m, j2_m, j3_g"):
+        with self.assertRaisesRegex(AttributeError, "no result is called j1; did you mean j1_m?.* there are j1_m, j2_m, j3_g"):
             r.j1
         with self.assertRaisesRegex(AttributeError, "did you mean peak_drift_m?"):
             r.peak_drft_m

@@ -286,6 +286,7 @@ const tried = {
     assert.equal(/never close/.test(warned), run.detail.with_core.closings.includes(0));
     const { stress_pa: stress, buckling_pa: buckling } = run.detail.forces;
     assert.equal(/yield stress of S235/.test(warned), Math.max(...stress) > 235e6);
+    assert.equal(/yields in shear/.test(warned), run.detail.forces.shear_pa > 235e6 / Math.sqrt(3));
     assert.equal(/buckles its bare wall/.test(warned), stress.some((v, j) => v > buckling[j]));
   },
   async "what the errors leave out by the ladder, and where the ranking turns over with it, the first screen says"() {

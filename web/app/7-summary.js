@@ -81,34 +81,38 @@ function boundWarning(d) {
     .map(([list, word]) => `the ${word} (${withUnit(list[0], list[0].bounds[word === "largest" ? 1 : 0])}): ${listed(list.map((c) => c.title))}`);
   const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits || (d.gap_m[j] ?? NO_STOP_M) >= NO_STOP_M ? [] : [j + 1]));
   return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front${own.length ? `; in this one at ${own.join("; at ")}` : ""}. A wider box may hold better designs, unless such a gap never closes.` : "",
-    shut.length ? `Gaps that never close under this motion: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
+    shut.length ? `Gaps that never close${underRecord(d) || " under this motion"}: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }
 
 const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
 
+// Behind what was found under one record, where the numbers are of several.
+const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
+
 // What the ± of the numbers leaves out: J1, drift ratio and J3 by the settings that the ladder calls enough, and where with them the ranking is
 // another one, of J1 against the rigid connection, of the drift against the building alone.
 function leftOut(d) {
-  const set = d.ladder?.by_the_set, lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without) ?? [];
+  const set = d.ladder?.by_the_set, lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without.replace(/^between/, "what lies between")) ?? [];
   if (!lacks.length || set.with_core.j1_m === null || d.with_core.reason) return [];
   const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])), j3_g: Math.max(...r.acceleration_g) });
   const here = peaks(d.with_core), list = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]]
-    .map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`);
+    .map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`).filter((text) => !/ (\S+) \S+ instead of \1$/.test(text));
   const turned = [["rigid", "j1_m", "J1", "m", 1], ["no_core", "drift_ratio", "drift ratio", "%", 100]].flatMap(([key, name, title, unit, factor]) => {
     if (d[key].reason || set[key].reason || set[key][name] === null) return [];
     const [a, b, c, e] = [here[name], peaks(d[key])[name], set.with_core[name], set[key][name]].map((v) => v * factor);
     return a > b === c > e ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
   });
-  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ")}.` +
+  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
     (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
 }
 
 // Of the core beside the yield stress of S235, the lowest of EN 10025-2, and the bare wall's buckling stress.
 const S235_PA = 235e6;
-function coreWarnings({ forces }) {
-  const stress = forces?.stress_pa ?? [], most = Math.max(...stress), buckling = Math.max(...stress.map((v, j) => v / (forces?.buckling_pa?.[j] ?? Infinity)));
-  return [most > S235_PA ? `Stress of the core ${show(most / 1e6)} MPa: beyond the yield stress of S235, 235 MPa.` : "",
-    buckling > 1 ? `Stress of the core is ${show(buckling)} times what buckles its bare wall: it needs stiffeners, whose mass is not in this model.` : ""].filter(Boolean).map((text) => ["worse", text]);
+function coreWarnings(d) {
+  const { forces } = d, stress = forces?.stress_pa ?? [], most = Math.max(...stress), buckling = Math.max(...stress.map((v, j) => v / (forces?.buckling_pa?.[j] ?? Infinity)));
+  return [most > S235_PA ? `Stress of the core${underRecord(d)} ${show(most / 1e6)} MPa: beyond the yield stress of S235, 235 MPa.` : "",
+    forces?.shear_pa > S235_PA / Math.sqrt(3) ? `Shear stress of the core${underRecord(d)} ${show(forces.shear_pa / 1e6)} MPa: S235 yields in shear at 136 MPa.` : "",
+    buckling > 1 ? `Stress of the core${underRecord(d)} is ${show(buckling)} times what buckles its bare wall: it needs stiffeners, whose mass is not in this model.` : ""].filter(Boolean).map((text) => ["worse", text]);
 }
 
 function warnings(d) {
@@ -117,7 +121,7 @@ function warnings(d) {
     .filter(([o, list]) => list.length >= (["no_core", "rigid"].includes(o.key) ? 1 : objectives.length / 2));
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
-    d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}.`] : null,
+    d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}${underRecord(d)}.`] : null,
     ...leftOut(d),
     ...coreWarnings(d),
     ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),

@@ -201,7 +201,7 @@ const shortName = (record) => record.replace(/^builtin:(.*)/, "$1 (synthetic)").
 
 function otherPart(host, d) {
   host.append(element("p", { class: "note" },
-    "The same design under motions that the search did not use. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
+    "The same design under other motions, one at a time. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
   const grid = host.appendChild(element("div", { class: "grid2" }));
   for (const e of d.elsewhere) {
     const scenes = [["impacts", e.with_core], ["no_core", e.no_core]].filter(([, r]) => r.objectives);
