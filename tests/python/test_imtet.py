@@ -193,7 +193,9 @@ class Searching(unittest.TestCase):
         np.testing.assert_array_equal(np.load(state + ".npy"), np.hstack(drive(search()).told()[:2]))
 
     def test_ctrl_c_ends_a_driver(self):
-        code = ("import sys; sys.argv = ['', %r]; sys.path.insert(0, %r)\nfrom test_imtet import *\nprint('ready', flush=True)\n"
+        # in the background of a script it is ignored
+        code = ("import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); sys.argv = ['', %r]; sys.path.insert(0, %r)\n"
+                "from test_imtet import *\nprint('ready', flush=True)\n"
                 "while True: drive(search())") % (PLACE, os.path.dirname(os.path.abspath(__file__)))
         child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         child.stdout.readline()
