@@ -152,8 +152,7 @@ static json_t *json_of_loads(const Detail *d)
 }
 
 /* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey,
- * its shear stress;
- * null where they were not computed. */
+ * its shear stress; null where they were not computed. */
 static json_t *json_of_forces(const SimResult *r)
 {
     const SimForces *f = &r->forces;

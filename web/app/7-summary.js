@@ -25,8 +25,8 @@ const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.err
 
 // -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth and its error; NaN: not known, or of
 // what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
-function verdict(raw, b, k, error = chosenError()?.[k] ?? 0) {
-  const before = b.raw[k], { sense, name } = objectives[k], gain = sense * (before - raw[k]);
+function verdict(raw, b, k) {
+  const before = b.raw[k], error = chosenError()?.[k] ?? 0, { sense, name } = objectives[k], gain = sense * (before - raw[k]);
   return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : Math.abs(gain) <= Math.max(1e-3 * Math.abs(before), error) ? 0 : Math.sign(gain);
 }
 
@@ -57,7 +57,8 @@ function shownValue(c, value, error) {
   return [known, " ", element("small", {}, `${rest ? rest.trim() + " " : ""}${c.unit}`)];
 }
 
-function cards(raw, error) {
+function cards() {
+  const raw = run.chosen_f, error = chosenError();
   const against = (c, k, o) => {
     const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
     if (!kind) return "";
@@ -165,7 +166,7 @@ function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards(run.chosen_f, chosenError()));
+  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 250);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
