@@ -831,8 +831,8 @@ static void expect_refusal(const char *text, const char *says)
 TEST(an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted)
 {
     expect_refusal("A title of some agency\n16628 W. LOST CANYON RD.\n1 2 3\n",
-                   "in no format that is known here (docs/motions.md lists them), and no plain columns of numbers; the "
-                   "first line is 'A title of some agency'");
+                   "in no format that is known here (docs/motions.md lists them), and no plain columns of numbers (a "
+                   "list of motions has a name that ends in list.txt); the first line is 'A title of some agency'");
     expect_refusal("Response and Fourier amplitude spectra (86 periods)\n1 2\n",
                    "is not read: response and Fourier spectra of CSMIP (V3); take its V2 or V1");
     expect_refusal("<!DOCTYPE html>\n<p>Log in</p>\n", "a web page, perhaps of a log-in");

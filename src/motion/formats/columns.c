@@ -317,7 +317,7 @@ static Status fail_unknown(const Plain *t, Err *err)
     lines_next_filled(&start);
     return fail_at(err, t->l,
                    "in no format that is known here (docs/motions.md lists them), and no plain columns of "
-                   "numbers; the first line is '%.*s'",
+                   "numbers (a list of motions has a name that ends in list.txt); the first line is '%.*s'",
                    line_shown(&start), start.from);
 }
 
