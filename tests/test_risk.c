@@ -340,7 +340,10 @@ TEST(the_records_that_show_the_factors_of_the_designs_are_seen_first)
     static World w;
     size_t order[WORLD_RECORDS], found = 0;
     Err err = {0};
+    assert_int_equal(race_first(9), 1);
+    assert_int_equal(race_first(15), 3);
     assert_int_equal(race_first(WORLD_RECORDS), 4);
+    assert_int_equal(race_first(44), 4);
     for (uint32_t seed = 0; seed < 50; seed++) {
         const size_t clear[2] = {seed % 12, 12 + seed % 12};
         size_t seen[WORLD_RECORDS] = {0};

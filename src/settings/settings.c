@@ -312,8 +312,7 @@ static const Option OPTIONS[] = {
            "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
     CHOICE(search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
            "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
-           "replicate, "
-           "or a fifth of the records, is simulated, and the rest where it promises most"),
+           "replicate, or a fifth of the records, four at most, is simulated, and the rest where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
          "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
     WHOLE(search.replicates_max, "4", 1, 1000,
