@@ -51,8 +51,11 @@ static Status begin(const Args *args, Err *err)
     if (access(path, F_OK) == 0)
         return misused(err, "%s: is there already; name another folder", path);
     char *folder = realpath(args->operand, NULL);
-    if (folder)
+    if (folder) {
         settings_make_relative(&s, folder);
+        if (!args_gives(args, "run.out"))
+            snprintf(s.run.out, sizeof s.run.out, "results%.300s", strrchr(folder, '/'));
+    }
     free(folder);
     TRY(output_open(&o, path, err));
     fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
@@ -70,8 +73,9 @@ const Command CMD_NEW = {
     .operand = "FOLDER",
     .summary = "begin a study: a folder with the fifteen settings that a first one touches",
     .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
-    .details =
-        "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files by their path from FOLDER.",
+    .details = "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files by their path from "
+               "FOLDER. Its run\n"
+               "goes to results/FOLDER.",
     .options = NEW_OPTIONS,
     .run = begin,
     .only_reads = 1,
