@@ -139,7 +139,7 @@ TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
     for (size_t i = 0; i < free_of.n_front; i++)
         limit += extra_of(&free_of, free_of.front[i], "contact_force_max_n") / (double)free_of.n_front;
     run_free(&free_of);
-    snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=1'", limit);
+    snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=0.9'", limit);
     optimize("limited", more);
     read_run("limited", &run);
     size_t beyond = 0;

@@ -53,9 +53,10 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
                             other->bound);
         if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
             return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
-        if (l->sign > 0 && l->bound >= 1 && schema->order.of[l->result] >= MEASURES_LISTED)
-            return bad_data(err, "search.limits: %s<=%g: no probability is above 1; give less than 1", c->name,
-                            l->bound);
+        const int is_share = schema->order.of[l->result] >= MEASURES_LISTED || strstr(c->name, "drift_ratio");
+        if (l->sign > 0 && l->bound >= 1 && schema->order.n_obj > 0 && is_share)
+            return bad_data(err, "search.limits: %s<=%g: is a share, below 1, no per cent; write %g for %g %%", c->name,
+                            l->bound, 0.01 * l->bound, l->bound);
         if (!other && l->sign * c->sense < 0)
             return bad_data(
                 err,
