@@ -76,7 +76,7 @@ TEST(another_content_does_not_take_the_place_of_a_record)
     expect(65, "motion.records: ", "report @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
     expect(65, "two.csv does not hold what it held for the run",
            "report @/run " FIRST " --set motion.records=@/two.csv");
-    expect(65, "motion.records is content",
+    expect(65, "motion.records has other content than when the run began; put that back, or",
            "optimize @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
     expect(2, "given twice", "report @/run " FIRST " " FIRST);
     expect(2, "only motion.record=PATH, motion.records=PATH,... and motion.forces",
@@ -118,7 +118,8 @@ TEST(forces_are_moved_with_their_run_and_other_forces_are_noticed_by_every_comma
     expect(65, CHANGED, "report @/pushed --set motion.forces=@/push.csv");
     expect(65, CHANGED, "evaluate @/pushed --design 1");
     expect(65, CHANGED, "polish @/pushed --design 1");
-    expect(65, "motion.forces is content", "optimize @/pushed --max-evals 32 --force-settings");
+    expect(65, "motion.forces has other content than when the run began",
+           "optimize @/pushed --max-evals 32 --force-settings");
     run(&s, "simulate configs/quick.ini --set building.model=configs/neighbours/tower --set core.width_m=5 "
             "--set motion.stretch=1 --set sim.duration_s=3 " PUSHED "--design @/pushed:1");
     assert_int_equal(s.code, 0); /* of other settings, which may have another motion */

@@ -183,7 +183,7 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     Settings s = settings_of(TEXTBOOK, "textbook-whole");
     s.search.seed = 5;
     s.search.generations = 900;
-    refused_with(&s, 0, "search.seed is 1 there, now 5, and more; choose another --out",
+    refused_with(&s, 0, "search.seed is 1 there, now 5, and more; put that back, or choose another --out",
                  "search.generations: 1000 in the run, now 900 (a limit)\n");
     refused_with(&s, 1, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
     s.search.seed = 1;
@@ -194,7 +194,7 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
     snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
     refused_with(&other, 0, "problem.command is none there, now no000", "problem.command");
-    refused_with(&other, 0, "000..., and more; choose another --out", "problem.command");
+    refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
     Err err = {0};
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
@@ -210,7 +210,8 @@ TEST(a_record_that_has_changed_is_another_setting)
     snprintf(s.motion.record, sizeof s.motion.record, "%s/record.csv", place.folder);
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
     write_in_place("record.csv", "time_s,accel_m_s2\n0,0\n0.02,1\n0.04,-1\n0.06,0.6\n0.08,0\n");
-    refused_with(&s, 1, "motion.record is content", "motion.record: content ");
+    refused_with(&s, 1, "motion.record has other content",
+                 "motion.record: has other content than when the run began\n");
 }
 
 /* -- signals and hours --------------------------------------------------------------------------------------------- */

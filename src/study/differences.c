@@ -1,7 +1,5 @@
 #include "study/differences.h"
 
-#include <inttypes.h>
-
 #include "base/linalg.h"
 #include "base/visible.h"
 #include "settings/settings.h"
@@ -42,11 +40,13 @@ static void compare_one(const char *key, unsigned flags, const char *was, const 
 
 static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t is)
 {
-    char before[40], after[40];
-    snprintf(before, sizeof before, "content %016" PRIx64, was);
-    snprintf(after, sizeof after, "content %016" PRIx64, is);
-    if (was != is)
-        add_difference(d, key, 0, before, after);
+    const char *what = !was ? "is none in the run" : !is ? "is none now" : "has other content than when the run began";
+    if (was == is)
+        return;
+    if (d->n_others++ == 0)
+        snprintf(d->first, sizeof d->first, "%s %s", key, what);
+    if (d->lines)
+        fprintf(d->lines, "%s: %s\n", key, what);
 }
 
 static Status compare_inputs(const Comparison *c, Differences *d, Err *err)
@@ -95,7 +95,7 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
     tell_kernels(c);
     if (d.n_others == 0 && (c->force || d.n_lowered == 0))
         return check_limit(c, n_there, err);
-    return bad_data(err, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
-                    n > 1 ? ", and more" : "",
-                    d.n_others == 0 ? "--force-settings lowers limits" : "choose another --out, or --new");
+    return bad_data(
+        err, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first, n > 1 ? ", and more" : "",
+        d.n_others == 0 ? "--force-settings lowers limits" : "put that back, or choose another --out, or --new");
 }
