@@ -229,6 +229,8 @@ static const struct {
     {"one.cosmos.v1", "units=cm/sec2(04)", "units=counts (50)", "set motion.unit (--unit) to counts=VALUE"},
     {"one.cosmos.v1", "units=cm/sec2(04)", "units=inches (99)",
      "the unit 'inches' of its acceleration is not known; convert it"},
+    {"one.cosmos.v1", "units=cm/sec2(04)", "units=KMX (99)",
+     "the unit 'KMX' of its acceleration is not known; set motion.unit (--unit) to counts=VALUE, its counts per m/s2"},
     {"one.cosmos.v1", "ed acceleration", "ed velocity", ":1: not an acceleration"},
     {"one.cosmos.v1", "follow on  17 lines", "fellow", ":25: '100 Real-header values"},
     {"one.cosmos.v1", "with 13", "with 12", ":13: 'Values used when"},

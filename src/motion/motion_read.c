@@ -51,13 +51,13 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
             "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
             "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
             path);
-    const int is_gain_of_words = how->unit == UNIT_COUNTS && !is_quantity(c->stated, c->stated + strlen(c->stated));
-    if (c->stated[0] && !c->counts && !is_gain_of_words) /* "adc" may be counts, kN may not */
-        return bad_data(
-            err,
-            "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and write that "
-            "unit in its place",
-            path, c->stated);
+    const int is_word = !is_quantity(c->stated, c->stated + strlen(c->stated)); /* "adc" may be counts, kN may not */
+    if (c->stated[0] && !c->counts && !(is_word && how->unit == UNIT_COUNTS))
+        return bad_data(err,
+                        "%s: the unit '%s' of its acceleration is not known; %sconvert it to m/s2, cm/s2 or g and "
+                        "write that unit in its place",
+                        path, c->stated,
+                        is_word ? "set motion.unit (--unit) to counts=VALUE, its counts per m/s2, or " : "");
     if (!*unit)
         return bad_data(
             err, "%s: does not say the unit of its acceleration; set motion.unit (--unit) to m_s2, cm_s2 or g", path);
