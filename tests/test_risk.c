@@ -237,6 +237,32 @@ static const json_t *curve_of(const json_t *o, const char *of, const char *scene
     return NULL;
 }
 
+/* Of a word of a picture [px], downwards. */
+static double height_of(const char *svg, const char *word)
+{
+    char text[80];
+    double y = NAN;
+    snprintf(text, sizeof text, "<text>%s</text>", word);
+    const char *at = strstr(svg, text);
+    while (at && at > svg && strncmp(at, "translate(", 10) != 0)
+        at--;
+    if (!at || sscanf(at, "translate(%*f,%lf)", &y) != 1)
+        fail_msg("%s is not in the picture", word);
+    return y;
+}
+
+/* No row of the key is as low as the first title of a panel, below which its frame begins. */
+static void expect_key_above_the_panels(void)
+{
+    static const char *const WORDS[] = {"with core", "rigidly connected", "no core", "viscous links"};
+    free(output_of(CURVES "--svg @/curves.svg"));
+    char *svg = read_in_place("curves.svg");
+    const double title = height_of(svg, "drift_ratio > 0.012");
+    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
+        assert_less(height_of(svg, WORDS[i]), title - 10);
+    free(svg);
+}
+
 /* What was counted is what the rows of the records have; the building alone answers in proportion to Sa. */
 TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere)
 {
@@ -273,6 +299,8 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
     char *rows = read_in_place("rows.csv");
     assert_non_null(strstr(rows, "record,scene,outcome,sa_g,pga_g,scale,"));
     free(rows);
+    if (system("command -v gnuplot >/dev/null") == 0)
+        expect_key_above_the_panels();
 }
 
 TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)

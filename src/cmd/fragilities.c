@@ -236,8 +236,8 @@ static void write_curve(const Fragilities *f, const Evaluations *e, const Curve 
     const Fragility *fit = &c->fit;
     (void)e;
     if (c->which == CASES[0])
-        fprintf(script, "\nset title '%s %s %g'\nset key %s\nplot ", c->name, relation(c), c->limit->bound,
-                c->limit == f->limits.limit ? "right center" : "off");
+        fprintf(script, "\nset title '%s %s %g'\n%splot ", c->name, relation(c), c->limit->bound,
+                c->limit == f->limits.limit ? "" : "unset key\n");
     fprintf(script, "$S%zu using 1:2 with points pt 7 ps 0.5 lc '%s' notitle, ", number_of(f, c), COLOURS[c->which]);
     if (isnan(fit->median))
         fputs("NaN", script);
@@ -253,15 +253,16 @@ static void write_script(FILE *script, const void *user)
 {
     const Picture *p = user;
     const size_t n = p->f->limits.n, columns = MIN_OF(n, 3), rows = (n + columns - 1) / columns;
-    const double height = 60 + 400 * (double)rows, width = 200 + 400 * (double)columns;
+    const double height = 110 + 400 * (double)rows, width = 200 + 400 * (double)columns;
     fprintf(script,
             "set terminal svg size %g,%g font 'sans,13' noenhanced background '#ffffff'\n"
             "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:%.6g]\nset yrange [0:1]\nset samples 400\n"
-            "set xlabel '%s [g]'\nset ylabel 'probability'\n"
+            "set xlabel '%s [g]'\nset ylabel 'probability' offset 2\n"
+            "set key at screen 0.5,%g center vertical maxrows 2 samplen 1\n"
             "set multiplot layout %zu,%zu margins screen %g,0.98,%g,%g spacing 0.07,0.16\n",
             width, height, p->e->level[p->e->n_levels - 1] * 1.05,
-            p->e->intensity[0] == 's' ? "spectral acceleration" : "peak ground acceleration", rows, columns, 60 / width,
-            60 / height, 1 - 40 / height);
+            p->e->intensity[0] == 's' ? "spectral acceleration" : "peak ground acceleration", 1 - 25 / height, rows,
+            columns, 60 / width, 60 / height, 1 - 90 / height);
     each_curve(p->f, p->e, write_block, script);
     each_curve(p->f, p->e, write_curve, script);
     fputs("unset multiplot\n", script);
