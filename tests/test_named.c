@@ -194,9 +194,12 @@ TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_
 /* What is named then is known, and nothing else: the search went on with its own values. */
 TEST(a_run_that_goes_on_names_anew)
 {
-    free(output_of(STUDY "80"));
+    char *said = output_of(STUDY "80"), wanted[64];
     Run run = run_here();
     size_t rows[OBJECTIVES_MAX + 1];
+    snprintf(wanted, sizeof wanted, "simulated with more steps: %zu designs (knee, the best, some", run.finer.n);
+    assert_non_null(strstr(said, wanted));
+    free(said);
     const size_t n = named_of(&run, rows);
     for (size_t i = 0; i < n; i++)
         assert_non_null(run.table.row[rows[i]].err);

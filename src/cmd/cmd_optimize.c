@@ -190,11 +190,11 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
         figures_list(2, review);
         json_decref(review);
     }
-    char named[160];
-    const NamedCost cost = named_cost(run);
-    named_words(&cost, named);
-    if (named[0])
-        puts(named);
+    const NamedCost named = named_cost(run);
+    if (named.n > 0)
+        printf("simulated with more steps: %zu designs (knee, the best, some spread over the front, and what were such "
+               "before), %zu of them unpredictable; that took %.1f %% of the search's simulations\n",
+               named.n, named.n_unpredictable, 100.0 * named.share);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
                summary->n_polished, summary->n_tried_to_polish);

@@ -190,7 +190,6 @@ static void print_head(const char *folder, const Run *run, const Standing *s, js
 {
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
-    char effort[160];
     printf("%s: %s", folder, state_words(s->state));
     if (s->state == RUN_RUNNING)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
@@ -205,8 +204,11 @@ static void print_head(const char *folder, const Run *run, const Standing *s, js
         printf("%zu evaluations more were stored, as its file `lock` says: the journal run.sqlite-wal is missing\n",
                s->n_lost);
     if (isfinite(e.waiting)) {
-        effort_words(&e, effort);
-        puts(effort);
+        printf("wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search", 100.0 * e.waiting,
+               100.0 * e.surrogate, 100.0 * e.search);
+        if (isfinite(e.busy))
+            printf("; threads %.1f %% busy", 100.0 * e.busy);
+        putchar('\n');
     }
     if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
         printf("resume it with: imtet optimize %s\n", folder);

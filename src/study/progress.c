@@ -92,14 +92,6 @@ Effort effort_of(const Run *run, size_t session)
     return e;
 }
 
-void effort_words(const Effort *e, char text[160])
-{
-    const int n = snprintf(text, 160, "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search",
-                           100.0 * e->waiting, 100.0 * e->surrogate, 100.0 * e->search);
-    if (isfinite(e->busy))
-        snprintf(text + n, 160 - (size_t)n, "; threads %.1f %% busy", 100.0 * e->busy);
-}
-
 NamedCost named_cost(const Run *run)
 {
     NamedCost c = {.n = run->finer.n};
@@ -112,16 +104,6 @@ NamedCost named_cost(const Run *run)
     }
     c.share = named / search;
     return c;
-}
-
-void named_words(const NamedCost *c, char text[160])
-{
-    text[0] = 0;
-    if (c->n > 0)
-        snprintf(text, 160,
-                 "%zu named designs simulated with more steps, %zu of them unpredictable; that took %.1f %% of the "
-                 "search's simulations",
-                 c->n, c->n_unpredictable, 100.0 * c->share);
 }
 
 /* As stored; of a session that was killed until its last generation at most, and at least what its simulations took. */

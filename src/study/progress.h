@@ -45,19 +45,14 @@ typedef struct {
 
 Effort effort_of(const Run *run, size_t session);
 
-/* Of wall time, as a sentence. */
-void effort_words(const Effort *e, char text[160]);
-
 /* Designs that the end of the study named and simulated with more steps (study/named.h), those of them that cannot be
- * predicted so far, and what that cost, as a share of the search's simulations. As a sentence; empty: there
- * are none. */
+ * predicted so far, and what that cost, as a share of the search's simulations. */
 typedef struct {
     size_t n, n_unpredictable;
     double share;
 } NamedCost;
 
 NamedCost named_cost(const Run *run);
-void named_words(const NamedCost *c, char text[160]);
 
 const char *state_words(RunState state);
 void standing_of(Standing *out, const char *folder, const Run *run);
