@@ -242,8 +242,8 @@ class Search(_Handle):
     def ask(self, n=1):
         """X (m, variables), m <= n: designs nobody has asked for. m = 0 where the search is done, or waits for answers:
         it goes on when all of a generation are told."""
-        if n < 0:
-            raise ValueError(f"ask for {n} designs")
+        if not isinstance(n, (int, np.integer)) or n < 0:
+            raise ValueError(f"n is {n!r}, wanted a whole number of designs")
         n = min(int(n), 1 << 20)
         X, ids, found = np.empty((n, self.variables)), (ctypes.c_long * max(n, 1))(), _size()
         _call("imtet_search_ask", self._search, n, ids, _pointer(X), ctypes.byref(found))
@@ -367,7 +367,7 @@ class Result(_Copied):
         (n, floors) and energies. every: seconds between rows at most; None or 0: the step of the motion."""
         if self._scene is None:
             raise ValueError("this result is no response, or a copy, which has no scene")
-        if every and not 1e-5 <= every <= 1e6:
+        if every and not (isinstance(every, (int, float, np.number)) and 1e-5 <= every <= 1e6):
             raise ValueError(f"every is {every!r}, wanted seconds from 1e-5 to 1e6, or 0 for the step of the motion")
         kind, x = self._question
         return self._scene._ask("imtet_scene_history", kind, _pointer(x), 0 if x is None else x.size,

@@ -87,6 +87,12 @@ class Searching(unittest.TestCase):
         np.testing.assert_array_equal(front[:, 1], run.front.f2)
         self.assertEqual(where.shape, (len(run.front), 4))
 
+    def test_designs_are_asked_for_in_whole_numbers(self):
+        for n in (1.5, -1, "2", math.nan):
+            with self.assertRaisesRegex(ValueError, f"n is {n!r}, wanted a whole number of designs"):
+                search().ask(n)
+        self.assertEqual(len(search().ask(np.int32(2))), 2)
+
     def test_f_that_raises_or_says_nothing_fails_its_design_alone(self):
         s = search()
         X = s.ask(4)
@@ -214,8 +220,8 @@ class Simulating(unittest.TestCase):
         self.assertLessEqual(np.diff(h.t_s).max(), 0.01 * (1 + 1e-9))
         self.assertAlmostEqual(abs(h.floor_m).max(), r.j1_m, delta=0.02 * r.j1_m)
         self.assertGreater(scene.simulate(kind="alone").j1_m, 0)
-        for every in (-1, math.nan, 1e7):
-            with self.assertRaisesRegex(ValueError, f"every is {every}, wanted seconds"):
+        for every in (-1, math.nan, 1e7, "x"):
+            with self.assertRaisesRegex(ValueError, f"every is {every!r}, wanted seconds"):
                 r.history(every)
         with self.assertRaisesRegex(AttributeError, "no result is called j1; did you mean j1_m?.* there are j1_m, j2_m, j3_g"):
             r.j1
