@@ -18,13 +18,12 @@ static int is_there(const OtherRecords *r, const char *source)
 {
     char place[PATH_MAX], other[PATH_MAX];
     place_of(source, place);
-    place_of(r->own, other);
-    int is = strcmp(place, other) == 0;
-    for (size_t i = 0; i < r->n && !is; i++) {
-        place_of(r->source[i], other);
-        is = strcmp(place, other) == 0;
+    for (size_t i = 0; i <= r->n; i++) {
+        place_of(i < r->n ? r->source[i] : r->own, other);
+        if (strcmp(place, other) == 0)
+            return 1;
     }
-    return is;
+    return 0;
 }
 
 static Status add(const char *source, void *user, Err *err)

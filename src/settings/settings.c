@@ -601,23 +601,31 @@ void settings_make_absolute(Settings *s)
         table_change_files(s, i, make_absolute, NULL);
 }
 
+/* Length of the folder that two absolute paths have in common. */
+static size_t common_folder(const char *one, const char *other)
+{
+    size_t same = 0;
+    for (size_t i = 0;; i++) {
+        if ((!one[i] || one[i] == '/') && (!other[i] || other[i] == '/'))
+            same = i;
+        if (!one[i] || one[i] != other[i])
+            return same;
+    }
+}
+
 /* From folder, which is absolute as realpath makes it; what begins with a point is no word of the program. */
 static void make_relative(char path[OPTION_TEXT_MAX], void *folder)
 {
     const char *from = folder;
     char *to = path[0] == '/' ? NULL : realpath(path, NULL), relative[2 * PATH_MAX] = "";
-    size_t same = 0, n = 0;
-    for (size_t i = 0; to; i++) {
-        if ((!from[i] || from[i] == '/') && (!to[i] || to[i] == '/'))
-            same = i;
-        if (!from[i] || from[i] != to[i])
-            break;
-    }
+    if (!to)
+        return;
+    const size_t same = common_folder(from, to);
+    size_t n = 0;
     for (const char *c = from + same; (c = strchr(c, '/')); c++)
         n += snprintf(relative + n, sizeof relative - n, n ? "/.." : "..");
-    if (to)
-        snprintf(relative + n, sizeof relative - n, "%s%s", n ? "" : ".", to + same);
-    if (to && strlen(relative) < OPTION_TEXT_MAX)
+    snprintf(relative + n, sizeof relative - n, "%s%s", n ? "" : ".", to + same);
+    if (strlen(relative) < OPTION_TEXT_MAX)
         memcpy(path, relative, strlen(relative) + 1);
     free(to);
 }
