@@ -405,8 +405,8 @@ static void write_records(const Dossier *o)
     heading(o, "Records one by one");
     for (size_t i = 0; i <= o->d->n_elsewhere; i++) {
         const Elsewhere *e = i ? &o->d->elsewhere[i - 1] : NULL;
-        const char *name = e ? e->record : o->d->record, *slash = strrchr(name, '/');
-        snprintf(label, sizeof label, "%.120s, %.3g g", slash ? slash + 1 : name, e ? e->pga_g : o->d->pga_g);
+        snprintf(label, sizeof label, "%.120s, %.3g g", basename(e ? e->record : o->d->record),
+                 e ? e->pga_g : o->d->pga_g);
         add_response(table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT], NULL);
         add_response(table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE], NULL);
     }

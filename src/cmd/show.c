@@ -476,13 +476,12 @@ void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t
 
 void show_motion(FILE *out, const Motion *m, double duration_s)
 {
-    const double length = (double)(m->n - 1) * m->dt_s;
     char peak[MOTION_PEAK_TEXT_MAX];
     motion_peak_text(m, peak);
     fprintf(out, "%s: ", m->name);
-    if (duration_s > 0 && duration_s < length)
+    if (duration_s > 0 && duration_s < motion_duration(m))
         fprintf(out, "the first %.4g of ", duration_s);
-    fprintf(out, "%.4g s, %s\n", length, peak);
+    fprintf(out, "%.4g s, %s\n", motion_duration(m), peak);
     if (m->processed[0])
         fprintf(out, "  %s\n", m->processed);
     if (m->warning[0])

@@ -37,6 +37,11 @@ Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);
 
 double motion_peak(const Motion *m); /* [m/s2] */
 
+static inline double motion_duration(const Motion *m) /* [s] */
+{
+    return (double)(m->n - 1) * m->dt_s;
+}
+
 /* "peak 0.348 g", of a motion that was scaled or stretched "peak 0.3 g (0.348 g x 0.862, time x 3.1)". */
 enum { MOTION_PEAK_TEXT_MAX = 96 };
 void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX]);

@@ -288,14 +288,14 @@ static double time_of_level(const Motion *m, double level)
         }
         sum += more;
     }
-    return (double)(m->n - 1) * m->dt_s;
+    return motion_duration(m);
 }
 
 void motion_figures(const Motion *m, MotionFigures *out)
 {
     Ground g = {0};
     double squares = 0;
-    *out = (MotionFigures){.pga_m_s2 = motion_peak(m), .duration_s = (double)(m->n - 1) * m->dt_s};
+    *out = (MotionFigures){.pga_m_s2 = motion_peak(m), .duration_s = motion_duration(m)};
     for (size_t i = 0; i + 1 < m->n; i++) {
         g = ground_behind(&g, m, i);
         out->pgv_m_s = fmax(out->pgv_m_s, largest_velocity(&g));

@@ -60,7 +60,7 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
     d->scale = w->motion.scale;
     d->stretch = w->motion.stretch;
-    d->duration_s = given > 0 ? given : (double)(w->motion.n - 1) * w->motion.dt_s;
+    d->duration_s = given > 0 ? given : motion_duration(&w->motion);
 }
 
 static double amplitude_at(size_t n, double dt, const double u[], double f, double t)

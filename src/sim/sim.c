@@ -100,7 +100,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     scene->run.steps_per_contact = sim_steps_per_contact(&o->sim);
     scene->run.duration = o->sim.duration_s;
     if (scene->run.duration == 0 && motion)
-        scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
+        scene->run.duration = motion_duration(motion);
     Status status = building_load(&scene->building, &o->building, err);
     if (status == STATUS_OK)
         status = design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err);
