@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include "analysis/ladder.h"
 #include "base/json.h"
 #include "base/list.h"
@@ -24,6 +22,7 @@
 #include "evaluate/race.h"
 #include "evaluate/tower.h"
 #include "scene/neighbour.h"
+#include "study/named.h"
 
 typedef struct {
     const Args *args;
@@ -143,11 +142,6 @@ static int open_motion(Check *c, CheckedScene *p)
     return note(c, status, "motion.record", &e);
 }
 
-static double duration(const Motion *m)
-{
-    return (double)(m->n - 1) * m->dt_s;
-}
-
 /* Designs that are spread over the search box, their gaps and what else is searched by its logarithm by that; the core
  * is the same, in the middle. */
 static void spread_designs(CheckedScene *p)
@@ -170,7 +164,7 @@ static void spread_designs(CheckedScene *p)
     }
 }
 
-/* Those of the box, or the first of --design. */
+/* Those of the box, or the first ones of --design. */
 static int choose_designs(Check *c, CheckedScene *p, const char *path)
 {
     Err e = {0};
@@ -184,8 +178,9 @@ static int choose_designs(Check *c, CheckedScene *p, const char *path)
     Designs d;
     if (!note(c, designs_take(&d, path, s, NULL, 0, NULL, &e), "--design", &e))
         return 0;
-    memcpy(p->tried[0], d.x, s->n_var * sizeof *d.x);
-    p->n_tried = 1;
+    p->n_tried = d.n < TRIED_MAX ? d.n : TRIED_MAX;
+    for (size_t i = 0; i < p->n_tried; i++)
+        memcpy(p->tried[i], d.x + i * s->n_var, s->n_var * sizeof *d.x);
     warn_of_designs(&d, path, warn, c);
     design_free(&d);
     return 1;
@@ -241,10 +236,10 @@ static int summarise(Check *c, CheckedScene *p)
         return 0;
     if (p->motion.warning[0])
         warn("motion.record", p->motion.warning, c);
-    if (p->s->sim.duration_s > duration(&p->motion) && strcmp(p->s->motion.record, "none") != 0) {
+    if (p->s->sim.duration_s > motion_duration(&p->motion) && strcmp(p->s->motion.record, "none") != 0) {
         char text[100];
         snprintf(text, sizeof text, "%g s is longer than the motion of %.4g s; the ground is at rest then",
-                 p->s->sim.duration_s, duration(&p->motion));
+                 p->s->sim.duration_s, motion_duration(&p->motion));
         warn("sim.duration_s", text, c);
     }
     return 1;
@@ -269,7 +264,7 @@ static void scene_json(Check *c, const CheckedScene *p)
                      f->core_hz, f->clamped_hz, f->timoshenko_hz, f->euler_bernoulli_hz, f->core_modes_within),
              json_of("record=%s samples=%ld duration_s=%g recorded_peak_g=%g peak_g=%g scale=%g stretch=%g "
                      "content_hz=%g processed=%s",
-                     s->motion.record, p->motion.n, duration(&p->motion), p->recorded_g,
+                     s->motion.record, p->motion.n, motion_duration(&p->motion), p->recorded_g,
                      motion_peak(&p->motion) / GRAVITY, p->motion.scale, s->motion.stretch, f->content_hz,
                      p->motion.processed));
 }
@@ -280,9 +275,9 @@ static void scene_json(Check *c, const CheckedScene *p)
  * the root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and
  * record. Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives,
  * within 30 %, and of `imtet evaluate` of the quick study and of configs/engineer.ini. Their simulations: of 16 designs
- * for the gaps, and some with baselines. */
+ * for the gaps, and some with baselines; and of a design that is named 6 to 25 by their time, with more steps. */
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 2;
-enum { CLOSING_SIMULATIONS = 24 };
+enum { CLOSING_SIMULATIONS = 24, NAMED_SIMULATIONS = 12 };
 
 /* Designs that a study looks at: of those that are screened one in SCREENED_PER_FINISHED is simulated to its end. */
 static double designs_of(const Settings *s)
@@ -301,19 +296,14 @@ static double search_seconds(const Settings *s, const Problem *p)
     return s->search.surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * outputs * designs_of(s);
 }
 
-static long threads_of(const SearchOptions *o)
-{
-    const long here = sysconf(_SC_NPROCESSORS_ONLN);
-    return o->threads > 0 ? o->threads : here > 0 ? here : 1;
-}
-
 /* Wall times [s] of a study: search and baselines beside the simulations, of each_s, and all of it. */
 static void put_times(json_t *study, const CheckedScene *p, const Problem *problem, long simulations, long threads,
                       double each_s)
 {
     const SearchOptions *o = &p->s->search;
     const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
-    const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + CLOSING_SIMULATIONS * n_records;
+    const double named = named_are_known(p->s) ? NAMED_SIMULATIONS * (double)(problem->n_obj + 1 + NAMED_SPREAD) : 0;
+    const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + (CLOSING_SIMULATIONS + named) * n_records;
     const double search_s = search_seconds(p->s, problem);
     const double baselines_s = DEVICES_S * p->building.n * n_records * (p->building.yields ? YIELDING : 1);
     json_put(study, "search_s=%g baselines_s=%g seconds=%g", search_s, baselines_s,
@@ -378,7 +368,7 @@ static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
     p->impacts = r[typical].impacts;
     if (foundation_lifts(&r[typical]))
         warn("core.foundation", uplift_words(&r[typical], text), c);
-    const long threads = threads_of(&s->search);
+    const long threads = (long)threads_wanted(s->search.threads);
     const long records = suite_count(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
     json_t *study =
@@ -396,7 +386,7 @@ static void describe_worker(Check *c, const Settings *s, Adapter *a)
     Outcome outcome;
     double each_s;
     const Problem *p = adapter_problem(a);
-    const long n = s->search.max_evals, threads = threads_of(&s->search);
+    const long n = s->search.max_evals, threads = (long)threads_wanted(s->search.threads);
     if (!note(c, asked_check(a, c->out, &each_s, &outcome, &why, &e), "problem.command", &e))
         return;
     if (outcome == OUTCOME_DEAD || outcome == OUTCOME_TIMEOUT || outcome == OUTCOME_GARBLED)
@@ -481,10 +471,8 @@ static void climb(Check *c, const CheckedScene *p)
     }
     if (p->impacts == 0)
         warn("--ladder",
-             p->n_tried == 1
-                 ? "the design has no impact: what the core and its contacts need cannot be said by it"
-                 : "no gap closes in any of the designs that were tried over design.gap_m: what the core and "
-                   "its contacts need cannot be said; take narrower gaps, or a --design",
+             "no gap closes in any of the designs that were tried: what the core and its contacts need cannot be said; "
+             "take narrower gaps (design.gap_m), or a --design that collides",
              c);
     free(ladder);
 }
@@ -593,8 +581,8 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
-    VALUE("--design", "FILE", "check these designs too, and time the first one"),
-    SWITCH("--ladder", "which effects the first of them needs: what leaving out each one changes"),
+    VALUE("--design", "FILE", "check these designs too, and simulate the first five"),
+    SWITCH("--ladder", "which effects the typical one of them needs: what leaving out each one changes"),
     OPTION_JSON,
     OPTION_SET,
     SWITCH("--self", "does this build give the stored answers? Exit status 70 where one differs"),
@@ -609,7 +597,8 @@ const Command CMD_CHECK = {
     .example = "imtet check configs/quick.ini",
     .details =
         "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion, base\n"
-        "shear, search box and expected time of the study (five designs of the box are simulated). Every fault is "
+        "shear, search box and expected time of the study by the clock (five designs of the box are simulated). Every "
+        "fault is "
         "named on standard\n"
         "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
         "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"

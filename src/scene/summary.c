@@ -28,12 +28,16 @@ static void summarise_mass(SceneSummary *s, const Building *b)
     }
 }
 
-static int falls_from_row_to_row(const Building *b)
+/* The first mode falls from row to row. Of storeys it rises in any order: there each is stiffer than the one below. */
+static int is_top_first(const Building *b)
 {
-    int falls = b->n > 1;
-    for (int j = 1; j < b->n && falls; j++)
-        falls = fabs(b->phi[j * b->n]) < fabs(b->phi[(j - 1) * b->n]);
-    return falls;
+    int falls = b->n > 1, stiffens = falls;
+    for (int j = 1; j < b->n; j++) {
+        const double *row = b->K + (j - 1) * b->n, below = j > 1 ? -row[j - 2] : row[0] + row[1];
+        falls &= fabs(b->phi[j * b->n]) < fabs(b->phi[(j - 1) * b->n]);
+        stiffens &= -row[j] > below;
+    }
+    return falls || stiffens;
 }
 
 static double base_shear(const BuildingModel *m, const Motion *motion, double mass)
@@ -84,7 +88,7 @@ static void summarise_building(SceneSummary *s, const Building *b)
                         .note = b->note,
                         .lowest_m = HUGE_VAL,
                         .heights_assumed = b->heights_assumed,
-                        .top_first = falls_from_row_to_row(b),
+                        .top_first = is_top_first(b),
                         .hardening_raised = b->hardening_raised ? b->hardening : 0};
     summarise_mass(s, b);
     for (int j = 0; j < b->n; j++) {
@@ -160,7 +164,9 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
         say(w, "building.hardening", "raised to %.3g: with less the building would not stand where all storeys yield",
             s->hardening_raised);
     if (s->top_first)
-        say(w, "building.model", "the first mode is largest at the first row; floors are wanted bottom floor first");
+        say(w, "building.model",
+            "the first mode is largest at the first row, or each storey is stiffer than the one below; floors are "
+            "wanted bottom floor first");
     for (int i = 0; i < 3; i++)
         if (s->damping[i] > DAMPING_MAX) {
             say(w, "building.damping", "mode %d has %g %% of critical; steel frames have 1 to 5 %%", i + 1,
@@ -174,8 +180,12 @@ static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warn
     if (o->damping > DAMPING_MAX)
         say(w, "core.damping", "%g is %g %% of critical; steel has 1 to 5 %%", o->damping, 100 * o->damping);
     if (s->core_modes_within == 0)
-        say(w, "motion.record", "holds nothing above %.4g Hz; the core's first mode is at %.4g Hz", s->content_hz,
-            s->core_hz);
+        say(w, "motion.record",
+            "holds nothing above %.4g Hz; the core's first mode is at %.4g Hz: the ground moves it as if it were "
+            "rigid, "
+            "impacts alone make it vibrate. Right where the ground shakes no faster; else take a record of smaller "
+            "steps",
+            s->content_hz, s->core_hz);
     if (o->theory == CORE_EULER_BERNOULLI && s->euler_bernoulli_hz > 1.1 * s->timoshenko_hz)
         say(w, "core.theory", "shear lowers the core's first mode from %.4g to %.4g Hz; take timoshenko",
             s->euler_bernoulli_hz, s->timoshenko_hz);
