@@ -9,7 +9,7 @@ enum {
     LEVELS = 128,
     FEW = 2,
     WORD = 64,
-    SOME = 8, /* words, and sets, that are looked at together */
+    SOME = 8, /* words come in multiples of it: whole vectors */
     WORDS = (HYPERVOLUME_SAMPLES + WORD * SOME - 1) / (WORD * SOME) * SOME
 };
 
@@ -75,6 +75,12 @@ static void fill(Hypervolume *h, const double lower[], const double reference[],
     join_levels(h);
 }
 
+/* That n samples take. */
+static size_t words_of(size_t n)
+{
+    return (n + WORD * SOME - 1) / (WORD * SOME) * SOME;
+}
+
 /* Samples that are left move together, so that fewer words are looked at. */
 static void draw_together(Hypervolume *h)
 {
@@ -87,7 +93,7 @@ static void draw_together(Hypervolume *h)
     memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
     for (size_t i = 0; i < n; i++)
         note_sample(h, i);
-    h->n_words = (n + WORD * SOME - 1) / (WORD * SOME) * SOME;
+    h->n_words = words_of(n);
     join_levels(h);
 }
 
@@ -126,33 +132,20 @@ static int reaches(size_t m, const double f[], const double s[])
     return 1;
 }
 
-/* Of those samples the ones that are in n <= SOME more sets. */
-CLONED_V3 static void keep_common(size_t n_words, uint64_t near[], size_t n, const uint64_t *const above[])
+/* Of those samples the ones that are in another set. */
+CLONED_V3 static void keep_common(size_t n_words, uint64_t near[], const uint64_t above[])
 {
-    for (size_t w = 0; w < n_words; w += SOME) {
-        uint64_t some[SOME];
-        memcpy(some, near + w, sizeof some);
-        for (size_t k = 0; k < n; k++)
 #pragma omp simd
-            for (size_t i = 0; i < SOME; i++)
-                some[i] &= above[k][w + i];
-        memcpy(near + w, some, sizeof some);
-    }
+    for (size_t w = 0; w < n_words; w++)
+        near[w] &= above[w];
 }
 
 /* Samples that are left and not below the level of f in any objective. */
 static void find_near(const Hypervolume *h, const double f[], uint64_t near[WORDS])
 {
-    const uint64_t *above[SOME];
-    size_t n = 0;
     memcpy(near, h->left, h->n_words * sizeof *near);
-    for (size_t k = 0; k < h->n_obj; k++) {
-        above[n++] = samples_above(h, k, level_of(h, k, f[k]));
-        if (n < SOME && k < h->n_obj - 1)
-            continue;
-        keep_common(h->n_words, near, n, above);
-        n = 0;
-    }
+    for (size_t k = 0; k < h->n_obj; k++)
+        keep_common(h->n_words, near, samples_above(h, k, level_of(h, k, f[k])));
 }
 
 /* Samples that are left and that f dominates; returns how many. */
@@ -180,10 +173,11 @@ double hypervolume_gain(const Hypervolume *h, const double f[])
 void hypervolume_add(Hypervolume *h, const double f[])
 {
     uint64_t dominated[WORDS];
-    h->n_left -= find_dominated(h, f, dominated);
-    for (size_t w = 0; w < h->n_words; w++)
+    const size_t n = find_dominated(h, f, dominated);
+    h->n_left -= n;
+    for (size_t w = 0; n > 0 && w < h->n_words; w++)
         h->left[w] ^= dominated[w];
-    if (FEW * h->n_left < h->n_words * WORD)
+    if (words_of(FEW * h->n_left) < h->n_words)
         draw_together(h);
 }
 
