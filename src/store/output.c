@@ -144,11 +144,9 @@ static void put_each(FILE *stream, size_t n, const double values[], const char *
 {
     char text[32];
     for (size_t j = 0; j < n; j++) {
-        fputs_unlocked(j == 0 ? before : ",", stream);
-        if (isfinite(values[j]))
-            fwrite_unlocked(text, 1, (digits_of(text, text + sizeof text, values[j]) - text), stream);
-        else
-            fputs_unlocked(missing, stream);
+        char *end = stpcpy(text, j == 0 ? before : ",");
+        end = isfinite(values[j]) ? digits_of(end, text + sizeof text, values[j]) : stpcpy(end, missing);
+        fwrite_unlocked(text, 1, end - text, stream);
     }
 }
 
