@@ -281,7 +281,8 @@ static Status insert(RunStore *store, const Evaluation *e, Err *err)
 /* Without what is_of_the_next has left out. */
 static Status renew_unfinished(RunStore *store, Err *err)
 {
-    TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL", ""));
+    TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i",
+                    store->run.n_finished));
     for (size_t i = 0; i < store->unfinished.n; i++)
         TRY(insert(store, &store->unfinished.row[i], err));
     store->n_stored = store->run.n_finished + store->unfinished.n;
