@@ -146,26 +146,6 @@ TEST(the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume)
     }
 }
 
-TEST(a_point_costs_no_more_where_few_samples_are_left)
-{
-    enum { N = 200000, M = 7 };
-    double f[M], lower[M] = {0}, reference[M];
-    Hypervolume *h;
-    Err err = {0};
-    for (size_t k = 0; k < M; k++) {
-        f[k] = 0.001;
-        reference[k] = 1.0;
-    }
-    CHECK_OK(hypervolume_create(&h, M, lower, reference, 1, &err), &err);
-    const clock_t began = clock();
-    for (size_t i = 0; i < N; i++)
-        hypervolume_add(h, f);
-    assert_less((double)(clock() - began) / CLOCKS_PER_SEC, 2); /* 0.1 s; drawn together for each 4.6 s */
-    assert_less(0.99, hypervolume_share(h));
-    assert_less(hypervolume_share(h), 1.0);
-    hypervolume_free(h);
-}
-
 /* -- directions ---------------------------------------------------------------------------------------------------- */
 
 TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
