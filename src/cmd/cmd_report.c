@@ -90,11 +90,12 @@ static Status report(const Args *args, const Run *run, Err *err)
     OtherRecords records = {0};
     json_t *notes;
     const int is_dossier = args_has(args, "--dossier");
-    TRY(notes_read(run->folder, &notes, err)); /* damaged ones are not left out in silence */
+    Status status = notes_of_run(run, &notes, err);
     json_decref(notes);
+    TRY(status); /* notes that cannot be shown are not left out in silence */
     TRY(take_target(args, path, err));
     TRY(is_dossier ? check_dossier(run, path, err) : STATUS_OK);
-    Status status = open_report(args, run, &records, &r, err);
+    status = open_report(args, run, &records, &r, err);
     if (status == STATUS_OK)
         status = is_dossier                     ? dossier(args, run, &r, &records, path, err)
                  : args_has(args, "--pictures") ? report_pictures(&r, path, err)

@@ -5,13 +5,6 @@
 
 #include "store/output.h"
 
-static Status path_in(const char *folder, char path[PATH_MAX], Err *err)
-{
-    return snprintf(path, PATH_MAX, "%s/notes.json", folder) < PATH_MAX
-               ? STATUS_OK
-               : fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
-}
-
 static int are_notes(json_t *all)
 {
     const char *key;
@@ -23,9 +16,9 @@ static int are_notes(json_t *all)
 
 Status notes_read(const char *folder, json_t **notes, Err *err)
 {
-    char path[PATH_MAX];
+    char path[PATH_MAX + 16];
     json_error_t error = {0};
-    TRY(path_in(folder, path, err));
+    snprintf(path, sizeof path, "%s/notes.json", folder);
     if (access(path, F_OK) != 0) {
         *notes = json_object();
         return STATUS_OK;
@@ -39,6 +32,26 @@ Status notes_read(const char *folder, json_t **notes, Err *err)
                     error.line > 0 ? error.line : 1, error.text[0] ? ": " : "", error.text);
 }
 
+Status notes_of_run(const Run *run, json_t **notes, Err *err)
+{
+    const char *key;
+    json_t *text;
+    void *next;
+    *notes = NULL;
+    Status status = notes_read(run->folder, notes, err);
+    *notes = *notes ? *notes : json_object();
+    json_object_foreach_safe(*notes, next, key, text)
+    {
+        char *end;
+        if (run_find(run, strtol(key, &end, 10)) == run->table.n || *end) {
+            status =
+                bad_data(err, "%s/notes.json: the run has no design %s: mend the number of its note", run->folder, key);
+            json_object_del(*notes, key);
+        }
+    }
+    return status;
+}
+
 static Status write_notes(const char *path, const json_t *notes, Err *err)
 {
     Output o;
@@ -50,12 +63,12 @@ static Status write_notes(const char *path, const json_t *notes, Err *err)
 
 Status notes_put(const char *folder, long id, const char *text, Err *err)
 {
-    char path[PATH_MAX], key[24];
+    char path[PATH_MAX + 16], key[24];
     json_t *notes;
     snprintf(key, sizeof key, "%ld", id);
     if (strlen(text) > NOTE_MAX)
         return bad_data(err, "a note has at most %d bytes", NOTE_MAX);
-    TRY(path_in(folder, path, err));
+    snprintf(path, sizeof path, "%s/notes.json", folder);
     TRY(notes_read(folder, &notes, err));
     if (text[0])
         json_object_set_new(notes, key, json_string(text));
