@@ -8,7 +8,11 @@ import { join, resolve } from "node:path";
 import { openBrowser, picture, tryAll } from "../report/browser.mjs";
 
 const [imtet, folder, given, pictures] = process.argv.slice(2);
-const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given : join(folder, "runs"));
+const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
+if (!(isBench || isPictures ? given : folder) || !existsSync(root)) {
+  console.error(`usage: drive.mjs IMTET FOLDER | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
+  process.exit(64);
+}
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const children = [];
 
