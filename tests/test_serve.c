@@ -706,7 +706,10 @@ static void test_notes_are_of_designs_of_the_run_and_lie_beside_it(void **state)
     char wanted[64];
     snprintf(wanted, sizeof wanted, "{\"id\": %d, \"text\": \"other\"}", id);
     refuse_note(400, wanted);
-    expect_code(200, "GET", "/%T/1/", "");
+    page = ask("GET", "/%T/1/", "", "");
+    assert_int_equal(code_of(page), 200);
+    assert_non_null(strstr(page, "notes.json:1: is no object of notes"));
+    free(page);
     char *kept = read_in_place("runs/b/notes.json");
     assert_string_equal(kept, "[1]");
     free(kept);

@@ -92,10 +92,7 @@ void wavelet(size_t n, double dt, const double u[], size_t n_f, const double f[]
 static void take_spectrum(const Detail *d, const History *h, Spectrogram *s)
 {
     const int tenth = d->n_floors < 10 ? d->n_floors - 1 : 9;
-    const double lowest = 0.5 * d->building_hz[0], seen = 0.45 / h->dt_s;
-    double highest = 1.3 * d->building_hz[tenth];
-    if (highest > seen)
-        highest = seen;
+    const double lowest = 0.5 * d->building_hz[0], highest = fmin(1.3 * d->building_hz[tenth], 0.45 / h->dt_s);
     for (size_t i = 0; i < SPECTRUM_FREQUENCIES; i++)
         s->f[i] = lowest * pow(highest / lowest, (double)i / (SPECTRUM_FREQUENCIES - 1));
     for (size_t k = 0; k < SPECTRUM_TIMES; k++)
@@ -103,23 +100,17 @@ static void take_spectrum(const Detail *d, const History *h, Spectrogram *s)
     wavelet(h->n, h->dt_s, h->u, SPECTRUM_FREQUENCIES, s->f, SPECTRUM_TIMES, s->t, s->amplitude);
 }
 
-static double peak_displacement(const Detail *d)
-{
-    double most = 0;
-    for (int i = 0; i < 2; i++)
-        for (size_t k = 0; k < d->history[i].n; k++)
-            most = fmax(most, fabs(d->history[i].u[k]));
-    return most;
-}
-
 /* Records end long after the building has come to rest: both histories are cut where nothing is to be seen any more. */
 static void cut_quiet_end(Detail *d)
 {
-    const double seen = QUIET * peak_displacement(d);
+    double most = 0;
     size_t n = 2;
     for (int i = 0; i < 2; i++)
         for (size_t k = 0; k < d->history[i].n; k++)
-            if (fabs(d->history[i].u[k]) > seen && k + 1 > n)
+            most = fmax(most, fabs(d->history[i].u[k]));
+    for (int i = 0; i < 2; i++)
+        for (size_t k = 0; k < d->history[i].n; k++)
+            if (fabs(d->history[i].u[k]) > QUIET * most && k + 1 > n)
                 n = k + 1;
     for (int i = 0; i < 2; i++)
         if (d->history[i].n > n)

@@ -18,6 +18,9 @@ static json_t *json_of_settings(const Settings *s)
     return words;
 }
 
+/* By SceneKind. */
+static const char *const SCENE_KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
+
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
 json_t *result_json(const SimResult *r, const MeasureOrder *order)
@@ -123,30 +126,27 @@ json_t *ladder_json(const Ladder *l)
                    json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);
 }
 
-/* What a building and a core have to bear, the last two also as forces on the ground where that is modelled. */
+/* What a building and a core have to bear. */
 static const MeasureId LOADS[] = {
     MEASURE_DRIFT_RATIO,   MEASURE_J3_FILTERED, MEASURE_CONTACT_FORCE, MEASURE_CORE_STRESS,     MEASURE_CORE_BUCKLING,
     MEASURE_BASE_SHEAR,    MEASURE_DUCTILITY,   MEASURE_PLASTIC_DRIFT, MEASURE_RESIDUAL_DRIFT,  MEASURE_HYSTERESIS,
     MEASURE_BASE_ROTATION, MEASURE_UPLIFT,      MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING};
-enum { N_LOADS = N_OF(LOADS), LOADS_OF_GROUND = 2 };
+enum { N_LOADS = N_OF(LOADS) };
 
 /* Under the first record, for the chosen design and its baselines. */
 static json_t *json_of_loads(const Detail *d)
 {
-    static const char *const KEYS[N_SCENES] = {"impacts", "no_core", "rigid", "tmd", "links"};
     json_t *columns = json_array(), *rows = json_array();
-    const int has_ground = isfinite(measure_value(&d->result[SCENE_IMPACT], MEASURE_BASE_ROTATION));
-    const int n = has_ground ? N_LOADS : N_LOADS - LOADS_OF_GROUND;
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < N_LOADS; k++) {
         const Words w = words_of_measure(LOADS[k]);
         json_array_append_new(columns, json_of("title=%s unit=%s", w.title, w.unit));
     }
     for (int scene = 0; scene < N_SCENES; scene++) {
         double values[N_LOADS];
-        for (int k = 0; k < n; k++)
+        for (int k = 0; k < N_LOADS; k++)
             values[k] = words_of_measure(LOADS[k]).factor * measure_value(&d->result[scene], LOADS[k]);
         if (d->result[scene].outcome == RUN_OK)
-            json_array_append_new(rows, json_of("key=%s values=%p", KEYS[scene], json_numbers(n, values)));
+            json_array_append_new(rows, json_of("key=%s values=%p", SCENE_KEYS[scene], json_numbers(N_LOADS, values)));
     }
     return json_of("columns=%p rows=%p", columns, rows);
 }
@@ -192,7 +192,6 @@ static json_t *json_of_band(const Detail *d)
 
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
-    static const char *const KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
     const size_t n = d->n_floors;
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
@@ -203,11 +202,11 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     }
     json_t *o = json_of(
         "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-        "pga_g=%g scale=%g stretch=%g duration_s=%g loads=%p baselines=%p history_with_core=%p "
+        "pga_g=%g scale=%g stretch=%g loads=%p baselines=%p history_with_core=%p "
         "history_no_core=%p forces=%p elsewhere=%p",
         d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
         json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
-        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, d->duration_s, json_of_loads(d),
+        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_loads(d),
         json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
         json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
     json_t *error = json_array();
@@ -219,7 +218,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     if (d->gap_sides != GAPS_BOTH)
         json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)
-        json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
+        json_object_set_new(o, SCENE_KEYS[k], result_json(&d->result[k], order));
     return o;
 }
 
@@ -286,11 +285,9 @@ static json_t *json_of_beyond_law(const Report *r)
 
 json_t *importance_json(const Importance *m, const Schema *schema)
 {
-    json_t *total = json_array();
-    if (m->n_centres == 0) {
-        json_decref(total);
+    if (m->n_centres == 0)
         return json_null();
-    }
+    json_t *total = json_array();
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(total, json_numbers(schema->n_var, m->total + k * schema->n_var));
     return json_of("centres=%ld explained=%p total=%p", m->n_centres, json_numbers(schema->n_obj, m->explained), total);
@@ -348,13 +345,6 @@ static json_t *json_of_pair(const Run *run, size_t chosen)
     return list;
 }
 
-/* Of several runs as one, and where they cannot be read: none. */
-static json_t *json_of_notes(const Run *run)
-{
-    json_t *notes = NULL;
-    return run->id_step == 0 && notes_read(run->folder, &notes, NULL) == STATUS_OK ? notes : json_object();
-}
-
 json_t *report_json(const Report *r)
 {
     const Run *run = r->run;
@@ -365,13 +355,16 @@ json_t *report_json(const Report *r)
     const char *slash = strrchr(name, '/');
     double likely[OBJECTIVES_MAX];
     char rule[RULE_WORDS_MAX];
+    Err fault = {0};
     const int has_errors = run_likely(run, r->chosen, likely);
+    json_t *notes;
+    notes_of_run(run, &notes, &fault);
     words_of_rule(run->settings, rule);
     return json_of(
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s id_step=%ld tower=%c robust=%c building=%s "
         "spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
-        "convergence=%p detail=%p pair=%p named=%p notes=%p settings=%p provenance=%s",
+        "convergence=%p detail=%p pair=%p named=%p notes=%p notes_fault=%s settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
         slash && slash[1] && !run->id_step ? slash + 1 : name, name, run->id_step, r->has_detail, r->is_robust,
         run->settings->building.model, spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain),
@@ -379,6 +372,6 @@ json_t *report_json(const Report *r)
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
         json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        json_of_pair(run, r->chosen), json_of_named(r), json_of_notes(run), json_of_settings(run->settings),
+        json_of_pair(run, r->chosen), json_of_named(r), notes, fault.text, json_of_settings(run->settings),
         run->provenance);
 }

@@ -291,20 +291,29 @@ const tried = {
   },
   async "what the errors leave out by the ladder, and where the ranking turns over with it, the first screen says"() {
     if (!run.tower) return;
-    const by = (name) => run.schema.objectives.findIndex((o) => o.name === name), { with_core: own, ladder } = run.detail;
-    for (const [name, key] of [["j1_m", "rigid"], ["drift_ratio", "no_core"]]) {
-      const isWorse = own.objectives[by(name)] > run.detail[key].objectives[by(name)], set = structuredClone(ladder.by_the_set);
-      for (const turns of [false, true]) { // the other pair as by the run's own model
-        for (const [n, k] of [["j1_m", "rigid"], ["drift_ratio", "no_core"]]) [set.with_core[n], set[k][n]] = [own.objectives[by(n)], run.detail[k].objectives[by(n)]];
-        if (turns) set.with_core[name] = set[key][name] * (isWorse ? 0.9 : 1.1);
-        writeFileSync(doctored, html.replace(/"by_the_set":\{.*?\}\}/, `"by_the_set":${JSON.stringify(set)}`));
-        await open("", doctored);
-        const said = await page.evaluate("document.querySelector('.warnings').textContent");
-        assert.equal(/The ranking turns over/.test(said), turns, `${name}: ${said}`);
-        assert.ok(said.includes(`J3 is ${(+set.with_core.j3_g.toPrecision(3)).toString()} g instead of`), said);
-        if (turns) assert.ok(said.includes(name === "j1_m" ? "rigidly connected (by" : "without core (by"), said);
+    const by = (name) => run.schema.objectives.findIndex((o) => o.name === name), { with_core: own, ladder } = run.detail, titles = { j1_m: "J1", drift_ratio: "drift ratio", j3_g: "J3" };
+    const sayWith = async (set) => {
+      writeFileSync(doctored, html.replace(/"by_the_set":\{.*?\}\}/, `"by_the_set":${JSON.stringify(set)}`));
+      await open("", doctored);
+      return page.evaluate("document.querySelector('.warnings').textContent");
+    };
+    for (const key of ["rigid", "no_core"])
+      for (const name of ["", ...Object.keys(titles)]) { // all but this pair as by the run's own model
+        const set = structuredClone(ladder.by_the_set), words = key === "rigid" ? "rigidly connected" : "without core";
+        for (const k of ["with_core", "rigid", "no_core"]) for (const n of Object.keys(titles)) set[k][n] = run.detail[k].objectives[by(n)];
+        if (name) set[key][name] = own.objectives[by(name)] * (own.objectives[by(name)] > set[key][name] ? 1.1 : 0.9);
+        const said = await sayWith(set);
+        assert.equal(new RegExp(`turns over: ${titles[name]} [^.]*(\\.\\d[^.]*)*${words}`).test(said), name !== "", `${name}: ${said}`);
+        assert.ok(/J3 is \S+ g instead of/.test(await sayWith({ ...set, with_core: { ...set.with_core, j3_g: 2 * set.with_core.j3_g } })), said);
       }
-    }
+    await open();
+  },
+  async "of several records every demand says which they are"() {
+    if (!run.tower) return;
+    writeFileSync(doctored, html.replace('"rule":""', '"rule":"worst of 2 records"'));
+    await open("", doctored);
+    const demands = await page.evaluate("Array.from(document.querySelectorAll('#loads td:first-child'), (td) => td.textContent)");
+    assert.ok(demands.length > 3 && demands.every((text) => / under kobe-like|; worst of 2 records\)$/.test(text)), demands.join());
     await open();
   },
   async "a click opens the design beside the picture, which stays; Escape closes"() {
@@ -316,6 +325,8 @@ const tried = {
     assert.ok(Math.abs((await page.evaluate(top)) - before) <= 60, `the row went from ${before} to ${await page.evaluate(top)} px`);
     const r = rows.find((one) => one[0] === id), o = run.schema.objectives[0], said = await page.evaluate("document.querySelector('#numbers tbody td:nth-child(2)').textContent");
     assert.ok(Math.abs(parseFloat(said.replace("\u00b710^", "e")) / (r[1 + run.schema.variables.length] * o.factor) - 1) < 6e-3 || /^about/.test(said), said);
+    await page.evaluate("document.querySelectorAll('#numbers td:nth-child(2)').forEach((td) => (td.firstChild.data = '0.09844 \u00b1 0.00002'))");
+    assert.ok(await page.evaluate("Array.from(document.querySelectorAll('#drawer .scroll')).every((e) => e.scrollWidth <= e.clientWidth)"), "a column is cut");
     await press("Escape");
     assert.ok(await page.evaluate("document.getElementById('drawer').hidden && document.activeElement.textContent") === String(id), "the focus goes back");
   },

@@ -58,13 +58,10 @@ const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);
 
 // Columns that are numbered, as the gaps are, share one scale.
-const families = new Map();
-for (const c of columns) {
-  const stem = c.name.replace(/\d+/g, "#");
-  if (!families.has(stem)) families.set(stem, []);
-  c.family = families.get(stem);
-  c.family.push(c);
-}
+const families = [...charts.group(columns, (c) => c.name.replace(/\d+/g, "#")).values()];
+for (const family of families) for (const c of family) c.family = family;
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
+const stemOf = ([first]) => first.title.replace(/[, ]+(zone )?\d+$/, ""), placeOf = ([first]) => (!run.tower ? "" : /zone/.test(first.title) ? "zone" : "floor");
 
 // Bounds of the search, in the units of the eye; -1, 0, 1: whether a value lies at one of them.
 variables.forEach((c, j) => {
@@ -137,7 +134,7 @@ takeTheme(ownTheme);
 // ---- the chosen design and what it is compared with
 
 const SCENES = {
-  impacts: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
+  with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
   no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [8, 4] },
   rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3] },
   tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4] },
@@ -156,8 +153,7 @@ const shownOverlays = () => overlays.filter((o) => o.isShown);
 // Ends of a column's scale: of the designs that are kept (c.low, c.high; of all numbered columns alike together), and of what
 // is shown beside them.
 function extent(c, beside = shownOverlays()) {
-  const all = [...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c)).filter(Number.isFinite)];
-  return [Math.min(...all), Math.max(...all)];
+  return charts.extent([...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c))]);
 }
 
 // Values of a column that as many designs lie between, from one end of its scale to the other.

@@ -81,13 +81,20 @@ function showTheme(name) {
 
 const openedForPaper = [];
 window.addEventListener("beforeprint", () => {
-  for (const part of document.querySelectorAll("details.part:not([open])")) openedForPaper.push(part);
+  openedForPaper.push(...document.querySelectorAll("details.part:not([open])"));
   for (const part of openedForPaper) part.open = true;
   showTheme("light");
 });
 window.addEventListener("afterprint", () => {
   for (const part of openedForPaper.splice(0)) part.open = false;
   showTheme(state.theme);
+});
+
+// Bars over the height: { place: floor or zone, v, title, colour, from, to: where it is not the middle of its place }; marks: behind and over them.
+const barChart = (width, height, rows, places, label, options = {}, marks = []) => chart({
+  width, height, ariaLabel: label, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
+  x: { label, grid: true, zero: true, nice: true, tickFormat: (v) => show(Math.abs(v)), ...options.x }, y: { ...floorAxis(places), ...options.y },
+  marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.from ?? r.place - 0.38, y2: (r) => r.to ?? r.place + 0.38, fill: "colour", title: "title", fx: options.fx && "type" }), ...marks, charts.ruleX([0])],
 });
 
 // Lines over the height: { name, values from the first floor up, colour, symbol: of a dot on every floor, dash, thick }.
@@ -118,4 +125,4 @@ const growthChart = (width, height, rows) => chart({
 
 // Floors: every one where they are few.
 const floorAxis = (floors) => ({ label: "floor", domain: [0.5, floors + 0.5], tickFormat: "d",
-  ticks: Array.from({ length: floors }, (_, j) => j + 1).filter((j) => floors <= 12 || j === 1 || j % (floors > 60 ? 20 : floors > 24 ? 10 : 5) === 0) });
+  ticks: charts.range(1, floors + 1).filter((j) => floors <= 12 || j === 1 || j % (floors > 60 ? 20 : floors > 24 ? 10 : 5) === 0) });

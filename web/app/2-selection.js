@@ -22,55 +22,28 @@ const state = {
 };
 
 // What is drawn anew when the selection, the axes or colours, and the design under the pointer changed. While a range is
-// dragged, only what is in sight follows at once; the rest follows REST_MS after the last change, as do lines that take
-// more than a frame.
+// dragged, what is in sight follows as far as a frame lasts; all of it follows REST_MS after the last change.
 const views = { selection: [], layout: [], hover: [] };
 const REST_MS = 100;
 let resting; // timer; undefined: at rest
-const atRest = new Set();
 
 // `host` null: too small to wait.
-function follow(host, draw) {
-  const view = { draw, inSight: true, isStale: false };
-  views.selection.push(view);
-  if (!host) return;
-  new IntersectionObserver((entries) => {
-    view.inSight = entries[entries.length - 1].isIntersecting;
-    if (view.inSight && view.isStale) redraw(view);
-  }).observe(host);
-}
+const follow = (host, draw) => views.selection.push({ host, draw });
 
-function redraw(view) {
-  view.isStale = false;
-  view.draw();
+function isInSight({ host }) {
+  const box = host?.getBoundingClientRect();
+  return !host || (box.height > 0 && box.bottom > 0 && box.top < window.innerHeight);
 }
 
 function redrawAll() {
-  for (const view of views.selection) redraw(view);
+  for (const { draw } of views.selection) draw();
   saveAddress();
-}
-
-// In the next frame, or at rest; a task that is not wanted any more is dropped.
-function later(task) {
-  const waits = { task, frame: 0 };
-  if (resting === undefined) waits.frame = requestAnimationFrame(task);
-  else atRest.add(waits);
-  return waits;
-}
-
-function drop(waits) {
-  if (!waits) return;
-  cancelAnimationFrame(waits.frame);
-  atRest.delete(waits);
 }
 
 function rest() {
   clearTimeout(resting);
   resting = undefined;
-  for (const view of views.selection) if (view.isStale) redraw(view);
-  for (const waits of atRest) waits.frame = requestAnimationFrame(waits.task);
-  atRest.clear();
-  saveAddress();
+  redrawAll();
   delete document.documentElement.dataset.busy;
 }
 window.addEventListener("beforeprint", rest);
@@ -82,9 +55,7 @@ function within(ranges, from, out) {
     const { value } = c;
     for (let i = 0; i < n; i++) if (!(value[i] >= low && value[i] <= high)) out[i] = 0;
   }
-  let sum = 0;
-  for (let i = 0; i < n; i++) sum += out[i];
-  return sum;
+  return charts.sum(out);
 }
 
 function findSelected() {
@@ -98,15 +69,8 @@ function findKept() {
     within(ranges, kept, hit);
     for (let i = 0; i < n; i++) kept[i] = keep ? hit[i] : kept[i] & ~hit[i];
   }
-  state.nKept = kept.reduce((a, b) => a + b, 0);
-  for (const c of columns) {
-    [c.low, c.high] = [Infinity, -Infinity];
-    for (let i = 0; i < n; i++)
-      if (kept[i]) {
-        if (c.value[i] < c.low) c.low = c.value[i];
-        if (c.value[i] > c.high) c.high = c.value[i];
-      }
-  }
+  state.nKept = charts.sum(kept);
+  for (const c of columns) [c.low, c.high] = charts.extent(c.value, (v, i) => (kept[i] ? v : NaN));
   findSelected();
 }
 
@@ -120,10 +84,7 @@ function selectionChanged() {
     findSelected();
     clearTimeout(resting);
     resting = setTimeout(rest, REST_MS);
-    for (const view of views.selection) {
-      if (view.inSight) redraw(view);
-      else view.isStale = true;
-    }
+    for (const { draw } of views.selection.filter(isInSight)) draw();
   });
 }
 
@@ -172,8 +133,7 @@ function hover(row, event, at) {
 }
 
 // The designs of a picture by keys, in the order of the colour's column.
-function byKeys(layers, label) {
-  for (const [key, value] of Object.entries({ tabindex: 0, role: "application", "aria-label": `${label}: arrow keys go from design to design, Enter opens one` })) layers.setAttribute(key, value);
+function byKeys(layers) {
   layers.addEventListener("keydown", (event) => {
     if (event.target !== layers) return;
     const rows = byShade.filter((i) => state.selected[i]), at = rows.indexOf(state.hovered ?? state.marked), box = layers.getBoundingClientRect();
@@ -184,6 +144,31 @@ function byKeys(layers, label) {
     event.preventDefault();
   });
   layers.addEventListener("blur", () => hover(undefined));
+}
+
+// The pointer over a picture: rowAt (x, y, event) is the design there.
+function pointed(place, rowAt, isBelow = false) {
+  place.addEventListener("pointermove", (event) => {
+    if (event.buttons) return;
+    const box = place.getBoundingClientRect();
+    hover(rowAt(event.clientX - box.left, event.clientY - box.top, event), event, isBelow && box);
+  });
+  place.addEventListener("pointerleave", () => hover(undefined));
+  place.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
+}
+
+// Three canvases below an SVG: all designs, those that are selected, and what stands out of them.
+function layered(host, label, rowAt, isBelow) {
+  const canvases = [0, 1, 2].map(() => element("canvas", { "aria-hidden": "true" })), words = `${label}: arrow keys go from design to design, Enter opens one`;
+  const layers = host.appendChild(element("div", { class: "layers", tabindex: 0, role: "application", "aria-label": words }, ...canvases)), svg = charts.select(layers).append("svg");
+  pointed(layers, rowAt, isBelow);
+  byKeys(layers);
+  function size(width, height) {
+    layers.style.height = `${height}px`;
+    svg.attr("width", width).attr("height", height).selectAll("*").remove();
+    return canvases.map((canvas) => prepare(canvas, width, height));
+  }
+  return { layers, back: canvases[0], svg, size };
 }
 
 // ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
@@ -270,7 +255,7 @@ function findShades() {
   const scale = high > low ? (SHADES - 1) / (high - low) : 0;
   shadeColours = words ? PALETTE : RAMP;
   for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : Math.max(0, Math.min(SHADES - 1, Math.round((value[i] - low) * scale)));
-  byShade = Array.from({ length: n }, (_, i) => i).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
+  byShade = charts.range(n).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
 }
 views.layout.push(findShades);
 

@@ -53,12 +53,9 @@ document.addEventListener("pointerdown", (event) => {
 window.addEventListener("scroll", () => (axisMenu.hidden = true), { passive: true });
 
 function parallelCoordinates(host) {
-  const layers = host.appendChild(element("div", { class: "layers" }));
-  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", { "aria-hidden": "true" })));
-  const svg = charts.select(layers).append("svg");
+  const { layers, back, svg, size } = layered(host, "Parallel coordinates of the front", (x, y, { target }) => (target.closest(".heading, .brush") ? undefined : rowAt(x, y)), true);
   const margin = { top: 58, right: 56, bottom: 14, left: 56 }, height = 400;
   let width = 0, axes = [], places, pens, isBackDrawn;
-  const frames = { back: null, front: null };
 
   const axisOf = (c) => ({ c, y: scaleOf(c, ...(isLow(c) ? [margin.top, height - margin.bottom] : [height - margin.bottom, margin.top]), 0.02) });
 
@@ -79,28 +76,16 @@ function parallelCoordinates(host) {
     pen.stroke();
   }
 
-  // Many lines take more than a frame: they come in passes over the whole, so that the first one shows what the last
-  // one will; a new change drops what is still to come.
-  function inPasses(lane, rows, drawLine, after) {
-    const passes = Math.ceil((rows.length * axes.length) / SEGMENTS_PER_FRAME) || 1;
-    let pass = 0;
-    drop(frames[lane]);
-    const next = () => {
-      for (let k = pass; k < rows.length; k += passes) drawLine(rows[k]);
-      after();
-      frames[lane] = ++pass < passes ? later(next) : null;
-    };
-    next();
-  }
-
-  function drawBack() {
-    const pen = pens.back;
-    isBackDrawn = true;
+  // Many lines take more than a frame: while a range is dragged, every so many of them.
+  function drawLines(pen, rows, colourOf) {
+    const step = resting === undefined ? 1 : Math.ceil((rows.length * axes.length) / SEGMENTS_PER_FRAME);
     pen.clearRect(0, 0, width, height);
-    pen.strokeStyle = PALE;
-    pen.lineWidth = 0.6;
-    pen.globalAlpha = opacity(n);
-    inPasses("back", byShade, (i) => stroke(pen, i), () => {});
+    pen.lineWidth = rows.length > 2000 ? 0.7 : 1;
+    pen.globalAlpha = opacity(rows.length);
+    for (let k = 0; k < rows.length; k += step) {
+      pen.strokeStyle = colourOf(rows[k]);
+      stroke(pen, rows[k]);
+    }
   }
 
   // In white beneath, so that it stands out of the others.
@@ -131,7 +116,7 @@ function parallelCoordinates(host) {
   }
 
   function drawOver() {
-    const pen = pens.over;
+    const pen = pens[2];
     pen.clearRect(0, 0, width, height);
     for (const o of shownOverlays()) drawOverlay(pen, o);
     if (state.marked !== undefined) bold(pen, INK, 2.4, () => stroke(pen, state.marked));
@@ -139,18 +124,12 @@ function parallelCoordinates(host) {
   }
 
   function drawFront() {
-    const pen = pens.front;
-    const isPartial = state.ranges.size > 0;
-    if (isPartial && !isBackDrawn) drawBack();
-    back.hidden = !isPartial;
-    pen.clearRect(0, 0, width, height);
-    pen.lineWidth = state.nSelected > 2000 ? 0.7 : 1;
-    pen.globalAlpha = opacity(state.nSelected);
-    let last = -1;
-    inPasses("front", byShade.filter((i) => state.selected[i]), (i) => {
-      if (shade[i] !== last) pen.strokeStyle = shadeColours[(last = shade[i])];
-      stroke(pen, i);
-    }, () => {});
+    back.hidden = !state.ranges.size;
+    if (!back.hidden && !isBackDrawn) {
+      drawLines(pens[0], byShade, () => PALE);
+      isBackDrawn = resting === undefined;
+    }
+    drawLines(pens[1], byShade.filter((i) => state.selected[i]), (i) => shadeColours[shade[i]]);
     drawOver();
   }
 
@@ -167,18 +146,6 @@ function parallelCoordinates(host) {
     }
     return best;
   }
-
-  layers.addEventListener("pointermove", (event) => {
-    if (event.buttons || event.target.closest(".heading")) return;
-    const box = layers.getBoundingClientRect();
-    hover(event.target.closest(".brush") ? undefined : rowAt(event.clientX - box.left, event.clientY - box.top), event, box);
-  });
-  layers.addEventListener("pointerleave", () => hover(undefined));
-  layers.addEventListener("click", (event) => {
-    if (state.hovered !== undefined && !event.target.closest(".heading, .brush")) mark(state.hovered);
-  });
-
-  byKeys(layers, "Parallel coordinates of the front");
 
   // ---- axes
 
@@ -253,7 +220,6 @@ function parallelCoordinates(host) {
 
   function drawAxes() {
     const room = axes.length > 1 ? axes[1].at - axes[0].at : width;
-    svg.attr("width", width).attr("height", height).selectAll("*").remove();
     const g = svg.selectAll("g.axis").data(axes).join("g").attr("class", "axis").attr("transform", (a) => `translate(${a.at},0)`);
     g.each(function (axis, k) {
       const hasNumbers = room > 56 || k === 0 || axes[k - 1].c.family !== axis.c.family;
@@ -270,17 +236,16 @@ function parallelCoordinates(host) {
     const many = state.axes.length;
     layers.style.minWidth = `${Math.max(300, margin.left + margin.right + 52 * (many - 1))}px`;
     width = layers.clientWidth;
-    layers.style.height = `${height}px`;
     axes = state.axes.map(axisOf);
     stations(many).forEach((at, k) => (axes[k].at = at));
-    pens = { back: prepare(back, width, height), front: prepare(front, width, height), over: prepare(over, width, height) };
+    pens = size(width, height);
     placeLines();
     drawAxes();
     isBackDrawn = false;
   }
 
   views.layout.push(layout);
-  views.hover.push(() => drawOver());
+  views.hover.push(drawOver);
   follow(host, () => {
     drawFront();
     showRanges();

@@ -4,9 +4,7 @@
 // Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] }, `decorate`
 // (svg, width, panels) what else is on it, `follows` what of that follows the selection. Dots are put into the pixels.
 function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
-  const layers = host.appendChild(element("div", { class: "layers" }));
-  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", { "aria-hidden": "true" })));
-  const svg = charts.select(layers).append("svg");
+  const { layers, back, svg, size } = layered(host, label, rowAt);
   let panels = [], width = 0, height = 0, pens, image;
 
   // Places of every design in every panel, so that a brush only has to put dots down.
@@ -53,7 +51,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
 
   function drawOver() {
     if (!panels.length) return;
-    const pen = pens.over;
+    const pen = pens[2];
     pen.clearRect(0, 0, width, height);
     for (const o of shownOverlays())
       for (const p of panels) {
@@ -68,7 +66,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     if (!panels.length) return;
     back.hidden = state.ranges.size === 0;
     const colours = shadeColours.map(pixel);
-    putDots(pens.front, state.nSelected, byShade.filter((i) => state.selected[i]), (i) => colours[shade[i]]);
+    putDots(pens[1], state.nSelected, byShade.filter((i) => state.selected[i]), (i) => colours[shade[i]]);
     drawOver();
   }
 
@@ -90,20 +88,15 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
 
   // ---- the pointer
 
-  layers.addEventListener("pointermove", (event) => {
-    if (event.buttons || !panels.length) return;
-    const box = layers.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+  function rowAt(x, y) {
     const p = panels.find(({ left, top, w, h }) => x >= left && x <= left + w && y >= top && y <= top + h);
     let best, least = 64;
     for (let i = 0; p && i < n; i++) {
       const far = state.selected[i] ? (p.dots[2 * i] - x) ** 2 + (p.dots[2 * i + 1] - y) ** 2 : Infinity;
       if (far < least) [best, least] = [i, far];
     }
-    hover(best, event);
-  });
-  layers.addEventListener("pointerleave", () => hover(undefined));
-  layers.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
-  byKeys(layers, label);
+    return best;
+  }
 
   // ---- axes
 
@@ -125,10 +118,8 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   function layout(newWidth) {
     width = newWidth;
     ({ height, panels } = arrange(width));
-    layers.style.height = `${height}px`;
     panels.forEach(place);
-    pens = { back: prepare(back, width, height), front: prepare(front, width, height), over: prepare(over, width, height) };
-    svg.attr("width", width).attr("height", height).selectAll("*").remove();
+    pens = size(width, height);
     decorate(svg, width, panels);
     svg.selectAll("g.panel").data(panels).join("g").attr("class", "panel").each(function (p) {
       const group = charts.select(this);
@@ -136,7 +127,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
       p.brush = charts.brush().extent([[p.left, p.top], [p.left + p.w, p.top + p.h]]).on("brush end", (event) => brushed(event, p));
       group.append("g").attr("class", "brush").call(p.brush);
     });
-    putDots(pens.back, n, byShade, () => pixel(PALE));
+    putDots(pens[0], n, byShade, () => pixel(PALE));
   }
 
   function draw() {

@@ -28,9 +28,7 @@ function designTable(host) {
   let page = 0, order;
 
   const head = element("tr"), body = element("tbody");
-  const back = element("button", { class: "plain", type: "button", onclick: () => turn(-1) }, "Previous");
-  const next = element("button", { class: "plain", type: "button", onclick: () => turn(1) }, "Next");
-  const where = element("span");
+  const back = plainButton("Previous", () => turn(-1)), next = plainButton("Next", () => turn(1)), where = element("span");
   host.append(element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Selected designs" },
     element("table", { id: "designs" }, element("thead", {}, head), body)), element("div", { class: "pages" }, back, where, next));
 
@@ -40,8 +38,7 @@ function designTable(host) {
   // Rows are made once and filled anew: a brush must not wait for a table.
   const rows = Array.from({ length: Math.min(PAGE, n) }, () => {
     const name = element("button", { type: "button", title: "show this design in the pictures" }), note = new Text();
-    const cells = shown.map((c) => element("td", { class: !c.sense && "variable" }, ""));
-    const row = { name, note, cells, tr: element("tr", {}, element("td", {}, name, note), ...cells) };
+    const cells = shown.map((c) => element("td", { class: !c.sense && "variable" })), row = { name, note, cells, tr: element("tr", {}, element("td", {}, name, note), ...cells) };
     name.addEventListener("click", () => mark(row.design));
     row.tr.addEventListener("pointerenter", () => hover(row.design));
     row.tr.addEventListener("pointerleave", () => hover(undefined));
@@ -53,12 +50,10 @@ function designTable(host) {
 
   function fill(row, i) {
     row.tr.hidden = i === undefined;
-    const isSame = row.design === i && row.isMarked === (i === state.marked);
     row.design = i;
-    row.isMarked = i === state.marked;
-    if (i === undefined || isSame) return;
+    if (i === undefined) return;
     row.tr.dataset.id = ids[i];
-    row.tr.className = [row.isMarked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
+    row.tr.className = [i === state.marked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
     row.name.textContent = String(ids[i]);
     row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "") + (beyondLaw.has(ids[i]) ? " \u26a0" : "") + (run.notes[ids[i]] ? " \u270e" : "");
     row.tr.title = [beyondLaw.has(ids[i]) && "maximum indentation beyond what the contact law is meant for", run.notes[ids[i]]].filter(Boolean).join("; ");

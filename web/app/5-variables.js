@@ -12,12 +12,12 @@ function groupsInOrder() {
   return Array.from({ length: many }, (_, k) => rows.slice(Math.floor((k * rows.length) / many), Math.floor(((k + 1) * rows.length) / many)));
 }
 
-const meanOf = (c, rows) => rows.reduce((sum, i) => sum + c.value[i], 0) / rows.length;
+const meanOf = (c, rows) => charts.mean(rows, (i) => c.value[i]);
 
 function heatFigure(host, family) {
-  const [first] = family, { words } = first, isZone = /zone/.test(first.title), stem = first.title.replace(/[, ]+(zone )?\d+$/, "");
+  const [first] = family, { words } = first, stem = stemOf(family), place = placeOf(family);
   let groups = [];
-  const f = figure(host, `${stem[0].toUpperCase()}${stem.slice(1)}s of the front, by ${isZone ? "zone" : "floor"}`, null, (width) => {
+  const f = figure(host, `${capital(stem)}s of the front, by ${place}`, null, (width) => {
     const m = family.length;
     groups = groupsInOrder();
     const values = new Float64Array(groups.length * m);
@@ -26,7 +26,7 @@ function heatFigure(host, family) {
     return chart({
       width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
       x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
-      y: { ...floorAxis(m), label: isZone ? "zone" : "floor" },
+      y: { ...floorAxis(m), label: place },
       color: words ? { type: "threshold", domain: words.slice(1).map((_, k) => k + 0.5), range: PALETTE.slice(0, words.length) }
         : { scheme: "YlGnBu", domain: ends, label: titleUnit({ ...first, title: stem }), legend: true, tickFormat: show },
       marks: groups.length ? [charts.raster(values, { width: groups.length, height: m, x1: 0, x2: groups.length, y1: 0.5, y2: m + 0.5, imageRendering: "pixelated" }), cursors()] : [],
@@ -49,19 +49,12 @@ function heatFigure(host, family) {
     rule.style.height = `${image.height}px`;
   });
 
-  f.addEventListener("pointermove", (event) => {
-    const image = f.querySelector("image")?.getBoundingClientRect();
-    const k = image && Math.floor((groups.length * (event.clientX - image.left)) / image.width);
-    const isInside = groups[k] && event.clientY >= image.top && event.clientY <= image.bottom;
-    hover(isInside ? groups[k][groups[k].length >> 1] : undefined, event);
+  pointed(f, (x, y, event) => {
+    const image = f.querySelector("image")?.getBoundingClientRect(), isInside = image && event.clientY >= image.top && event.clientY <= image.bottom;
+    const rows = isInside && groups[Math.floor((groups.length * (event.clientX - image.left)) / image.width)];
+    return rows ? rows[rows.length >> 1] : undefined;
   });
-  f.addEventListener("pointerleave", () => hover(undefined));
-  f.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
-  let waits;
-  follow(f, () => {
-    drop(waits);
-    if (document.documentElement.dataset.ready) waits = later(f.redraw); // not while a range is dragged
-  });
+  follow(f, () => resting === undefined && document.documentElement.dataset.ready && f.redraw()); // not while a range is dragged
   return f;
 }
 
@@ -99,11 +92,7 @@ const DISTINCT = 0.35; // of the standard deviation over the front: by that much
 const scaled = (c, i) => (c.max > c.min ? (c.sense > 0 ? c.value[i] - c.min : c.max - c.value[i]) / (c.max - c.min) : 0);
 
 function nameOfType(rows, taken) {
-  const by = objectives.map((c) => {
-    const all = Array.from({ length: n }, (_, i) => c.value[i]), mean = all.reduce((a, b) => a + b, 0) / n;
-    const sd = Math.sqrt(all.reduce((a, v) => a + (v - mean) ** 2, 0) / n) || 1;
-    return { c, far: (meanOf(c, rows) - mean) / sd };
-  }).sort((a, b) => Math.abs(b.far) - Math.abs(a.far)).filter(({ far }) => Math.abs(far) > DISTINCT);
+  const by = objectives.map((c) => ({ c, far: (meanOf(c, rows) - charts.mean(c.value)) / (charts.deviation(c.value) || 1) })).sort((a, b) => Math.abs(b.far) - Math.abs(a.far)).filter(({ far }) => Math.abs(far) > DISTINCT);
   const word = ({ c, far }) => `${far < 0 ? "small" : "large"} ${c.title}`;
   const names = [2, 3, 4].map((k) => by.slice(0, k).map(word).join(", "));
   return by.length ? names.find((name) => !taken.includes(name)) ?? names[2] : "balanced";
@@ -112,8 +101,8 @@ function nameOfType(rows, taken) {
 // Lloyd's algorithm from the points farthest from each other: the same clusters every time. Returns the cluster of every point.
 function kMeans(points, k, distance2) {
   const centres = [points[0]];
-  const nearest = (p) => centres.reduce((best, c, t) => (distance2(p, c) < distance2(p, centres[best]) ? t : best), 0);
-  while (centres.length < k) centres.push(points.reduce((far, p) => (distance2(p, centres[nearest(p)]) > distance2(far, centres[nearest(far)]) ? p : far)));
+  const nearest = (p) => charts.minIndex(centres, (c) => distance2(p, c));
+  while (centres.length < k) centres.push(charts.greatest(points, (p) => distance2(p, centres[nearest(p)])));
   for (let round = 0; round < 30; round++) {
     const sums = centres.map((c) => ({ many: 0, sum: c.map(() => 0) }));
     for (const p of points) {
@@ -128,23 +117,18 @@ function kMeans(points, k, distance2) {
 
 // Typical is the design nearest to the middle of its cluster.
 function findTypes() {
-  const points = Array.from({ length: n }, (_, i) => objectives.map((c) => scaled(c, i)));
+  const points = charts.range(n).map((i) => objectives.map((c) => scaled(c, i)));
   const k = Math.min(TYPES_MAX, Math.floor(n / 8));
   if (k < 2 || objectives.length < 2) return [];
   const distance2 = (p, q) => p.reduce((sum, v, j) => sum + (v - q[j]) ** 2, 0), of = kMeans(points, k, distance2), taken = [];
-  return Array.from({ length: k }, (_, t) => {
-    const rows = Array.from({ length: n }, (_, i) => i).filter((i) => of[i] === t);
-    const middle = objectives.map((_, j) => rows.reduce((sum, i) => sum + points[i][j], 0) / rows.length), far = (i) => distance2(points[i], middle);
-    return { rows, typical: rows.reduce((best, i) => (far(i) < far(best) ? i : best), rows[0]) };
-  }).filter((type) => type.rows.length).sort((a, b) => b.rows.length - a.rows.length)
-    .map((type) => {
-      const name = nameOfType(type.rows, taken);
-      taken.push(name);
-      return { ...type, name };
-    });
+  return [...charts.group(charts.range(n), (i) => of[i]).values()].sort((a, b) => b.length - a.length).map((rows) => {
+    const middle = objectives.map((_, j) => charts.mean(rows, (i) => points[i][j])), name = nameOfType(rows, taken);
+    taken.push(name);
+    return { rows, name, typical: charts.least(rows, (i) => distance2(points[i], middle)) };
+  });
 }
 
-for (const c of objectives) [c.min, c.max] = [c.value.reduce((a, b) => Math.min(a, b), Infinity), c.value.reduce((a, b) => Math.max(a, b), -Infinity)];
+for (const c of objectives) [c.min, c.max] = charts.extent(c.value);
 const types = findTypes();
 if (types.length) {
   const named = types.map((t, k) => `${k + 1} ${t.name}`), c = columnOf("type", -1, 0, ["type of design", "", 1, named.join("; ")]);
@@ -166,10 +150,7 @@ function typesPart(host) {
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
   const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));
-  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), gap: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: PALETTE[k] })));
-  figure(part, "Gaps of the typical designs", null, (width) => chart({
-    width, height: 250, marginTop: 26, ariaLabel: "Gaps of the typical designs", color: { type: "identity" },
-    fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { label: isEach ? "gap to the left and to the right [mm]" : "gap [mm]", grid: true, zero: true, ticks: 3, tickFormat: (v) => String(Math.abs(v)) }, y: { ...floorAxis(gaps.length / (isEach ? 2 : 1)), label: /zone/.test(gaps[0].name) ? "zone" : "floor" },
-    marks: [charts.rectX(rows, { fx: "type", x1: 0, x2: "gap", y1: (r) => r.place - 0.4, y2: (r) => r.place + 0.4, fill: "colour", title: (r) => `type ${r.type}, ${r.place}: ${show(Math.abs(r.gap))} mm` }), charts.ruleX([0])],
-  }));
+  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), v: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: PALETTE[k], title: `type ${k + 1}, ${c.title}: ${show(c.value[t.typical])} mm` })));
+  figure(part, "Gaps of the typical designs", null, (width) => barChart(width, 250, rows, gaps.length / (isEach ? 2 : 1), isEach ? "gap to the left and to the right [mm]" : "gap [mm]",
+    { marginTop: 26, fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { ticks: 3 }, y: { label: placeOf(gaps) } }));
 }

@@ -45,7 +45,7 @@ function weightsPart(host) {
       weight.value = told.textContent = state.weights.get(c) ?? 1;
       if (document.activeElement !== point) point.value = state.reference.get(c) ?? "";
     }
-    const best = Array.from({ length: n }, (_, i) => i).filter((i) => state.selected[i]).sort((a, b) => score.value[a] - score.value[b] || a - b).slice(0, RANKED);
+    const best = charts.range(n).filter((i) => state.selected[i]).sort((a, b) => score.value[a] - score.value[b] || a - b).slice(0, RANKED);
     list.replaceChildren(table("ranked", ["design", "score", ...objectives], best.map((i) => line([element("button", { type: "button", onclick: () => mark(i) }, String(ids[i])), digits(score.value[i]), ...objectives.map((c) => known(c, i))], { "data-id": ids[i] }))));
   }
 

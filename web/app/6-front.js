@@ -32,7 +32,7 @@ function overlayLegend() {
   return element("div", { class: "legend", id: "overlays" }, marked, ...overlays.map((o) => {
     const item = element("span", { "data-mark": o.mark, title: o.device }, o.words);
     item.style.setProperty("--key", o.colour);
-    return element("label", {}, element("input", { type: "checkbox", checked: true, name: o.key, onchange: (event) => {
+    return element("label", {}, element("input", { type: "checkbox", checked: o.isShown, name: o.key, onchange: (event) => {
       o.isShown = event.target.checked;
       layoutChanged();
     } }), item);
@@ -85,12 +85,11 @@ function rangeInputs() {
 }
 
 function selectionBar() {
-  const button = (id, text, act, kind = "plain") => element("button", { class: kind, id, type: "button", onclick: act }, text);
   const number = element("span", { class: "count", id: "count", role: "status" });
-  const keep = button("keep", "Keep", () => takeStep(true)), exclude = button("exclude", "Exclude", () => takeStep(false));
-  const clear = button("clear", "Clear ranges", () => (state.ranges.clear(), selectionChanged())), all = button("restore", "All designs again", dropSteps), back = button("undo", "Undo", undo);
-  keep.title = "look at the selected designs alone";
-  exclude.title = "look at all but the selected designs";
+  const keep = plainButton("Keep", () => takeStep(true), { id: "keep", title: "look at the selected designs alone" });
+  const exclude = plainButton("Exclude", () => takeStep(false), { id: "exclude", title: "look at all but the selected designs" });
+  const clear = plainButton("Clear ranges", () => setRanges(columns.map((c) => [c, null])), { id: "clear" });
+  const all = plainButton("All designs again", dropSteps, { id: "restore" }), back = plainButton("Undo", undo, { id: "undo" });
   follow(null, () => {
     number.textContent = `${count(state.nSelected)} of ${count(state.nKept)} designs selected${state.nKept < n ? `, ${count(n - state.nKept)} put aside` : ""}`;
     clear.disabled = state.ranges.size === 0;
@@ -99,7 +98,7 @@ function selectionBar() {
     all.disabled = !state.steps.length;
     back.disabled = !past.length && addressOf() === (lastAddress ?? "");
   });
-  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, button("download", "Download selection as CSV", download, "plain main"));
+  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, plainButton("Download selection as CSV", download, { id: "download", class: "plain main" }));
 }
 
 function frontPart() {
@@ -119,7 +118,7 @@ function frontPart() {
     pairPlot(pair);
   }
   const maps = grid.appendChild(element("div"));
-  for (const family of families.values()) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
+  for (const family of families) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
   if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or a reference point"));
   if (objectives.length > 1) {
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");

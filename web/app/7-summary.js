@@ -1,18 +1,12 @@
 // The first screen: what was studied and found, in a sentence, a picture and warnings; then growth and provenance.
 
-function bestRow(c) {
-  let best = 0;
-  for (let i = 1; i < n; i++) if (c.sense * c.raw[i] < c.sense * c.raw[best]) best = i;
-  return best;
-}
-
 // As in the program's own output: the peak, and what the record was multiplied by.
 const peakText = (d) => `peak ${show(d.pga_g)} g` +
   (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
 
 // ---- in a sentence
 
-const storeys = (d) => `${d.gap_m.length} storeys, ${show(d.storey_m.reduce((a, b) => a + b, 0))} m`;
+const storeys = (d) => `${d.gap_m.length} storeys, ${show(charts.sum(d.storey_m))} m`;
 
 function change(value, before) {
   const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
@@ -77,7 +71,7 @@ const listed = (words, most = 8) => words.slice(0, most).join(", ") + (words.len
 function boundWarning(d) {
   const row = rowOf.get(run.chosen), gaps = variables.filter((c) => /^gap_/.test(c.name));
   const at = (i, side) => gaps.filter((c) => atBound(c, c.value[i]) === side);
-  const many = Array.from({ length: n }, (_, i) => i).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
+  const many = charts.range(n).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
   const own = row === undefined ? [] : [[1, "largest"], [-1, "smallest"]].map(([side, word]) => [at(row, side), word]).filter(([list]) => list.length)
     .map(([list, word]) => `the ${word} (${withUnit(list[0], list[0].bounds[word === "largest" ? 1 : 0])}): ${listed(list.map((c) => c.title))}`);
   const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits || (d.gap_m[j] ?? NO_STOP_M) >= NO_STOP_M ? [] : [j + 1]));
@@ -90,19 +84,19 @@ const DISSIPATED = "the modes are those of the building before it yields, and wh
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 
-// What the ± of the numbers leaves out: J1, drift ratio and J3 by the settings that the ladder calls enough, and where with them the ranking is
-// another one, of J1 against the rigid connection, of the drift against the building alone.
+// What the ± of the numbers leaves out: J1, drift ratio and J3 by the settings that the ladder calls enough, and where with them one of the three
+// ranks otherwise against the rigid connection or the building alone.
+const LADDER = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]];
 function leftOut(d) {
   const set = d.ladder?.by_the_set, lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without.replace(/^between/, "what lies between")) ?? [];
   if (!lacks.length || set.with_core.j1_m === null || d.with_core.reason) return [];
   const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])), j3_g: Math.max(...r.acceleration_g) });
-  const here = peaks(d.with_core), list = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]]
-    .map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`).filter((text) => !/ (\S+) \S+ instead of \1$/.test(text));
-  const turned = [["rigid", "j1_m", "J1", "m", 1], ["no_core", "drift_ratio", "drift ratio", "%", 100]].flatMap(([key, name, title, unit, factor]) => {
+  const here = peaks(d.with_core), list = LADDER.map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`).filter((text) => !/ (\S+) \S+ instead of \1$/.test(text));
+  const turned = ["rigid", "no_core"].flatMap((key) => LADDER.flatMap(([name, title, unit, factor]) => {
     if (d[key].reason || set[key].reason || set[key][name] === null) return [];
     const [a, b, c, e] = [here[name], peaks(d[key])[name], set.with_core[name], set[key][name]].map((v) => v * factor);
     return a > b === c > e ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
-  });
+  }));
   return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
     (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
 }
@@ -136,17 +130,17 @@ function warnings(d) {
 }
 
 // What the design has to bear, beside its baselines and, as the run stores them, the best designs of every objective; without what
-// this scene has not.
-function loadTable({ columns, rows }) {
-  const kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k] !== null)), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
-  return table("loads", ["demand", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words, ...cells(r.values)])),
-    ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id})`, ...cells(values)]))]);
+// this scene has not. Of several records the former are under the first, the latter by the rule of the run.
+function loadTable(d) {
+  const { columns, rows } = d.loads, kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k] !== null)), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
+  return table("loads", ["demand", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words + underRecord(d), ...cells(r.values)])),
+    ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id}${run.rule && `; ${run.rule}`})`, ...cells(values)]))]);
 }
 
 function standoutTable() {
   const knee = rowOf.get(run.knee), valuesOf = (i) => objectives.map((c) => known(c, i));
   const best = (c, k) => {
-    const row = bestRow(c), tr = line([`best ${c.title}`, String(ids[row]), ...valuesOf(row)]);
+    const row = charts.minIndex(c.raw, (v) => c.sense * v), tr = line([`best ${c.title}`, String(ids[row]), ...valuesOf(row)]);
     tr.children[2 + k].className = "best";
     return tr;
   };
@@ -167,6 +161,7 @@ function summaryPart() {
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
+  if (run.notes_fault) host.append(element("p", { class: "warn" }, `Notes: ${run.notes_fault}`));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 250);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
@@ -195,7 +190,7 @@ function provenancePart() {
     ["machine", made.machine && `${made.machine.host}, ${made.machine.system}, ${made.machine.threads} threads`],
     ["seed", made.seed], ["record", made.inputs?.record], ["hash of the record", made.inputs?.record_fnv1a],
     ["folder", run.folder], ["this page", `imtet ${run.version} (${run.revision})`]];
-  host.append(element("dl", { class: "facts" }, ...facts.filter(([, v]) => v !== undefined && v !== null)
+  host.append(element("dl", {}, ...facts.filter(([, v]) => v !== undefined && v !== null)
     .flatMap(([k, v]) => [element("dt", {}, k), element("dd", {}, String(v))])));
   for (const [title, text] of [["Every setting", run.settings], ["provenance.json", run.provenance]])
     if (text) host.append(element("details", {}, element("summary", {}, title), element("pre", { tabindex: "0" }, text)));

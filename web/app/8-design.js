@@ -15,21 +15,19 @@ const NO_STOP_M = 10;
 function gapFigure(host, d) {
   const gaps = variables.filter((c) => /^gap_/.test(c.name)), [low, high] = gaps[0]?.bounds ?? [NaN, NaN];
   const sides = d.gap_side_m ? [["right", 1, d.gap_side_m[0]], ["left", -1, d.gap_side_m[1]]] : [["", 1, d.gap_m]];
-  const rows = sides.flatMap(([side, sign, list]) => list.flatMap((g, j) => (g === null || g >= NO_STOP_M ? [] : [{ side, sign, g, j }]))).map(({ side, sign, g, j }) => ({ floor: j + 1, side, gap: sign * 1e3 * g, bumper: d.bumper_n_m[j], closes: d.with_core.closings?.[j] !== 0, bound: gaps.length ? atBound(gaps[0], 1e3 * g) : 0 }));
+  const rows = sides.flatMap(([side, sign, list]) => list.flatMap((g, j) => {
+    const closes = d.with_core.closings?.[j] !== 0, bound = gaps.length && atBound(gaps[0], 1e3 * g), bumper = d.bumper_n_m[j];
+    const title = `floor ${j + 1}${side && `, ${side}`}: ${show(1e3 * g)} mm${bound ? ", at a bound" : ""}${closes ? "" : ", never closes"}${bumper > 0 ? `, bumper ${show(bumper / 1e6)} MN/m` : ""}`;
+    return g === null || g >= NO_STOP_M ? [] : [{ place: j + 1, v: sign * 1e3 * g, bound, title, colour: closes ? BLUE : "#c5d6e2" }];
+  }));
   const isBoth = !d.gap_side_m, bounds = [low, high].flatMap((b) => sides.map(([, sign]) => sign * b));
   const soft = Math.min(...d.bumper_n_m), hard = Math.max(...d.bumper_n_m);
   const stiffness = soft === hard ? `${show(soft / 1e6)} MN/m` : `${show(soft / 1e6)} to ${show(hard / 1e6)} MN/m`;
   const bumpers = `${hard > 0 ? ` Bumpers of ${stiffness}.` : ""}${rows.length < sides.length * d.gap_m.length ? " Where no bar is there is no stop." : ""}`;
-  const words = (r) => `floor ${r.floor}${r.side && `, ${r.side}`}: ${show(Math.abs(r.gap))} mm${r.bound ? ", at a bound" : ""}${r.closes ? "" : ", never closes"}${r.bumper > 0 ? `, bumper ${show(r.bumper / 1e6)} MN/m` : ""}`;
-  figure(host, "Gaps over the height", `${isBoth ? "Clearance between floor and core on either side." : "How far a floor may go to the left (drawn to the left of 0) and to the right before it meets the core."}${bumpers}`, (width) => chart({
-    width, height: 380, ariaLabel: "Gap of every floor", x: { label: isBoth ? "gap [mm]" : "gap to the left and to the right [mm]", grid: true, zero: true, nice: true, tickFormat: (v) => String(Math.abs(v)) }, y: floorAxis(d.gap_m.length), color: { type: "identity" }, symbol: { type: "identity" },
-    marks: [
-      charts.rectX(rows, { x1: 0, x2: "gap", y1: (r) => r.floor - 0.38, y2: (r) => r.floor + 0.38, fill: (r) => (r.closes ? BLUE : "#c5d6e2"), title: words }),
-      charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
-      charts.dot(rows.filter((r) => r.bound), { x: "gap", y: "floor", symbol: "diamond2", fill: VERMILLION, stroke: PAPER, r: 5, title: words }),
-      charts.ruleX([0]),
-    ],
-  }), legend([["closes", BLUE], ["never closes", "#c5d6e2"], ["at a bound of the search", VERMILLION, "\u25c6"]]));
+  figure(host, "Gaps over the height", `${isBoth ? "Clearance between floor and core on either side." : "How far a floor may go to the left (drawn to the left of 0) and to the right before it meets the core."}${bumpers}`, (width) => barChart(width, 380, rows, d.gap_m.length, isBoth ? "gap [mm]" : "gap to the left and to the right [mm]", {}, [
+    charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
+    charts.dot(rows.filter((r) => r.bound), { x: "v", y: "place", symbol: "diamond2", fill: VERMILLION, stroke: PAPER, r: 5, title: "title" }),
+  ]), legend([["closes", BLUE], ["never closes", "#c5d6e2"], ["at a bound of the search", VERMILLION, "\u25c6"]]));
 }
 
 function thicknessFigure(host, d) {
@@ -41,11 +39,8 @@ function thicknessFigure(host, d) {
 // The largest force on every floor by side, and what the storeys of the core bear.
 function forceFigures(host, d) {
   const { contact_n: sides, stress_pa: stress, buckling_pa: buckling } = d.forces, floors = d.gap_m.length;
-  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, floor: j + 1, low: j + (s ? 1 : 0.64), high: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, side: s ? "moving left" : "moving right" })));
-  figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => chart({
-    width, height: 340, ariaLabel: "Contact force of every floor", x: { label: "largest contact force [MN]", grid: true, zero: true, nice: true }, y: floorAxis(floors), color: { type: "identity" },
-    marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: "low", y2: "high", fill: "colour", title: (r) => `floor ${r.floor}, ${r.side}: ${show(r.v)} MN` }), charts.ruleX([0])],
-  }), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
+  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, from: j + (s ? 1 : 0.64), to: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, title: `floor ${j + 1}, moving ${s ? "left" : "right"}: ${show(v / 1e6)} MN` })));
+  figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => barChart(width, 340, rows, floors, "largest contact force [MN]"), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
   if (!stress) return;
   const mega = (values) => values.map((v) => v / 1e6), lines = [{ name: "stress", values: mega(stress), colour: BLUE, thick: 2 }];
   if (buckling) lines.push({ name: "stress at which the bare wall buckles", values: mega(buckling), colour: VERMILLION, thick: 2, dash: "5 4" });
@@ -60,7 +55,7 @@ function peakFigure(host, scenes, key, title, label, height, band) {
   figure(host, title, null, (width) => heightChart(width, height, label, lines, "floor", band?.[key]));
 }
 
-const scenesOf = (d) => [["impacts", d.with_core], ["no_core", d.no_core], ["rigid", d.rigid], ["tmd", d.tmd], ["links", d.links]].filter(([, s]) => s?.objectives);
+const scenesOf = (d) => Object.keys(SCENES).map((key) => [key, d[key]]).filter(([, s]) => s?.objectives);
 
 function peakPart(host, d, height) {
   const scenes = scenesOf(d);
@@ -78,7 +73,7 @@ function modeFigure(host, scenes, title, caption) {
   const rows = scenes.flatMap(([scene, r]) => r.modes.slice(0, modes).map((v, i) => ({ ...SCENES[scene], v: Math.max(v, 0.01), mode: i + 1 })));
   figure(host, title, caption, (width) => chart({
     width, height: 300, ariaLabel: title, color: { type: "identity" }, symbol: { type: "identity" },
-    x: { label: "mode of the building", domain: [0.5, modes + 0.5], ticks: Array.from({ length: modes }, (_, i) => i + 1), tickFormat: "d", tickSize: 0 },
+    x: { label: "mode of the building", domain: [0.5, modes + 0.5], ticks: charts.range(1, modes + 1), tickFormat: "d", tickSize: 0 },
     y: { label: "share of the input energy [%]", grid: true, type: "log", ticks: [0.01, 0.1, 1, 10, 100], tickFormat: show },
     marks: [
       charts.line(rows, { x: "mode", y: "v", z: "words", stroke: "colour", strokeWidth: 1.2, strokeOpacity: 0.6 }),
@@ -90,9 +85,9 @@ function modeFigure(host, scenes, title, caption) {
 // Parts of the input energy up to 100 %, a bar per scene.
 function shareFigure(host, scenes) {
   const parts = (r) => {
-    const sum = (from, to) => r.modes.slice(from - 1, to).reduce((a, b) => a + b, 0), core = r.core_pct ?? 0;
+    const sum = (from, to) => charts.sum(r.modes.slice(from - 1, to)), core = r.core_pct ?? 0;
     const named = [["mode 1", BLUE, sum(1, 1)], ["modes 2\u20134", SKY, sum(2, 4)], ["modes 5\u201310", GREEN, sum(5, 10)], ["higher modes", PURPLE, sum(11)], ["core", OLIVE, core], ["impacts", ORANGE, r.contact_pct], ...(r.plastic_m ? [["storeys that yield", VERMILLION, r.hysteresis_pct]] : [])];
-    return [...named, ["other", "#d3d9df", Math.max(0, 100 - named.reduce((a, [, , v]) => a + v, 0))]];
+    return [...named, ["other", "#d3d9df", Math.max(0, 100 - charts.sum(named, ([, , v]) => v))]];
   };
   const rows = scenes.flatMap(([scene, r]) => parts(r).map(([part, colour, v]) => ({ scene: SCENES[scene].words, part, colour, v })));
   figure(host, "Where the input energy goes", "Other: devices, and what is still kinetic, strain or stored energy at the end.", (width) => chart({
@@ -138,11 +133,13 @@ function energyFigure(host, title, h, top) {
   }));
 }
 
+const historiesOf = (d) => [["with core", d.history_with_core], ["without core", d.history_no_core]].filter(([, h]) => h);
+
 function energyPair(host, d) {
-  const all = [["Energies, with core", d.history_with_core], ["Energies, without core", d.history_no_core]].filter(([, h]) => h);
-  const top = Math.max(...all.map(([, h]) => h.energies.input.reduce((a, b) => Math.max(a, b), 0))) / 1e6;
+  const all = historiesOf(d);
+  const top = charts.max(all, ([, h]) => charts.max(h.energies.input)) / 1e6;
   host.before(legend([...ENERGIES.map(([key, label, colour]) => [key === "contacts" && d.with_core.plastic_m ? "impacts, storeys that yield" : label, colour]), ["input energy", INK]]));
-  for (const [title, h] of all) energyFigure(host, title, h, top);
+  for (const [scene, h] of all) energyFigure(host, `Energies, ${scene}`, h, top);
 }
 
 function displacementPlot(h, limit, width) {
@@ -173,9 +170,8 @@ function spectrumPlot(h, top, hz, width) {
 }
 
 function spectrumPair(host, d) {
-  const all = [["with core", d.history_with_core], ["without core", d.history_no_core]].filter(([, h]) => h);
-  const largest = (list) => list.reduce((a, b) => Math.max(a, Math.abs(b)), 0);
-  const limit = Math.max(...all.map(([, h]) => largest(h.u))), top = Math.max(...all.map(([, h]) => largest(h.spectrum)));
+  const all = historiesOf(d);
+  const [limit, top] = ["u", "spectrum"].map((key) => charts.max(all, ([, h]) => charts.max(h[key], Math.abs)));
   for (const [scene, h] of all) {
     const f = figure(host, `Displacement of floor ${d.floor}, ${scene}`, null, (width) => displacementPlot(h, limit, width));
     drawn(f, (width) => spectrumPlot(h, top, d.building_hz.slice(0, 10), width));
@@ -204,7 +200,7 @@ function otherPart(host, d) {
     "The same design under other motions, one at a time. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
   const grid = host.appendChild(element("div", { class: "grid2" }));
   for (const e of d.elsewhere) {
-    const scenes = [["impacts", e.with_core], ["no_core", e.no_core]].filter(([, r]) => r.objectives);
+    const scenes = scenesOf(e);
     if (!scenes.length) continue;
     peakFigure(grid, scenes, "drift_m", `Interstorey drift under ${shortName(e.record)}`, "peak interstorey drift [m]", 300);
     modeFigure(grid, scenes, `Modes under ${shortName(e.record)}`, null);
@@ -218,7 +214,7 @@ function otherPart(host, d) {
 const signed = (v) => (v === null ? "failed" : `${v > 0 ? "+" : v < 0 ? "\u2212" : ""}${show(Math.abs(v) < 0.005 ? 0 : Math.abs(v))}`);
 
 function ladderPart(host, d) {
-  const l = d.ladder, keys = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]];
+  const l = d.ladder, keys = LADDER;
   if (l.reason) return host.append(element("p", { class: "warn" }, `Not found: ${l.reason}`));
   const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
   const scene = (key, r) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits(r[name] === null ? null : factor * r[name]))]);
@@ -230,7 +226,7 @@ function ladderPart(host, d) {
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
     element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
-    table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], [scene("impacts", l.by_the_set.with_core), scene("rigid", l.by_the_set.rigid), scene("no_core", l.by_the_set.no_core)]));
+    table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], [scene("with_core", l.by_the_set.with_core), scene("rigid", l.by_the_set.rigid), scene("no_core", l.by_the_set.no_core)]));
 }
 
 // ---- all of it
@@ -238,9 +234,9 @@ function ladderPart(host, d) {
 // Of any design: `d` as report_json.h describes it, into `host`; isBeside: its gaps are shown already.
 function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
-  const notes = d.baselines.filter((b) => BASELINE_NOTE[b.key]).map((b) => BASELINE_NOTE[b.key](b.device)).join(" ");
+  const notes = d.baselines.filter((b) => b.objectives && BASELINE_NOTE[b.key]).map((b) => BASELINE_NOTE[b.key](b.device)).join(" ");
   if (r.objectives) host.append(element("p", {}, `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
-  host.append(loadTable(d.loads), element("p", { class: "note" }, notes));
+  host.append(loadTable(d), element("p", { class: "note" }, notes));
   const shape = host.appendChild(element("div", { class: "grid21" }));
   if (!isBeside) gapFigure(shape, d);
   thicknessFigure(shape, d);
@@ -254,7 +250,7 @@ function detailParts(host, d, isBeside = false) {
     if (r.plastic_m) leftPart(host, scenes, d);
   }
   if (d.ladder) ladderPart(folded(host, "Which effects it needs", true), d);
-  if (d.history_with_core || d.history_no_core) {
+  if (historiesOf(d).length) {
     const energies = folded(host, "Energies over time");
     energies.append(element("p", { class: "note" }, "Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak." +
       (r.plastic_m ? " Strain is that of storeys which do not yield; what it has too much is taken off the part of those that do." : "")));

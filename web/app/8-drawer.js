@@ -49,12 +49,8 @@ function numbersOf(row) {
 
 // Of a design that was not simulated again: what its variables say.
 function familyFigure(host, family, row) {
-  const [first] = family, name = first.title.replace(/[, ]+(zone )?\d+$/, ""), place = /zone/.test(first.title) ? "zone" : "floor";
-  const rows = family.map((c, j) => ({ place: j + 1, v: c.value[row] }));
-  figure(host, `${name[0].toUpperCase()}${name.slice(1)}s`, null, (width) => chart({
-    width, height: 70 + Math.min(260, 16 * family.length), ariaLabel: `${name} by ${place}`, x: { label: titleUnit({ ...first, title: name }), grid: true, zero: true, nice: true, ticks: 4 }, y: { ...floorAxis(family.length), label: run.tower ? place : "" },
-    marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.place - 0.38, y2: (r) => r.place + 0.38, fill: BLUE, title: (r) => `${place} ${r.place}: ${show(r.v)} ${first.unit}` }), charts.ruleX([0])],
-  }));
+  const stem = stemOf(family), rows = family.map((c, j) => ({ place: j + 1, v: c.value[row], colour: BLUE, title: `${c.title}: ${withUnit(c, c.value[row])}` }));
+  figure(host, `${capital(stem)}s`, null, (width) => barChart(width, 70 + Math.min(260, 16 * family.length), rows, family.length, titleUnit({ ...family[0], title: stem }), { x: { ticks: 4 }, y: { label: placeOf(family) } }));
 }
 
 // Of several runs as one: the one that has the design, and its id there.
@@ -70,18 +66,15 @@ const noteOf = (id) => {
     : text ? element("p", { class: "note" }, `Note: ${text}`) : "";
 };
 
-// The row of front.csv with its head.
-const exportDesign = (row) => saveFile(`${run.name}-${ids[row]}.csv`, csvOf((i) => i === row));
-
 function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
     host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => exportDesign(row), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
+      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
     if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);
-    else for (const family of families.values()) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
+    else for (const family of families) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
     if (d?.with_core) peakPart(host, d, 240);
     host.append(element("details", {}, element("summary", {}, "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
     if (d?.with_core) drawerMore.rest(host, d);
@@ -90,13 +83,12 @@ function fillDrawer(row, d) {
 }
 
 async function openDrawer(row) {
-  const id = ids[row], isNew = drawer.hidden;
+  const id = ids[row];
   if (!drawer.contains(document.activeElement)) opener = document.activeElement;
   const answer = drawerMore.detail(row);
   drawer.dataset.wanted = id;
   fillDrawer(row, answer ? { waits: true } : id === run.chosen ? run.detail : null);
   showDrawer(true);
-  if (isNew) drawAll(); // it has a width now
   drawer.scrollTop = 0;
   drawer.focus({ preventScroll: true });
   if (!answer) return;

@@ -31,15 +31,8 @@ function frontStrip(host, label, height = 208) {
   layers.style.height = `${height}px`;
 
   function rangesOf(all) {
-    return objectives.map((c, k) => {
-      let low = Infinity, high = -Infinity;
-      for (const { rows } of all)
-        for (const f of rows) {
-          if (f[k] < low) low = f[k];
-          if (f[k] > high) high = f[k];
-        }
-      return [low, high > low ? high : low + 1];
-    });
+    const every = all.flatMap(({ rows }) => rows), ends = objectives.map((_, k) => charts.extent(every, (f) => f[k]));
+    return ends.map(([low, high]) => [low, high > low ? high : low + 1]);
   }
 
   const at = (k) => (objectives.length > 1 ? side + (k * (width - 2 * side)) / (objectives.length - 1) : width / 2);
@@ -97,5 +90,5 @@ function frontStrip(host, label, height = 208) {
   return draw;
 }
 
-const frontRows = Array.from({ length: n }, (_, i) => objectives.map((c) => c.raw[i]));
+const frontRows = charts.range(n).map((i) => objectives.map((c) => c.raw[i]));
 const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });

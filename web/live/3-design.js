@@ -3,12 +3,8 @@
 const details = new Map(); // id -> promise
 function detailOf(id) {
   if (!details.has(id)) {
-    const answer = ask(`design/${id}`).then((one) => {
-      one.detail.baselines = one.detail.baselines.filter((b) => b.objectives);
-      return one;
-    });
-    details.set(id, answer);
-    answer.catch(() => details.delete(id));
+    details.set(id, ask(`design/${id}`));
+    details.get(id).catch(() => details.delete(id));
   }
   return details.get(id);
 }
@@ -54,7 +50,7 @@ matters.addEventListener("toggle", async () => {
 // ---- two to four side by side
 
 const compared = []; // { name, raw, gap_m, peaks }
-const SIDE_COLOURS = [BLUE, VERMILLION, GREEN, PURPLE], SIDE_MARKS = ["\u25cf", "\u25c6", "\u25b2", "\u25a0"], SIDE_SYMBOLS = ["circle", "diamond2", "triangle", "square"];
+const SIDES = Object.values(SCENES); // their colours and symbols
 let comparePart;
 
 function compare(one) {
@@ -67,7 +63,7 @@ function compare(one) {
 }
 
 function compareTable() {
-  const row = (one, i) => line([[legend([[one.name, SIDE_COLOURS[i], SIDE_MARKS[i]]]), plainButton("Remove", () => {
+  const row = (one, i) => line([[legend([[one.name, SIDES[i].colour, SIDES[i].mark]]), plainButton("Remove", () => {
     compared.splice(i, 1);
     showCompared();
   }, { "aria-label": `remove ${one.name}` })], ...objectives.map((c, k) => [digits(one.raw[k] * c.factor), i ? difference(one.raw[k], compared[0].raw[k]) : ""])]);
@@ -76,7 +72,7 @@ function compareTable() {
 
 // A line per design over the height.
 function sideFigure(host, title, label, valuesOf) {
-  const lines = compared.map((one, i) => ({ name: one.name, values: valuesOf(one), colour: SIDE_COLOURS[i], symbol: SIDE_SYMBOLS[i] }));
+  const lines = compared.map((one, i) => ({ name: one.name, values: valuesOf(one), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
   figure(host, title, null, (width) => heightChart(width, 300, label, lines));
 }
 

@@ -1,7 +1,7 @@
 // What if: sliders for every variable, the motion and the restitution; each change is one simulation. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
 
-const GROUND = [["pga_g", "peak", "g"], ["stretch", "time \u00d7", ""], ["restitution", "restitution", ""]];
+const GROUND = [["pga_g", "peak", "g", "--pga "], ["stretch", "time \u00d7", "", "--set motion.stretch="], ["restitution", "restitution", "", "--set contact.restitution="]];
 const TRIAL = "#c2185b";
 let startWhatIf = () => {};
 
@@ -172,8 +172,7 @@ function whatIfPart() {
   let shownKept = "";
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
-  const options = { pga_g: "--pga ", stretch: "--set motion.stretch=", restitution: "--set contact.restitution=" };
-  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key]) => ` ${options[key]}${g[key]}`).join("");
+  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key, , , option]) => ` ${option}${g[key]}`).join("");
 
   function showKept() {
     state.trials = shownKept = keptText();

@@ -22,7 +22,7 @@ async function against(body, others) {
   const wanted = (body.dataset.wanted = String(others));
   body.classList.add("stale");
   try {
-    const { runs, differences } = await ask(`against/${others}`), colours = SIDE_COLOURS;
+    const { runs, differences } = await ask(`against/${others}`), colours = SIDES.map(({ colour }) => colour);
     if (body.dataset.wanted !== wanted) return;
     refill(body, (host) => {
       if (differences.length) host.append(element("p", { class: "warn" }, `Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));

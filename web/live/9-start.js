@@ -1,8 +1,6 @@
 const later_ = (promise) => promise.catch((error) => document.getElementById("live").append(element("p", { class: "warn" }, error.message)));
 
-if (run.tower) {
-  whatIfPart();
-}
+if (run.tower) whatIfPart();
 progressPart();
 later_(runsPart());
 if (run.tower) later_(completeSummary().then(() => startWhatIf(state.marked ?? rowOf.get(run.knee), false)));
