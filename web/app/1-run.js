@@ -41,7 +41,6 @@ const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => 
 const objectives = results.slice(0, run.schema.objectives.length); // behind them what search.limits limits beside them
 const columns = [...results, ...variables];
 const ids = new Float64Array(n);
-let hasErrors = false; // likely ones, as stored with the designs, behind the columns
 for (const c of objectives) c.error = new Float64Array(n).fill(NaN);
 
 for (let i = 0; i < n; i++) {
@@ -51,8 +50,8 @@ for (let i = 0; i < n; i++) {
     c.raw[i] = c.words ? c.words.indexOf(cells[c.place]) : +cells[c.place];
     c.value[i] = c.raw[i] * c.factor;
   }
+  // Behind the columns: likely errors, where they are stored with the designs.
   objectives.forEach((c, k) => { if (cells[1 + columns.length + k]) c.error[i] = c.factor * cells[1 + columns.length + k]; });
-  hasErrors ||= cells.length > 1 + columns.length;
 }
 const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);

@@ -175,14 +175,11 @@ function layered(host, label, rowAt, isBelow) {
 
 const byName = (name) => columns.find((c) => c.name === name);
 const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (Number.isFinite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
-function rangesFrom(text) {
-  const parts = text.split(",").map((part) => part.split(":")).map(([name, ...ends]) => [decodeURIComponent(name), ...ends]).filter(([name]) => byName(name));
-  const end = (word, open) => (word && Number.isFinite(+word) ? +word : open);
-  return new Map(parts.map(([name, a, b]) => [byName(name), [end(a, -Infinity), end(b, Infinity)]]));
-}
-
 const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
-const pairsFrom = (text = "") => new Map(text.split(",").map((part) => part.split(":")).map(([name, v]) => [objectives.find((c) => c.name === decodeURIComponent(name)), +v]).filter(([c, v]) => c && Number.isFinite(v)));
+const partsFrom = (text = "") => text.split(",").map((part) => part.split(":")).map(([name, ...words]) => [byName(decodeURIComponent(name)), ...words]).filter(([c]) => c);
+const endFrom = (word, open) => (word && Number.isFinite(+word) ? +word : open);
+const rangesFrom = (text) => new Map(partsFrom(text).map(([c, a, b]) => [c, [endFrom(a, -Infinity), endFrom(b, Infinity)]]));
+const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && Number.isFinite(+v)).map(([c, v]) => [c, +v]));
 
 function addressOf() {
   const names = (list) => list.map((c) => c.name).join(",");
@@ -234,7 +231,7 @@ function readAddress() {
   if (named.length) state.axes = named.map(([c]) => c);
   state.inverted = new Set(named.filter(([, up]) => up).map(([c]) => c));
   for (const key of ["log", "percent"]) state[key] = new Set(list(all[key] ?? ""));
-  state.ranges = rangesFrom(all.in ?? "");
+  state.ranges = rangesFrom(all.in);
   state.steps = (all.steps ?? "").split(";").filter(Boolean).map((text) => ({ keep: text[0] === "+", ranges: rangesFrom(text.slice(1)) }));
   for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];
   state.marked = rowOf.get(+all.mark) ?? state.marked;
@@ -273,9 +270,6 @@ function prepare(canvas, w, h) {
 
 // A range may be open; its ends on a picture are not.
 const clamp = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
-
-// Faint where they are many, never invisible.
-const opacity = (many) => Math.max(0.12, Math.min(0.85, 90 / Math.sqrt(many + 1) / 10));
 
 // The design under the pointer, in words, beside it.
 const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, role: "status" }));

@@ -69,10 +69,7 @@ function parallelCoordinates(host) {
 
   function stroke(pen, i) {
     pen.beginPath();
-    for (let k = 0, at = i * axes.length; k < axes.length; k++, at++) {
-      if (k) pen.lineTo(axes[k].at, places[at]);
-      else pen.moveTo(axes[k].at, places[at]);
-    }
+    for (let k = 0, at = i * axes.length; k < axes.length; k++, at++) pen.lineTo(axes[k].at, places[at]);
     pen.stroke();
   }
 
@@ -81,7 +78,7 @@ function parallelCoordinates(host) {
     const step = resting === undefined ? 1 : Math.ceil((rows.length * axes.length) / SEGMENTS_PER_FRAME);
     pen.clearRect(0, 0, width, height);
     pen.lineWidth = rows.length > 2000 ? 0.7 : 1;
-    pen.globalAlpha = opacity(rows.length);
+    pen.globalAlpha = clamp(9 / Math.sqrt(rows.length + 1), [0.12, 0.85]); // faint where they are many, never invisible
     for (let k = 0; k < rows.length; k += step) {
       pen.strokeStyle = colourOf(rows[k]);
       stroke(pen, rows[k]);

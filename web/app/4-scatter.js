@@ -36,19 +36,6 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     pen.putImageData(image, 0, 0);
   }
 
-  function spot(pen, row, colour, r) {
-    if (row === undefined) return;
-    for (const { dots } of panels) {
-      pen.beginPath();
-      pen.arc(dots[2 * row], dots[2 * row + 1], r, 0, 7);
-      pen.fillStyle = colour;
-      pen.fill();
-      pen.lineWidth = 2;
-      pen.strokeStyle = PAPER;
-      pen.stroke();
-    }
-  }
-
   function drawOver() {
     if (!panels.length) return;
     const pen = pens[2];
@@ -58,8 +45,8 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
         const at = [p.x(o.value.get(p.cx) ?? NaN), p.y(o.value.get(p.cy) ?? NaN)];
         if (at.every(Number.isFinite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
       }
-    spot(pen, state.marked, INK, 4.5);
-    spot(pen, state.hovered, ORANGE, 5.5);
+    for (const [row, colour, size] of [[state.marked, INK, 64], [state.hovered, ORANGE, 95]])
+      if (row !== undefined) for (const { dots } of panels) drawSymbol(pen, { path: charts.symbolCircle, colour }, dots[2 * row], dots[2 * row + 1], size);
   }
 
   function drawFront() {
@@ -172,15 +159,9 @@ function pairPlot(host) {
 
 // Spearman's coefficient over the selected designs.
 function rankCorrelation(a, b) {
-  const rows = byShade.filter((i) => state.selected[i]);
-  const [ra, rb] = [a, b].map((c) => charts.rank(rows, (i) => c.value[i])), mean = (rows.length - 1) / 2;
-  let ab = 0, aa = 0, bb = 0;
-  for (let k = 0; k < rows.length; k++) {
-    ab += (ra[k] - mean) * (rb[k] - mean);
-    aa += (ra[k] - mean) ** 2;
-    bb += (rb[k] - mean) ** 2;
-  }
-  return aa > 0 && bb > 0 ? ab / Math.sqrt(aa * bb) : NaN;
+  const rows = byShade.filter((i) => state.selected[i]), [p, q] = [a, b].map((c) => charts.rank(rows, (i) => c.value[i])), mean = (rows.length - 1) / 2;
+  const sum = (u, v) => charts.sum(u, (_, k) => (u[k] - mean) * (v[k] - mean));
+  return sum(p, q) / Math.sqrt(sum(p, p) * sum(q, q)); // NaN where all are equal
 }
 
 function scatterMatrix(host) {

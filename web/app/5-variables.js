@@ -22,21 +22,16 @@ function heatFigure(host, family) {
     groups = groupsInOrder();
     const values = new Float64Array(groups.length * m);
     family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = words ? c.value[rows[rows.length >> 1]] : meanOf(c, rows))));
-    const ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
+    const marked = groups.findIndex((rows) => rows.includes(state.marked)), ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
     return chart({
       width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
       x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
       y: { ...floorAxis(m), label: place },
       color: words ? { type: "threshold", domain: words.slice(1).map((_, k) => k + 0.5), range: PALETTE.slice(0, words.length) }
         : { scheme: "YlGnBu", domain: ends, label: titleUnit({ ...first, title: stem }), legend: true, tickFormat: show },
-      marks: groups.length ? [charts.raster(values, { width: groups.length, height: m, x1: 0, x2: groups.length, y1: 0.5, y2: m + 0.5, imageRendering: "pixelated" }), cursors()] : [],
+      marks: groups.length ? [charts.raster(values, { width: groups.length, height: m, x1: 0, x2: groups.length, y1: 0.5, y2: m + 0.5, imageRendering: "pixelated" }), marked < 0 ? null : charts.ruleX([marked + 0.5], { stroke: INK, strokeWidth: 2.5 })] : [],
     });
   }, ...(words ? [legend(words.map((word, k) => [word, PALETTE[k]]))] : []));
-
-  function cursors() {
-    const at = groups.findIndex((rows) => rows.includes(state.marked));
-    return at < 0 ? null : charts.ruleX([at + 0.5], { stroke: INK, strokeWidth: 2.5 });
-  }
 
   // A rule over the picture, which is not drawn again for it.
   const rule = f.appendChild(element("div", { class: "cursor", hidden: true }));

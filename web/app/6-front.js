@@ -1,16 +1,15 @@
 // The part on the front: what is shown, ranges by hand, all pictures of it, the table.
 
-const PRESETS = { objectives: () => [...results], variables: () => [...variables], all: () => [...results, ...variables] };
-
 function presetChoice() {
-  const inputs = [["objectives", run.schema.limited.length ? "objectives and limited results" : "objectives"], ["variables", "variables"], ["all", "both"]].map(([value, label]) => [value, label, element("input", { type: "radio", name: "axes", value, onchange: () => {
-    state.axes = PRESETS[value]();
-    layoutChanged();
-  } })]);
-  views.layout.push(() => {
-    for (const [value, , input] of inputs) input.checked = PRESETS[value]().length === state.axes.length && PRESETS[value]().every((c) => state.axes.includes(c));
-  });
-  return element("fieldset", {}, element("legend", {}, "Axes"), ...inputs.map(([, label, input]) => element("label", {}, input, ` ${label}`)));
+  const presets = [["objectives", run.schema.limited.length ? "objectives and limited results" : "objectives", results], ["variables", "variables", variables], ["all", "both", [...results, ...variables]]];
+  return element("fieldset", {}, element("legend", {}, "Axes"), ...presets.map(([value, label, axes]) => {
+    const input = element("input", { type: "radio", name: "axes", value, onchange: () => {
+      state.axes = [...axes];
+      layoutChanged();
+    } });
+    views.layout.push(() => (input.checked = axes.length === state.axes.length && axes.every((c) => state.axes.includes(c))));
+    return element("label", {}, input, ` ${label}`);
+  }));
 }
 
 // The bar of the colour, by the library; of choices and types their words.
@@ -98,7 +97,7 @@ function selectionBar() {
     all.disabled = !state.steps.length;
     back.disabled = !past.length && addressOf() === (lastAddress ?? "");
   });
-  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, plainButton("Download selection as CSV", download, { id: "download", class: "plain main" }));
+  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, plainButton("Download selection as CSV", () => saveFile(`${run.name}-selection.csv`, csvOf((i) => state.selected[i])), { id: "download", class: "plain main" }));
 }
 
 function frontPart() {

@@ -6,8 +6,6 @@ const peakText = (d) => `peak ${show(d.pga_g)} g` +
 
 // ---- in a sentence
 
-const storeys = (d) => `${d.gap_m.length} storeys, ${show(charts.sum(d.storey_m))} m`;
-
 function change(value, before) {
   const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
   if (pct === 0 || value === before) return "the same";
@@ -38,7 +36,7 @@ function sentence(d) {
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)} is nearest to the best of every objective.`;
   const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
+  return `A building of ${d.gap_m.length} storeys, ${show(charts.sum(d.storey_m))} m (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with

@@ -112,15 +112,10 @@ const ENERGIES = [["damped_building", "damping of the building", BLUE], ["damped
   ["contacts", "impacts", ORANGE], ["core", "kinetic and strain energy of the core", PURPLE], ["strain", "strain energy of the building", SKY], ["kinetic", "kinetic energy of the building", GREY]];
 
 function energyFigure(host, title, h, top) {
-  const rows = [];
-  for (let i = 0; i < h.t.length; i++) {
-    let sum = 0;
-    for (const [key, , colour] of ENERGIES) {
-      const low = sum;
-      sum += h.energies[key][i] / 1e6;
-      rows.push({ t: h.t[i], low, high: sum, colour });
-    }
-  }
+  const rows = h.t.flatMap((t, i) => {
+    let high = 0;
+    return ENERGIES.map(([key, , colour]) => ({ t, low: high, high: (high += h.energies[key][i] / 1e6), colour }));
+  });
   const input = h.t.map((t, i) => ({ t, v: h.energies.input[i] / 1e6 }));
   figure(host, title, null, (width) => chart({
     width, height: 300, ariaLabel: title, x: { label: "time [s]" }, y: { label: "energy [MJ]", grid: true, domain: [0, top], nice: true },
@@ -217,7 +212,7 @@ function ladderPart(host, d) {
   const l = d.ladder, keys = LADDER;
   if (l.reason) return host.append(element("p", { class: "warn" }, `Not found: ${l.reason}`));
   const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
-  const scene = (key, r) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits(r[name] === null ? null : factor * r[name]))]);
+  const scene = (key) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits((l.by_the_set[key][name] ?? NaN) * factor))]);
   host.append(
     element("p", { class: "note" }, `Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ${keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", ")} %, which is 2 % or the scatter as built. ` +
       "imtet check --ladder repeats it with the steps, and says what each costs." +
@@ -226,7 +221,7 @@ function ladderPart(host, d) {
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
     element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
-    table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], [scene("with_core", l.by_the_set.with_core), scene("rigid", l.by_the_set.rigid), scene("no_core", l.by_the_set.no_core)]));
+    table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], ["with_core", "rigid", "no_core"].map(scene)));
 }
 
 // ---- all of it

@@ -25,10 +25,11 @@ function showDrawer(isOpen) {
   });
 }
 
-let opener; // had the focus before
+let opener; // had the focus before; a table's row may have been made anew meanwhile
 function closeDrawer() {
   showDrawer(false);
-  opener?.focus?.({ preventScroll: true });
+  const again = opener?.isConnected ? [opener] : [...document.querySelectorAll(`main tr[data-id="${drawer.dataset.wanted}"] button`)];
+  again.find((e) => e.getClientRects().length)?.focus({ preventScroll: true });
 }
 
 document.addEventListener("keydown", (event) => {

@@ -55,9 +55,7 @@ let comparePart;
 
 function compare(one) {
   const same = compared.findIndex(({ name }) => name === one.name);
-  if (same >= 0) compared[same] = one;
-  else if (compared.length < 4) compared.push(one);
-  else compared[3] = one;
+  compared[same >= 0 ? same : Math.min(compared.length, 3)] = one;
   showCompared();
   if (compared.length > 1) goTo(comparePart);
 }
@@ -70,19 +68,15 @@ function compareTable() {
   return table("compared", ["differences from the first", ...objectives], compared.map(row));
 }
 
-// A line per design over the height.
-function sideFigure(host, title, label, valuesOf) {
-  const lines = compared.map((one, i) => ({ name: one.name, values: valuesOf(one), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
-  figure(host, title, null, (width) => heightChart(width, 300, label, lines));
-}
-
 function showCompared() {
   comparePart ??= livePart("compare", "Side by side", "provenance");
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
     host.append(element("h2", {}, "Side by side"), compareTable());
     const grid = host.appendChild(element("div", { class: "grid4" }));
-    sideFigure(grid, "Gaps", "gap [mm]", (one) => one.gap_m.map((g) => 1e3 * g));
-    for (const [key, title, label] of PEAKS) sideFigure(grid, title, label, (one) => one.peaks[key]);
+    for (const [key, title, label] of [["gap_mm", "Gaps", "gap [mm]"], ...PEAKS]) {
+      const lines = compared.map((one, i) => ({ name: one.name, values: one.peaks[key] ?? one.gap_m.map((g) => 1e3 * g), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
+      figure(grid, title, null, (width) => heightChart(width, 300, label, lines));
+    }
   });
 }

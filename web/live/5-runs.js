@@ -5,12 +5,11 @@ const RUNS_BESIDE = 3; // this one
 async function runsPart() {
   const runs = await ask("../runs");
   if (runs.length < 2) return;
-  const part = livePart("runs", "Runs of this folder", "provenance"), here = +location.pathname.split("/").at(-2), body = element("div"), chosen = [];
-  const box = (r) => element("input", { type: "checkbox", name: `compare ${r.name}`, "aria-label": `compare ${r.name}`, onchange: () => {
-    if (chosen.includes(r.at)) chosen.splice(chosen.indexOf(r.at), 1);
-    else chosen.push(r.at);
-    for (const other of part.querySelectorAll("input")) other.disabled = !other.checked && chosen.length === RUNS_BESIDE;
-    if (chosen.length) against(body, [...chosen]);
+  const part = livePart("runs", "Runs of this folder", "provenance"), here = +location.pathname.split("/").at(-2), body = element("div");
+  const box = (r) => element("input", { type: "checkbox", name: `compare ${r.name}`, "aria-label": `compare ${r.name}`, value: r.at, onchange: () => {
+    const boxes = [...part.querySelectorAll("input")], chosen = boxes.filter((b) => b.checked).map((b) => b.value);
+    for (const b of boxes) b.disabled = !b.checked && chosen.length === RUNS_BESIDE;
+    if (chosen.length) against(body, chosen);
     else body.replaceChildren();
   } });
   const row = (r) => line([r.at === here || r.state === "unreadable" ? "" : box(r), element("a", { href: `../${r.at}/` }, r.name), r.state,
