@@ -74,9 +74,6 @@ function atBound(c, v) {
 
 // ---- words and numbers
 
-// A share that is no more than a negative nothing: -0.0066 %.
-const positive = (c, v) => (c.unit === "%" && v < 0 && v > -0.05 ? 0 : v);
-
 // A tick of a column's axis.
 const tickText = (c) => (v) => (c.words ? (c.words[v] ?? "") : show(v));
 
@@ -135,9 +132,9 @@ takeTheme(ownTheme);
 const SCENES = {
   with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
   no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [8, 4] },
-  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3] },
-  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4] },
-  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", path: charts.symbolStar, dash: [2, 4] },
+  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3], note: "Rigidly connected: floors and core move together without a gap" },
+  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4], note: "Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof" },
+  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", path: charts.symbolStar, dash: [2, 4], note: "Viscous links: a dashpot between every floor and the core" },
 };
 
 // Beside the designs in every picture of the front: a value per column, in the units of the eye, NaN where there is none.

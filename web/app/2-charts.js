@@ -72,11 +72,10 @@ function folded(host, title, isOpen = false) {
 }
 // Everything is drawn again in its colours.
 function showTheme(name) {
-  const isOther = name !== root.dataset.theme;
+  if (name === root.dataset.theme) return drawAll();
   takeTheme(name);
-  if (isOther) layoutChanged();
-  if (isOther) drawEach(drawings);
-  else drawAll();
+  layoutChanged();
+  drawEach(drawings);
 }
 
 const openedForPaper = [];

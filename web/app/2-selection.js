@@ -58,9 +58,7 @@ function within(ranges, from, out) {
   return charts.sum(out);
 }
 
-function findSelected() {
-  state.nSelected = within(state.ranges, state.kept, state.selected);
-}
+const findSelected = () => (state.nSelected = within(state.ranges, state.kept, state.selected));
 
 function findKept() {
   const { kept } = state, hit = new Uint8Array(n);

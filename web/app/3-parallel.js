@@ -5,8 +5,6 @@ const SEGMENTS_PER_FRAME = 4000;
 const INVERT_PX = 45, HIDE_PX = -32; // of a dragged title
 const NEAR_PX = 8; // of a line under the pointer
 
-const isLow = (c) => (c.sense < 0) !== state.inverted.has(c); // the axis begins with its largest value below
-
 const axisMenu = document.body.appendChild(element("div", { id: "axis-menu", role: "menu", hidden: true }));
 
 function axisActions(c) {
@@ -57,7 +55,8 @@ function parallelCoordinates(host) {
   const margin = { top: 58, right: 56, bottom: 14, left: 56 }, height = 400;
   let width = 0, axes = [], places, pens, isBackDrawn;
 
-  const axisOf = (c) => ({ c, y: scaleOf(c, ...(isLow(c) ? [margin.top, height - margin.bottom] : [height - margin.bottom, margin.top]), 0.02) });
+  const ends = [height - margin.bottom, margin.top]; // the better side is down
+  const axisOf = (c) => ({ c, y: scaleOf(c, ...((c.sense < 0) !== state.inverted.has(c) ? [...ends].reverse() : ends), 0.02) });
 
   // Heights of every design on every axis, so that a brush only has to draw.
   function placeLines() {
@@ -161,20 +160,14 @@ function parallelCoordinates(host) {
     });
   }
 
-  // In as many lines as its place needs, the unit below.
-  function label(g, c, room) {
-    const rows = wrapped(c.title, Math.max(4, Math.min(room, 2 * margin.left) / 7.5), 3);
+  function headAxis(group, axis, room) {
+    const { c } = axis, wide = Math.min(room, 2 * margin.left), rows = wrapped(c.title, Math.max(4, wide / 7.5), 3); // in as many lines as its place needs
+    const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
+      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu`);
+    g.append("rect").attr("x", -wide / 2 + 2).attr("y", 0).attr("width", wide - 4).attr("height", margin.top - 2);
     const text = g.append("text").attr("class", "title").attr("text-anchor", "middle");
     rows.forEach((row, k) => text.append("tspan").attr("x", 0).attr("y", 39 - 14 * (rows.length - 1 - k)).text(row));
     if (c.unit) g.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("y", 53).text(c.unit);
-  }
-
-  function headAxis(group, axis, room) {
-    const { c } = axis;
-    const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
-      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu`);
-    g.append("rect").attr("x", -Math.min(room, 2 * margin.left) / 2 + 2).attr("y", 0).attr("width", Math.min(room, 2 * margin.left) - 4).attr("height", margin.top - 2);
-    label(g, c, room);
     g.append("title").text(`${c.what}. Drag sideways to move, down to turn over, up to hide; click for more.`);
     g.call(dragging(axis));
     g.on("keydown", (event) => {

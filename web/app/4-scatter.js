@@ -18,14 +18,12 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     }
   }
 
-  const dotSize = (many) => (many > 4000 ? 1.5 : many > 800 ? 2.2 : 3.2) * (panels.length === 1 ? 1.5 : 1);
-
   // Dots go straight into the pixels: that is what keeps a quarter of a million of them at hand while brushing.
   function putDots(pen, many, rows, colourOf) {
     const { width: w, height: h } = pen.canvas, ratio = w / width;
     if (!image || image.width !== w || image.height !== h) image = pen.createImageData(w, h);
     const pixels = new Uint32Array(image.data.buffer).fill(0);
-    const s = Math.max(1, Math.round(dotSize(many) * ratio)), half = s / 2;
+    const size = (many > 4000 ? 1.5 : many > 800 ? 2.2 : 3.2) * (panels.length === 1 ? 1.5 : 1), s = Math.max(1, Math.round(size * ratio)), half = s / 2;
     for (const i of rows) {
       const colour = colourOf(i);
       for (const { dots } of panels) {

@@ -40,7 +40,6 @@ function overlayLegend() {
 
 // Axes by a tick and ranges by two numbers, for those who would rather type than drag.
 function rangeInputs() {
-  const box = element("div", { class: "ranges" });
   const inputs = columns.map((c) => {
     const axis = element("input", { type: "checkbox", "aria-label": `${titleUnit(c)} is an axis`, onchange: () => {
       if (axis.checked) state.axes.push(c);
@@ -66,7 +65,6 @@ function rangeInputs() {
     setRanges([[c, range[0] === -Infinity && range[1] === Infinity ? null : range]]);
   }
 
-  box.append(...inputs.map(({ row }) => row));
   views.layout.push(() => {
     for (const { c, axis, low, high } of inputs) {
       axis.checked = state.axes.includes(c);
@@ -80,7 +78,7 @@ function rangeInputs() {
       if (document.activeElement !== high) high.value = range && range[1] < Infinity ? tickText(c)(c.words ? Math.floor(range[1]) : range[1]) : "";
     }
   });
-  return element("details", { id: "ranges" }, element("summary", {}, "Axes and ranges as numbers"), box);
+  return element("details", { id: "ranges" }, element("summary", {}, "Axes and ranges as numbers"), element("div", { class: "ranges" }, ...inputs.map(({ row }) => row)));
 }
 
 function selectionBar() {
@@ -102,13 +100,12 @@ function selectionBar() {
 
 function frontPart() {
   const host = document.getElementById("front");
-  const colour = columnSelect("colour", "Colour", "colour");
   host.append(
     element("p", { class: "note" }, "Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
       "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design." +
       (run.front > n ? ` Here are ${count(n)} of ${count(run.front)} designs of the front: those with the lowest and the highest value of every objective and variable, ` +
         "the knee, the chosen design and polished ones, and the others evenly in the order of their evaluation; imtet export has all." : "")),
-    selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), colour, colourBar()), overlayLegend());
+    selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), columnSelect("colour", "Colour", "colour"), colourBar()), overlayLegend());
   parallelCoordinates(host.appendChild(element("figure", { class: "scroll" })));
   host.append(rangeInputs());
   const grid = host.appendChild(element("div", { class: "grid2" }));
@@ -118,8 +115,8 @@ function frontPart() {
   }
   const maps = grid.appendChild(element("div"));
   for (const family of families) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
-  if (objectives.length > 1) weightsPart(folded(host, "Choose by weights or a reference point"));
   if (objectives.length > 1) {
+    weightsPart(folded(host, "Choose by weights or a reference point"));
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
     matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));

@@ -45,7 +45,8 @@ const VERDICT = { "-1": ["worse", "\u2716"], 0: ["same", "="], 1: ["better", "\u
 
 // The value, and behind it in small what is not known of it and the unit.
 function shownValue(c, value, error) {
-  const [known, rest] = value === null ? ["failed"] : figureText(positive(c, value * c.factor), error === null ? NaN : error * c.factor).split(/(?= \u00b1)/);
+  const v = value * c.factor, isNothing = c.unit === "%" && v < 0 && v > -0.05; // a share of -0.0066 %
+  const [known, rest] = value === null ? ["failed"] : figureText(isNothing ? 0 : v, error === null ? NaN : error * c.factor).split(/(?= \u00b1)/);
   return [known, " ", element("small", {}, `${rest ? rest.trim() + " " : ""}${c.unit}`)];
 }
 

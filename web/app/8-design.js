@@ -1,11 +1,5 @@
 // The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
 
-const BASELINE_NOTE = {
-  rigid: () => "Rigidly connected: floors and core move together without a gap.",
-  tmd: (device) => `Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof (${device}).`,
-  links: (device) => `Viscous links: a dashpot between every floor and the core (${device}).`,
-};
-
 // ---- heights
 
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
@@ -28,12 +22,6 @@ function gapFigure(host, d) {
     charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
     charts.dot(rows.filter((r) => r.bound), { x: "v", y: "place", symbol: "diamond2", fill: VERMILLION, stroke: PAPER, r: 5, title: "title" }),
   ]), legend([["closes", BLUE], ["never closes", "#c5d6e2"], ["at a bound of the search", VERMILLION, "\u25c6"]]));
-}
-
-function thicknessFigure(host, d) {
-  const values = d.thickness_m.map((t) => 1e3 * t);
-  figure(host, "Thickness of the core", `From ${show(values[0])} mm in the first storey to ${show(values[values.length - 1])} mm in the last.`,
-    (width) => heightChart(width, 380, "thickness [mm]", [{ name: "thickness", values, colour: BLUE, symbol: "circle", thick: 2.5 }]));
 }
 
 // The largest force on every floor by side, and what the storeys of the core bear.
@@ -116,13 +104,12 @@ function energyFigure(host, title, h, top) {
     let high = 0;
     return ENERGIES.map(([key, , colour]) => ({ t, low: high, high: (high += h.energies[key][i] / 1e6), colour }));
   });
-  const input = h.t.map((t, i) => ({ t, v: h.energies.input[i] / 1e6 }));
   figure(host, title, null, (width) => chart({
     width, height: 300, ariaLabel: title, x: { label: "time [s]" }, y: { label: "energy [MJ]", grid: true, domain: [0, top], nice: true },
     color: { type: "identity" },
     marks: [
       charts.areaY(rows, { x: "t", y1: "low", y2: "high", z: "colour", fill: "colour" }),
-      charts.lineY(input, { x: "t", y: "v", stroke: INK, strokeWidth: 1.4 }),
+      charts.lineY(h.energies.input, { x: h.t, y: (v) => v / 1e6, stroke: INK, strokeWidth: 1.4 }),
       charts.ruleY([0]),
     ],
   }));
@@ -131,35 +118,31 @@ function energyFigure(host, title, h, top) {
 const historiesOf = (d) => [["with core", d.history_with_core], ["without core", d.history_no_core]].filter(([, h]) => h);
 
 function energyPair(host, d) {
-  const all = historiesOf(d);
-  const top = charts.max(all, ([, h]) => charts.max(h.energies.input)) / 1e6;
+  const all = historiesOf(d), top = charts.max(all, ([, h]) => charts.max(h.energies.input)) / 1e6;
   host.before(legend([...ENERGIES.map(([key, label, colour]) => [key === "contacts" && d.with_core.plastic_m ? "impacts, storeys that yield" : label, colour]), ["input energy", INK]]));
   for (const [scene, h] of all) energyFigure(host, `Energies, ${scene}`, h, top);
 }
 
 function displacementPlot(h, limit, width) {
-  const rows = h.t.map((t, i) => ({ t, u: h.u[i] }));
   return chart({
     width, height: 140, marginBottom: 8, marginRight: 20, ariaLabel: "Displacement over time", x: { axis: null, domain: [h.t[0], h.t[h.t.length - 1]] },
     y: { label: "displacement [m]", domain: [-limit, limit], grid: true, ticks: 4 },
-    marks: [charts.lineY(rows, { x: "t", y: "u", stroke: INK, strokeWidth: 0.9 })],
+    marks: [charts.lineY(h.u, { x: h.t, stroke: INK, strokeWidth: 0.9 })],
   });
 }
-
-const FREQUENCY_TICKS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 
 // Rows are equidistant in the logarithm of the frequency.
 function spectrumPlot(h, top, hz, width) {
   const f = h.spectrum_f, t = h.spectrum_t;
-  const low = Math.log10(f[0]), high = Math.log10(f[f.length - 1]);
+  const low = Math.log10(f[0]), high = Math.log10(f[f.length - 1]), inside = (list) => list.map(Math.log10).filter((v) => v > low && v < high);
   return chart({
     width, height: 270, marginRight: 20, ariaLabel: "Amplitude by frequency and time",
     x: { label: "time [s]", domain: [t[0], t[t.length - 1]] },
-    y: { label: "frequency [Hz]", domain: [low, high], ticks: FREQUENCY_TICKS.map(Math.log10).filter((v) => v > low && v < high), tickFormat: (v) => show(10 ** v) },
+    y: { label: "frequency [Hz]", domain: [low, high], ticks: inside([0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500]), tickFormat: (v) => show(10 ** v) },
     color: { scheme: "viridis", type: "sqrt", domain: [0, top], legend: true, label: "amplitude [m]", ticks: 4, tickFormat: show },
     marks: [
       charts.raster(h.spectrum, { width: t.length, height: f.length, x1: t[0], x2: t[t.length - 1], y1: low, y2: high, imageRendering: "auto" }),
-      charts.ruleY(hz.map(Math.log10).filter((v) => v > low && v < high), { stroke: "white", strokeOpacity: 0.75, strokeDasharray: "4 4" }),
+      charts.ruleY(inside(hz), { stroke: "white", strokeOpacity: 0.75, strokeDasharray: "4 4" }),
     ],
   });
 }
@@ -229,12 +212,14 @@ function ladderPart(host, d) {
 // Of any design: `d` as report_json.h describes it, into `host`; isBeside: its gaps are shown already.
 function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
-  const notes = d.baselines.filter((b) => b.objectives && BASELINE_NOTE[b.key]).map((b) => BASELINE_NOTE[b.key](b.device)).join(" ");
+  const notes = d.baselines.filter((b) => b.objectives && SCENES[b.key].note).map((b) => `${SCENES[b.key].note}${b.device && ` (${b.device})`}.`).join(" ");
   if (r.objectives) host.append(element("p", {}, `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
   host.append(loadTable(d), element("p", { class: "note" }, notes));
   const shape = host.appendChild(element("div", { class: "grid21" }));
   if (!isBeside) gapFigure(shape, d);
-  thicknessFigure(shape, d);
+  const values = d.thickness_m.map((t) => 1e3 * t);
+  figure(shape, "Thickness of the core", `From ${show(values[0])} mm in the first storey to ${show(values[values.length - 1])} mm in the last.`,
+    (width) => heightChart(width, 380, "thickness [mm]", [{ name: "thickness", values, colour: BLUE, symbol: "circle", thick: 2.5 }]));
   if (d.forces) forceFigures(host.appendChild(element("div", { class: "grid2" })), d);
   if (scenes.length) {
     host.append(sceneLegend(scenes.slice(0, 3).map(([key]) => key)));
@@ -259,7 +244,7 @@ function detailParts(host, d, isBeside = false) {
 
 // As found, and as `imtet simplify` made it for the site: what is 10 m wide is no stop.
 function pairTable(pair) {
-  const row = (c, values) => line([titleUnit(c), ...values.map((v) => (c.name.startsWith("gap") && v >= 10 ? "no stop" : digits(v * c.factor)))]);
+  const row = (c, values) => line([titleUnit(c), ...values.map((v) => (c.name.startsWith("gap") && v >= NO_STOP_M ? "no stop" : digits(v * c.factor)))]);
   return table("pair", ["", `as found, design ${pair[0].id}`, `to be built, design ${pair[1].id}`],
     [...objectives.map((c, k) => row(c, pair.map((d) => d.f[k]))), ...variables.map((c, j) => row(c, pair.map((d) => d.x[j])))]);
 }
