@@ -565,7 +565,7 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
         "search.polish=0 --set sim.duration_s=20 --set design.variables=gaps,thickness,links --set "
         "design.devices=link,none --set design.device_zones=2 --set design.gap_zones=1 --set design.link_zones=1 --set "
         "search.objectives=j1_m,cost --set 'design.prices=link=1 core_t=1' --out @/links");
-    assert_non_null(strstr(said, "against no core: with links better in j1_m; worse in cost\n"));
+    assert_non_null(strstr(said, "against no core: with links better in J1 displacement; worse in cost\n"));
     assert_null(strstr(said, "never_closing"));
     expect(0, "", "report @/links --dossier @/links.html");
     char *page = read_in_place("links.html");

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
+#include "report/words.h"
 #include "settings/settings.h"
 #include "store/output.h"
 #include "study/progress.h"
@@ -597,7 +598,7 @@ static void print_better(FILE *out, const char *verb, const Schema *schema, doub
         const double other = b->value[id];
         if ((other != 0 || (c->sense > 0 && id != MEASURE_MCORE)) &&
             sign * c->sense * (other - natural[k]) > fmax(SHARE * fabs(other), error[k]))
-            fprintf(out, "%s%s", n++ ? ", " : verb, c->name);
+            fprintf(out, "%s%s", n++ ? ", " : verb, words_of_objective(schema, k).title);
     }
     if (n == 0)
         fprintf(out, "%snothing", verb);
