@@ -243,7 +243,7 @@ class Search(_Handle):
         """X (m, variables), m <= n: designs nobody has asked for. m = 0 where the search is done, or waits for answers:
         it goes on when all of a generation are told."""
         if not isinstance(n, (int, np.integer)) or n < 0:
-            raise ValueError(f"n is {n!r}, wanted a whole number of designs")
+            raise ValueError(f"n is {n!r}, wanted an int: how many designs")
         n = min(int(n), 1 << 20)
         X, ids, found = np.empty((n, self.variables)), (ctypes.c_long * max(n, 1))(), _size()
         _call("imtet_search_ask", self._search, n, ids, _pointer(X), ctypes.byref(found))

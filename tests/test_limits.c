@@ -106,9 +106,9 @@ TEST(limits_that_contradict_each_other_are_refused_before_anything_is_simulated)
         "check @/both.ini --set 'search.limits=f1>=7'");
     expect(65, "search.limits: edcs_pct<=20 excludes what is better: of edcs_pct more is better; write >=",
            "check configs/quick.ini --set 'search.limits=edcs_pct<=20'");
-    expect(65, "p(j3_g>1)<=2: is a share, below 1, no per cent; write 0.02 for 2 %",
+    expect(65, "p(j3_g>1)<=2: this is a share of 1, no per cent; write 0.02 for 2 %",
            "check configs/quick.ini --set 'search.limits=p(j3_g>1)<=2'");
-    expect(65, "search.limits: drift_ratio<=1.5: is a share, below 1, no per cent; write 0.015 for 1.5 %",
+    expect(65, "search.limits: drift_ratio<=1.5: this is a share of 1, no per cent; write 0.015 for 1.5 %",
            "optimize configs/quick.ini --out @/share --set 'search.limits=drift_ratio<=1.5'");
     expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");
 }

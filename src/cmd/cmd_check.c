@@ -596,22 +596,20 @@ const Command CMD_CHECK = {
     .summary = "what a configuration describes, what is wrong with it and what is implausible",
     .example = "imtet check configs/quick.ini",
     .details =
-        "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion, base\n"
-        "shear, search box and expected time of the study by the clock (five designs of the box are simulated). Every "
-        "fault is "
-        "named on standard\n"
-        "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
-        "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"
-        "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
-        "samples. An external worker is started and asked one design, twice where it is quick: its answer, its time\n"
-        "and that of the study are printed. --json: the same as an object, faults and warnings as arrays.\n"
-        "--ladder: a model with P-delta, ground, yielding storeys, flexible contacts and more is simulated, and again\n"
-        "without each of them: what that changes in J1, drift and J3, what it costs, and whether it is needed, by "
-        "more\n"
-        "than 2 % or the scatter as built; then the fewest settings that are enough (docs/ladder.md).\n"
-        "--self: five simulations of the built-in buildings and a search on a textbook problem are compared with "
-        "stored\n"
-        "answers, within tolerances that hold for every instruction set.",
+        "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion,\n"
+        "base shear, search box and expected time of the study by the clock (five designs of the box are\n"
+        "simulated). Every fault is named on standard error, not only the first (exit status 65), and so is what is\n"
+        "implausible (a warning; exit status 0): a first period outside 0.03 to 0.3 s per storey, floors outside\n"
+        "1e3 to 1e7 kg, floors from the top down, damping above 20 %, a peak above 3 g, gaps above a metre, a core\n"
+        "whose first mode is beyond the motion's samples. An external worker is started and asked one design, twice\n"
+        "where it is quick: its answer, its time and that of the study are printed.\n"
+        "--json: the same as an object, faults and warnings as arrays.\n"
+        "--ladder: a model with P-delta, ground, yielding storeys, flexible contacts and more is simulated, and\n"
+        "again without each of them: what that changes in J1, drift and J3, what it costs, and whether it is\n"
+        "needed, by more than 2 % or the scatter as built; then the fewest settings that are enough\n"
+        "(docs/ladder.md).\n"
+        "--self: five simulations of the built-in buildings and a search on a textbook problem are compared with\n"
+        "stored answers, within tolerances that hold for every instruction set.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -50,13 +50,14 @@ static Status begin(const Args *args, Err *err)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
     if (access(path, F_OK) == 0)
         return misused(err, "%s: is there already; name another folder", path);
-    char *folder = realpath(args->operand, NULL);
-    if (folder) {
-        settings_make_relative(&s, folder);
-        if (!args_gives(args, "run.out"))
-            snprintf(s.run.out, sizeof s.run.out, "results%.300s", strrchr(folder, '/'));
-    }
+    char *folder = realpath(args->operand, NULL), out[PATH_MAX];
+    if (!folder)
+        return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
+    settings_make_relative(&s, folder);
+    snprintf(out, sizeof out, "results%s", strrchr(folder, '/'));
     free(folder);
+    if (!args_gives(args, "run.out"))
+        TRY(settings_put(&s, "run.out", out, err));
     TRY(output_open(&o, path, err));
     fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
     settings_write(&s, o.stream, SETTINGS_BASIC);

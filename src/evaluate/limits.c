@@ -39,6 +39,13 @@ static const Limit *find(const Limits *limits, size_t n, size_t result, double s
     return NULL;
 }
 
+/* A result of a tower that is below 1. */
+static int is_share(const Schema *schema, size_t result)
+{
+    return schema->order.n_obj > 0 && (schema->order.of[result] >= MEASURES_LISTED ||
+                                       strcmp(schema_objective(schema, result)->name, "drift_ratio") == 0);
+}
+
 /* One limit on a side, that of what is better only beside the other, and some number between both. */
 static Status check(const Limits *limits, const Schema *schema, Err *err)
 {
@@ -53,10 +60,9 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
                             other->bound);
         if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
             return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
-        const int is_share = schema->order.of[l->result] >= MEASURES_LISTED || strstr(c->name, "drift_ratio");
-        if (l->sign > 0 && l->bound >= 1 && schema->order.n_obj > 0 && is_share)
-            return bad_data(err, "search.limits: %s<=%g: is a share, below 1, no per cent; write %g for %g %%", c->name,
-                            l->bound, 0.01 * l->bound, l->bound);
+        if (l->sign > 0 && l->bound >= 1 && is_share(schema, l->result))
+            return bad_data(err, "search.limits: %s<=%g: this is a share of 1, no per cent; write %g for %g %%",
+                            c->name, l->bound, 0.01 * l->bound, l->bound);
         if (!other && l->sign * c->sense < 0)
             return bad_data(
                 err,

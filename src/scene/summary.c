@@ -28,10 +28,11 @@ static void summarise_mass(SceneSummary *s, const Building *b)
     }
 }
 
-/* The first mode falls from row to row. Of storeys it rises in any order: there each is stiffer than the one below. */
-static int is_top_first(const Building *b)
+/* The first mode falls from row to row. Of storeys it rises in any order: there each is stiffer than the one below, and
+ * the last floor heavier than the first. */
+static int is_top_first(const SceneSummary *s, const Building *b)
 {
-    int falls = b->n > 1, stiffens = falls;
+    int falls = b->n > 1, stiffens = s->lightest < s->heaviest;
     for (int j = 1; j < b->n; j++) {
         const double *row = b->K + (j - 1) * b->n, below = j > 1 ? -row[j - 2] : row[0] + row[1];
         falls &= fabs(b->phi[j * b->n]) < fabs(b->phi[(j - 1) * b->n]);
@@ -88,9 +89,9 @@ static void summarise_building(SceneSummary *s, const Building *b)
                         .note = b->note,
                         .lowest_m = HUGE_VAL,
                         .heights_assumed = b->heights_assumed,
-                        .top_first = is_top_first(b),
                         .hardening_raised = b->hardening_raised ? b->hardening : 0};
     summarise_mass(s, b);
+    s->top_first = is_top_first(s, b);
     for (int j = 0; j < b->n; j++) {
         s->height_m += b->storey_m[j];
         s->lowest_m = fmin(s->lowest_m, b->storey_m[j]);
@@ -165,8 +166,8 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
             s->hardening_raised);
     if (s->top_first)
         say(w, "building.model",
-            "the first mode is largest at the first row, or each storey is stiffer than the one below; floors are "
-            "wanted bottom floor first");
+            "looks like floors from the top down (the first mode falls from row to row, or the storeys become stiffer "
+            "and the floors heavier); they are wanted bottom floor first");
     for (int i = 0; i < 3; i++)
         if (s->damping[i] > DAMPING_MAX) {
             say(w, "building.damping", "mode %d has %g %% of critical; steel frames have 1 to 5 %%", i + 1,

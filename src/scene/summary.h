@@ -22,7 +22,7 @@ typedef struct {
     double hardening_raised;    /* [-] of storeys that yield, where building.hardening was too little; 0: it was not */
     double lowest_m, highest_m; /* storeys */
     int heights_assumed;        /* of the built-in tower (scene/building.h) */
-    int top_first;              /* the first mode falls from row to row, or the stiffness of the storeys rises */
+    int top_first;              /* its floors look like being given from the top down */
     double base_shear;          /* [-] share of the weight */
     double core_mass_kg;
     double core_hz, timoshenko_hz, euler_bernoulli_hz; /* the core's first mode by core.theory and by either */

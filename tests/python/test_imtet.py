@@ -89,7 +89,7 @@ class Searching(unittest.TestCase):
 
     def test_designs_are_asked_for_in_whole_numbers(self):
         for n in (1.5, -1, "2", math.nan):
-            with self.assertRaisesRegex(ValueError, f"n is {n!r}, wanted a whole number of designs"):
+            with self.assertRaisesRegex(ValueError, f"n is {n!r}, wanted an int: how many designs"):
                 search().ask(n)
         self.assertEqual(len(search().ask(np.int32(2))), 2)
 
