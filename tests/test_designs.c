@@ -1,4 +1,6 @@
 /* Designs by name: every command takes the same words, and every word leads to the same numbers. */
+#include <sys/stat.h>
+
 #include "runs.h"
 
 #define SHORT    SIX_FLOORS "--set sim.duration_s=8 --set sim.accuracy=coarse "
@@ -43,6 +45,16 @@ static double j1_of(const char *word)
     const double j1 = number(o, "j1_m");
     json_decref(o);
     return j1;
+}
+
+TEST(a_front_of_a_taller_building_is_refused)
+{
+    char *folder = in_place("two");
+    mkdir(folder, 0777);
+    free(folder);
+    write_in_place("two/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.5,300,4e5\n3.5,300,4e5\n");
+    expect(65, "/run/front.csv: column gap_03_m is of another building: a design of 2 floors has none",
+           "simulate configs/quick.ini --set building.model=@/two --set core.width_m=2 --design @/run/front.csv");
 }
 
 TEST(a_design_is_the_same_by_every_name)

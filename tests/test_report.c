@@ -293,7 +293,7 @@ TEST(notes_that_are_damaged_or_of_other_designs_are_named_by_the_report)
     write_in_place("dtlz/notes.json", "{\"1\": \"good\",\n 2}");
     expect(65, "dtlz/notes.json:2: is no object of notes", "report @/dtlz --out @/never.html");
     write_in_place("dtlz/notes.json", "{\"1\": \"good\", \"4711\": \"of another run\"}");
-    expect(65, "dtlz/notes.json: the run has no design 4711", "report @/dtlz --out @/never.html");
+    expect(65, "dtlz/notes.json: the run has no design '4711'", "report @/dtlz --out @/never.html");
     write_in_place("dtlz/notes.json", "{\"1\": \"good\"}");
     expect(0, "", "report @/dtlz --out @/noted.html");
 }

@@ -10,11 +10,24 @@
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
-/* Of a table of a run the columns of variables alone, in their order. */
+static int is_variable(const DesignSpace *space, const char *column)
+{
+    char name[TABLE_NAME_MAX] = "";
+    for (int v = 0; v < space->n_var && strcmp(name, column) != 0; v++)
+        design_variable_name(space, v, name);
+    return strcmp(name, column) == 0;
+}
+
+/* Of a table of a run the columns of variables alone, in their order; a gap that is none of them is no result. */
 static Status drop_results(Table *t, const char *path, const DesignSpace *space, Err *err)
 {
     size_t kept = 0;
     char name[TABLE_NAME_MAX];
+    for (size_t c = 0; c < t->n_cols; c++)
+        if (strncmp(t->names[c], "gap", 3) == 0 && !is_variable(space, t->names[c]))
+            return bad_data(err,
+                            "%s: column %s is of another building: a design of %d floors has none (design.variables)",
+                            path, t->names[c], space->n_floors);
     for (int v = 0; v < space->n_var; v++) {
         design_variable_name(space, v, name);
         const int from = table_column(t, name);

@@ -42,10 +42,12 @@ Status notes_of_run(const Run *run, json_t **notes, Err *err)
     *notes = *notes ? *notes : json_object();
     json_object_foreach_safe(*notes, next, key, text)
     {
-        char *end;
-        if (run_find(run, strtol(key, &end, 10)) == run->table.n || *end) {
-            status =
-                bad_data(err, "%s/notes.json: the run has no design %s: mend the number of its note", run->folder, key);
+        const long id = strtol(key, NULL, 10);
+        char number[24];
+        snprintf(number, sizeof number, "%ld", id);
+        if (strcmp(number, key) != 0 || run_find(run, id) == run->table.n) {
+            status = bad_data(err, "%s/notes.json: the run has no design '%s': mend the number of its note",
+                              run->folder, key);
             json_object_del(*notes, key);
         }
     }
