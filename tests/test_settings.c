@@ -496,7 +496,7 @@ TEST(a_missing_file_is_told_from_a_bad_one)
     assert_int_equal(read_file("tests/bad/config/not_there.ini", &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "not_there.ini"));
     assert_int_equal(read_file("tests", &err), STATUS_MISSING);
-    assert_string_equal(err.text, "tests: is a folder without a settings file (*.ini)");
+    assert_string_equal(err.text, "tests: is a folder without a run (run.sqlite) or a settings file (*.ini)");
     assert_int_equal(read_file("tests/bad/config", &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "is a folder; did you mean tests/bad/config/"));
 }

@@ -1,6 +1,5 @@
 #include <errno.h>
 #include <sys/ioctl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cmd/commands.h"
@@ -244,9 +243,6 @@ static void tell_how_to_resume(const StudySummary *summary)
 static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err)
 {
     Run run;
-    if (!run_is_there(args->operand))
-        return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could be resumed",
-                    args->operand);
     if (args_has(args, "--new") || args_gives(args, "run.out")) {
         TRY(run_read(&run, args->operand, err));
         *s = *run.settings;
@@ -264,8 +260,7 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
 /* The operand is a settings file, or the folder of a run. */
 static Status take_settings(const Args *args, Settings *s, RunStore **store, Err *err)
 {
-    struct stat there;
-    if (stat(args->operand, &there) == 0 && S_ISDIR(there.st_mode))
+    if (run_is_there(args->operand))
         return take_run(args, s, store, err);
     TRY(args_settings(args, s, NULL, NULL, err));
     return args_gives(args, "run.out") ? STATUS_OK : output_place_check(s->run.out, args->operand, err);

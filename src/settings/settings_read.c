@@ -255,7 +255,8 @@ static Status name_those_in(const char *folder, Err *err)
     glob_t g = {0};
     snprintf(pattern, sizeof pattern, "%s/*.ini", folder);
     const size_t n = glob(pattern, 0, NULL, &g) == 0 ? g.gl_pathc : 0;
-    const Status status = n == 0 ? fail(err, STATUS_MISSING, "%s: is a folder without a settings file (*.ini)", folder)
+    const Status status = n == 0 ? fail(err, STATUS_MISSING,
+                                        "%s: is a folder without a run (run.sqlite) or a settings file (*.ini)", folder)
                                  : fail(err, STATUS_MISSING, "%s: is a folder; did you mean %s%s%s?", folder,
                                         g.gl_pathv[0], n > 1 ? " or " : "", n > 1 ? g.gl_pathv[1] : "");
     globfree(&g);
