@@ -144,17 +144,20 @@ TEST(what_the_counts_do_not_say_is_not_known)
 {
     const double x[] = {1, 2, 4};
     const size_t n_at[] = {5, 5, 5};
-    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){0, 0, 0}).median));
-    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){5, 5, 5}).median));
-    const Fragility parted = fragility_fit(3, x, n_at, (size_t[]){0, 5, 5});
-    assert_close(parted.median, sqrt(2), 1e-12);
-    assert_true(isnan(parted.beta) && isnan(parted.sd_ln_median));
-    const Fragility one = fragility_fit(3, x, n_at, (size_t[]){0, 2, 5}); /* as likely as can be with beta 0 */
-    assert_close(one.median, 2, 1e-12);
-    assert_true(isnan(one.beta));
-    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){4, 5, 5}).median)); /* it is below the first */
-    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){0, 0, 2}).median)); /* or above the last */
-    assert_true(isnan(fragility_fit(3, x, n_at, (size_t[]){4, 3, 1}).beta));
+    static const struct {
+        size_t exceeded[3];
+        double from, to;
+    } PARTED[] = {{{0, 0, 0}, 4, INFINITY}, {{5, 5, 5}, 0, 1},        {{0, 5, 5}, 1, 2}, {{0, 2, 5}, 1, 4},
+                  {{0, 4, 5}, 1, 4},        {{0, 0, 2}, 2, INFINITY}, {{4, 5, 5}, 0, 2}};
+    const double hazard[] = {0.5, 0.1, 8, 0.001};
+    for (size_t i = 0; i < sizeof PARTED / sizeof PARTED[0]; i++) {
+        const Fragility parted = fragility_fit(3, x, n_at, PARTED[i].exceeded);
+        assert_true(isnan(parted.median) && isnan(parted.beta) && isnan(parted.sd_ln_median));
+        assert_true(parted.between[0] == PARTED[i].from && parted.between[1] == PARTED[i].to);
+        assert_true(isnan(fragility_at(&parted, 2)) && isnan(fragility_rate(&parted, 2, hazard)));
+    }
+    const Fragility falling = fragility_fit(3, x, n_at, (size_t[]){4, 3, 1});
+    assert_true(isnan(falling.median) && isnan(falling.beta) && isnan(falling.between[0]));
     const Fragility f = fragility_fit(3, x, n_at, (size_t[]){1, 2, 4});
     assert_less(0, f.beta);
     assert_close(fragility_at(&f, f.median), 0.5, 1e-12);
@@ -164,15 +167,13 @@ TEST(what_the_counts_do_not_say_is_not_known)
 TEST(the_yearly_rate_is_that_of_the_closed_form)
 {
     const double k0 = 1e-4, k = 2.5;
-    const Fragility f = {0.6, 0.4, 0, 0};
+    const Fragility f = {.median = 0.6, .beta = 0.4};
     double hazard[60];
     for (int i = 0; i < 30; i++) {
         hazard[2 * i] = 0.01 * pow(1000, i / 29.0);
         hazard[2 * i + 1] = k0 * pow(hazard[2 * i], -k);
     }
     assert_close(fragility_rate(&f, 30, hazard), k0 * pow(0.6, -k) * exp(k * k * 0.16 / 2), 1e-4);
-    const Fragility step = {0.6, NAN, NAN, NAN};
-    assert_close(fragility_rate(&step, 30, hazard), k0 * pow(0.6, -k), 2e-2);
 }
 
 /* -- consequences -------------------------------------------------------------------------------------------------- */
@@ -301,6 +302,46 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
     free(rows);
     if (system("command -v gnuplot >/dev/null") == 0)
         expect_key_above_the_panels();
+}
+
+#define ON_TWO "evaluate @/tower.ini --design @/chance:knee --records @/two_list.txt "
+
+/* So begins the row of the building alone, whose rate is not known. */
+static void expect_alone(const char *words, const char *range, const char *limit)
+{
+    char command[300];
+    snprintf(command, sizeof command, ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
+    char *said = output_of(command);
+    const char *row = strstr(said, "no core");
+    char *end = row ? strchr(row, '\n') : NULL;
+    assert_non_null(end);
+    *end = 0;
+    row += strlen("no core");
+    row += strspn(row, " ");
+    if (strncmp(row, words, strlen(words)) != 0)
+        fail_msg("%s: not '%s'", row, words);
+    assert_non_null(strstr(row, " -")); /* no rate */
+    free(said);
+}
+
+TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
+{
+    write_in_place("two_list.txt", "builtin:suite-01\nbuiltin:suite-02\n");
+    json_t *o = json_of(ON_TWO "--sa 0.1 --json");
+    const json_t *records = json_object_get(o, "records");
+    double sum = 0; /* one of two exceeds the half of it at 0.1 g */
+    char limit[32];
+    for (size_t i = 0; i < 2; i++)
+        sum += number(json_object_get(json_array_get(records, i), "no_core"), "j1_m");
+    snprintf(limit, sizeof limit, "j1_m=%.9g", sum / 2);
+    json_decref(o);
+    expect_alone("between 0.01 and 1.01: finer steps", "0.01:1:1.01", limit);
+    expect_alone("between 0.01 and 0.19: finer steps", "0.01:0.09:0.2", limit);
+    expect_alone("below 1: begin lower", "0.1:0.9:1", limit);
+    expect_alone("above 0.01: end higher", "0.01:0.09:0.1", limit);
+    expect_alone("never", "0.01:0.01:0.02", limit);
+    expect_alone("always", "1:1:2", limit);
+    expect_alone("- ", "0.1:0.9:1", "core_stress_pa=1");
 }
 
 TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)

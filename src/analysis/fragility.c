@@ -1,34 +1,28 @@
 #include "analysis/fragility.h"
 
 #include <math.h>
+#include <string.h>
 
 static double normal_cdf(double z)
 {
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
 
-/* Where exceeded intensities begin above all others: between the last without and the first with, or the one that has
- * both, where the likelihood grows as beta falls to 0. NAN: they overlap. */
-static double parting_of(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
+/* At most one intensity has both, none exceed below it, all above: the likelihood grows as beta falls to 0, and says
+ * no more than that the median lies between the last that none exceed and the first that all do. */
+static int are_parted(size_t n, const double x[], const size_t n_at[], const size_t exceeded[], double between[2])
 {
-    double none = 0, all = INFINITY;
+    double some_stay = 0, some_exceed = INFINITY;
+    between[0] = 0;
+    between[1] = INFINITY;
     for (size_t j = 0; j < n; j++) {
-        none = exceeded[j] < n_at[j] ? fmax(none, x[j]) : none;
-        all = exceeded[j] > 0 ? fmin(all, x[j]) : all;
+        const size_t stay = n_at[j] - exceeded[j];
+        some_stay = stay > 0 ? fmax(some_stay, x[j]) : some_stay;
+        some_exceed = exceeded[j] > 0 ? fmin(some_exceed, x[j]) : some_exceed;
+        between[0] = stay > 0 && exceeded[j] == 0 ? fmax(between[0], x[j]) : between[0];
+        between[1] = stay == 0 && exceeded[j] > 0 ? fmin(between[1], x[j]) : between[1];
     }
-    return none > 0 && isfinite(all) && none <= all ? sqrt(none * all) : NAN;
-}
-
-/* Do all intensities exceed but one that has both, or none but that one? The median is then beyond it, nobody knows how
- * far: the intensities have to begin lower, or end higher. */
-static int is_at_the_end(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
-{
-    size_t none = 0, all = 0;
-    for (size_t j = 0; j < n; j++) {
-        none += exceeded[j] == 0;
-        all += exceeded[j] == n_at[j];
-    }
-    return (none == 0 || all == 0) && isfinite(parting_of(n, x, n_at, exceeded));
+    return some_stay <= some_exceed;
 }
 
 typedef struct {
@@ -54,19 +48,12 @@ static Score score_of(size_t n, const double x[], const size_t n_at[], const siz
 
 Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
 {
-    Fragility f = {NAN, NAN, NAN, NAN};
-    size_t all = 0, hits = 0;
-    double mean = 0, a, b = 2;
-    for (size_t j = 0; j < n; j++) {
-        all += n_at[j];
-        hits += exceeded[j];
+    Fragility f = {NAN, NAN, NAN, NAN, {NAN, NAN}};
+    double mean = 0, a, b = 2, between[2];
+    for (size_t j = 0; j < n; j++)
         mean += log(x[j]) / (double)n;
-    }
-    const double parting = parting_of(n, x, n_at, exceeded);
-    if (hits == 0 || hits == all || is_at_the_end(n, x, n_at, exceeded))
-        return f;
-    if (isfinite(parting)) {
-        f.median = parting;
+    if (are_parted(n, x, n_at, exceeded, between)) {
+        memcpy(f.between, between, sizeof between);
         return f;
     }
     a = -b * mean;
@@ -87,12 +74,16 @@ Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const s
     s = score_of(n, x, n_at, exceeded, a, b);
     const double *h = s.information, det = h[0] * h[2] - h[1] * h[1];
     const double aa = h[2] / det, bb = h[0] / det, ab = -h[1] / det, u = -1 / b, v = a / (b * b);
-    return (Fragility){exp(-a / b), 1 / b, sqrt(u * u * aa + 2 * u * v * ab + v * v * bb), sqrt(bb) / (b * b)};
+    f.median = exp(-a / b);
+    f.beta = 1 / b;
+    f.sd_ln_median = sqrt(u * u * aa + 2 * u * v * ab + v * v * bb);
+    f.sd_beta = sqrt(bb) / (b * b);
+    return f;
 }
 
 double fragility_at(const Fragility *f, double x)
 {
-    return isnan(f->beta) ? (isnan(f->median) ? NAN : x > f->median) : normal_cdf(log(x / f->median) / f->beta);
+    return normal_cdf(log(x / f->median) / f->beta);
 }
 
 double fragility_rate(const Fragility *f, size_t n, const double hazard[])

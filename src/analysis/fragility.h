@@ -7,9 +7,9 @@
  *   sum_j z_j ln P(x_j) + (n_j - z_j) ln(1 - P(x_j))
  *
  * in a = -ln(median) / beta, b = 1 / beta, where it is concave: Fisher scoring. Standard errors of ln median and beta
- * are those of the inverse information (delta method). With all or none exceeded nothing is known; where the levels
- * part without overlap (none below, all above, at most one that has both) the median lies there and beta is not known:
- * the levels are too far apart.
+ * are those of the inverse information (delta method). Where the levels part without overlap (none below, all above, at
+ * most one that has both) they are too far apart: neither median nor beta nor a rate is known, but what the median lies
+ * between.
  *
  *   rate = integral P(exceeded | x) |d lambda(x)|     [1/year], lambda: the hazard curve, yearly rate of more than x
  *
@@ -26,12 +26,13 @@
 typedef struct {
     double median, beta;          /* [unit of x], [-]; NAN: not known */
     double sd_ln_median, sd_beta; /* standard errors; NAN: not known */
+    double between[2];            /* of levels that part, where the median lies; 0, INFINITY: no bound; else NAN */
 } Fragility;
 
 /* x, n_at, exceeded (n) of the intensities. */
 Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const size_t exceeded[]);
 
-double fragility_at(const Fragility *f, double x);
+double fragility_at(const Fragility *f, double x); /* NAN: not known */
 
 /* hazard (n, 2): x rising, lambda falling, all above 0. */
 double fragility_rate(const Fragility *f, size_t n, const double hazard[]);

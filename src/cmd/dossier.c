@@ -436,7 +436,7 @@ static void write_intensities(const Dossier *o, Evaluations *e)
     json_t *table = json_array();
     double level[LEVELS];
     size_t n_at[LEVELS], exceeded[LEVELS] = {0}, n_exceeded = 0;
-    char text[400], spread[64];
+    char text[400];
     for (size_t l = 0; l < LEVELS; l++) {
         level[l] = e->level[l];
         n_at[l] = e->n_read;
@@ -445,17 +445,17 @@ static void write_intensities(const Dossier *o, Evaluations *e)
     }
     figures_html(o->out, table);
     const Fragility f = fragility_fit(LEVELS, level, n_at, exceeded);
-    snprintf(spread, sizeof spread, isfinite(f.beta) ? "logarithmic deviation %.2f" : "deviation not known", f.beta);
     int n = snprintf(text, sizeof text,
                      "Median (16 to 84 %%) of %zu records scaled to each peak. A drift ratio of %.0f %% is ", e->n_read,
                      100 * DRIFT_LIMIT);
     if (isfinite(f.median))
         snprintf(text + n, sizeof text - (size_t)n,
-                 "exceeded with probability one half at %.2g g (%s): lognormal, by maximum likelihood.", f.median,
-                 spread);
+                 "exceeded with probability one half at %.2g g (logarithmic deviation %.2f): lognormal, by maximum "
+                 "likelihood.",
+                 f.median, f.beta);
     else
         snprintf(text + n, sizeof text - (size_t)n,
-                 "exceeded by %zu of these simulations: too few or too many for a curve.", n_exceeded);
+                 "exceeded by %zu of these simulations: too few, too many or too sudden for a curve.", n_exceeded);
     say(o, text);
 }
 

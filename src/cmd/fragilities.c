@@ -131,22 +131,34 @@ static const char *relation(const Curve *c)
     return c->limit->sign > 0 ? ">" : "<";
 }
 
-/* 0.52 (0.45 to 0.6); where it is not known, why. */
+/* Why the median is not known, and what helps. */
+static void unknown_words(const Curve *c, char text[4 * FIGURE_MAX])
+{
+    const double from = c->fit.between[0], to = c->fit.between[1];
+    if (c->n == 0 || c->hits == 0 || c->hits == c->n)
+        snprintf(text, 4 * FIGURE_MAX, "%s", c->n == 0 ? "-" : c->hits == 0 ? "never" : "always");
+    else if (isnan(from))
+        snprintf(text, 4 * FIGURE_MAX, "not rising with intensity");
+    else if (from > 0 && isfinite(to))
+        snprintf(text, 4 * FIGURE_MAX, "between %g and %g: finer steps", from, to);
+    else if (isfinite(to))
+        snprintf(text, 4 * FIGURE_MAX, "below %g: begin lower", to);
+    else
+        snprintf(text, 4 * FIGURE_MAX, "above %g: end higher", from);
+}
+
+/* 0.52 (0.45 to 0.6) */
 static void median_words(const Curve *c, char text[4 * FIGURE_MAX])
 {
     char median[FIGURE_MAX], low[FIGURE_MAX], high[FIGURE_MAX];
+    if (isnan(c->fit.median)) {
+        unknown_words(c, text);
+        return;
+    }
     figure_text(c->fit.median, NAN, NAN, "", median);
     figure_text(c->low, NAN, NAN, "", low);
     figure_text(c->high, NAN, NAN, "", high);
-    if (isfinite(c->fit.beta))
-        snprintf(text, 4 * FIGURE_MAX, "%s (%s to %s)", median, low, high);
-    else if (isfinite(c->fit.median))
-        snprintf(text, 4 * FIGURE_MAX, "%s: finer steps", median);
-    else
-        snprintf(text, 4 * FIGURE_MAX, "%s",
-                 c->hits == 0      ? "never"
-                 : c->hits == c->n ? "always"
-                                   : "not rising with intensity");
+    snprintf(text, 4 * FIGURE_MAX, "%s (%s to %s)", median, low, high);
 }
 
 static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, void *table)
@@ -189,7 +201,8 @@ static void add_object(const Fragilities *f, const Evaluations *e, const Curve *
     json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g",
                         c->name, relation(c), c->limit->bound, EVALUATION_CASES[c->which].key, c->fit.median,
                         json_numbers(2, range), c->fit.beta, c->fit.sd_ln_median, c->fit.sd_beta);
-    json_put(o, "simulations=%p exceeded=%p", counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
+    json_put(o, "median_between=%p simulations=%p exceeded=%p", json_numbers(2, c->fit.between),
+             counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
     if (f->hazard)
         json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
                  -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
@@ -241,8 +254,6 @@ static void write_curve(const Fragilities *f, const Evaluations *e, const Curve 
     fprintf(script, "$S%zu using 1:2 with points pt 7 ps 0.5 lc '%s' notitle, ", number_of(f, c), COLOURS[c->which]);
     if (isnan(fit->median))
         fputs("NaN", script);
-    else if (isnan(fit->beta))
-        fprintf(script, "x > %.9g", fit->median);
     else
         fprintf(script, "norm(log(x / %.9g) / %.9g)", fit->median, fit->beta);
     fprintf(script, " with lines lw 2.5 lc '%s' title '%s'%s", COLOURS[c->which], EVALUATION_CASES[c->which].word,
