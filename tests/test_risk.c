@@ -100,9 +100,26 @@ TEST(a_study_minimises_and_limits_probabilities)
     assert_less(0, number(json_object_get(replicates, "standard_error"), "j3_g"));
     json_decref(o);
     expect(65, "is no p(NAME>NUMBER) with a column as NAME",
-           "optimize @/tower.ini --set 'search.objectives=p(drift>0.01)' --out @/no");
+           "optimize @/tower.ini --set 'search.objectives=p(drift_ratio>)' --out @/no");
     expect(65, "more than 4 probabilities",
            "optimize @/tower.ini --out @/no --set 'search.objectives=p(j1_m>1),p(j1_m>2),p(j1_m>3),p(j1_m>4)'");
+}
+
+TEST(a_probability_is_refused_where_a_plain_limit_is)
+{
+    expect(65, "search.objectives: drift_rato is no result; did you mean drift_ratio?",
+           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_rato>0.02)'");
+    expect(65, "search.limits: drift_rato is no result; did you mean drift_ratio?",
+           "check @/tower.ini --set 'search.limits=p(drift_rato>0.02)<=0.1'");
+    expect(65, "search.objectives: p(drift_ratio>2): this is a share of 1, no per cent; write 0.02 for 2 %",
+           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_ratio>2)'");
+    expect(65, "p(drift_ratio<0.02) prefers what is worse: of drift_ratio less is better; write p(drift_ratio>0.02)",
+           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_ratio<0.02)'");
+    expect(65, "p(edcs_pct>20) prefers what is worse: of edcs_pct more is better; write p(edcs_pct<20)",
+           "check @/tower.ini --set 'search.limits=p(edcs_pct>20)<=0.1'");
+    MeasureOrder order;
+    Err err = {0};
+    CHECK_OK(measures_order(&order, "p(edcs_pct<20),p(j3_g>2)", "none", 0, &err), &err);
 }
 
 /* -- fragility ----------------------------------------------------------------------------------------------------- */

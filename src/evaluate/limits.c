@@ -39,16 +39,10 @@ static const Limit *find(const Limits *limits, size_t n, size_t result, double s
     return NULL;
 }
 
-/* A result of a tower that is below 1. */
-static int is_share(const Schema *schema, size_t result)
-{
-    return schema->order.n_obj > 0 && (schema->order.of[result] >= MEASURES_LISTED ||
-                                       strcmp(schema_objective(schema, result)->name, "drift_ratio") == 0);
-}
-
 /* One limit on a side, that of what is better only beside the other, and some number between both. */
 static Status check(const Limits *limits, const Schema *schema, Err *err)
 {
+    const int is_tower = schema->order.n_obj > 0;
     for (size_t i = 0; i < limits->n; i++) {
         const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
         const Column *c = schema_objective(schema, l->result);
@@ -58,9 +52,9 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
         if (l->sign > 0 && other && other->bound > l->bound)
             return bad_data(err, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
                             other->bound);
-        if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
+        if (l->sign > 0 && l->bound < 0 && is_tower)
             return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
-        if (l->sign > 0 && l->bound >= 1 && is_share(schema, l->result))
+        if (l->sign > 0 && l->bound >= 1 && is_tower && measure_is_share(schema->order.of[l->result]))
             return bad_data(err, "search.limits: %s<=%g: this is a share of 1, no per cent; write %g for %g %%",
                             c->name, l->bound, 0.01 * l->bound, l->bound);
         if (!other && l->sign * c->sense < 0)

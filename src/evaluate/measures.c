@@ -20,6 +20,11 @@ const Measure *measure(int k)
     return &MEASURES[k];
 }
 
+int measure_is_share(int k)
+{
+    return k == MEASURE_DRIFT_RATIO || k >= MEASURES_LISTED;
+}
+
 double measure_value(const SimResult *r, int k)
 {
     const unsigned needs = MEASURES[k].needs;
@@ -145,23 +150,50 @@ void measures_chances(const MeasureOrder *order, SimResult *r)
     }
 }
 
+static Status no_result(const char *key, const char *name, Err *err)
+{
+    const char *names[MEASURES_LISTED];
+    for (int i = 0; i < MEASURES_LISTED; i++)
+        names[i] = MEASURES[i].name;
+    return fail_no_word(err, STATUS_BAD_DATA, key, name, "result", names, MEASURES_LISTED);
+}
+
+/* Of a chance that was read, which is minimised. */
+static Status check_chance(const Chance *c, const char *key, Err *err)
+{
+    const Measure *of = &MEASURES[c->of];
+    const char exceeds = of->sense > 0 ? '>' : '<';
+    if (c->bound < 0 || (c->bound == 0 && c->sign < 0))
+        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c->name);
+    if (c->bound >= 1 && measure_is_share(c->of))
+        return bad_data(err, "%s: %s: this is a share of 1, no per cent; write %g for %g %%", key, c->name,
+                        0.01 * c->bound, c->bound);
+    if (c->sign * of->sense < 0)
+        return bad_data(err, "%s: %s prefers what is worse: of %s %s is better; write p(%s%c%g)", key, c->name,
+                        of->name, of->sense > 0 ? "less" : "more", of->name, exceeds, c->bound);
+    return STATUS_OK;
+}
+
 /* "p(NAME>NUMBER)" to *k, a measure of the order; another text says so. */
 static Status take_chance(MeasureOrder *o, const char *key, const char *text, int *k, Err *err)
 {
     Chance c = {0};
     size_t length = 0;
-    char *end = NULL;
+    char *end = NULL, name[sizeof c.name];
     for (const char *t = text; *t && length + 1 < sizeof c.name; t++)
         if (*t != ' ' && *t != '\t')
             c.name[length++] = *t;
-    const char *name = c.name + 2, *relation = strpbrk(c.name, "<>");
-    c.of = relation ? find(name, (size_t)(relation - name)) : MEASURES_LISTED;
-    c.bound = relation ? strtod(relation + 1, &end) : NAN;
-    if (c.of == MEASURES_LISTED || end == relation + 1 || strcmp(end, ")") != 0 || !isfinite(c.bound))
+    const int n = (int)strcspn(c.name + 2, "<>");
+    const char *relation = c.name + 2 + n;
+    c.bound = *relation ? strtod(relation + 1, &end) : NAN;
+    if (!*relation || end == relation + 1 || strcmp(end, ")") != 0 || !isfinite(c.bound))
         return bad_data(err, "%s: '%.60s' is no p(NAME>NUMBER) with a column as NAME", key, text);
-    if (c.bound < 0 || (c.bound == 0 && *relation == '<'))
-        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c.name);
+    snprintf(name, sizeof name, "%.*s", n, c.name + 2);
+    c.of = find(name, (size_t)n);
+    if (c.of == MEASURES_LISTED)
+        return no_result(key, name, err);
     c.sign = *relation == '>' ? 1 : -1;
+    TRY(check_chance(&c, key, err));
     for (*k = 0; *k < CHANCES_MAX && o->chance[*k].name[0] && strcmp(o->chance[*k].name, c.name) != 0;)
         ++*k;
     if (*k == CHANCES_MAX)
@@ -185,14 +217,11 @@ static void add_objective(MeasureOrder *o, int k)
 
 static Status take_objective(MeasureOrder *o, const char *name, Err *err)
 {
-    const char *names[MEASURES_LISTED];
     int k = find(name, strlen(name));
-    for (int i = 0; i < MEASURES_LISTED; i++)
-        names[i] = MEASURES[i].name;
     if (is_chance(name))
         TRY(take_chance(o, "search.objectives", name, &k, err));
     else if (k == MEASURES_LISTED)
-        return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, MEASURES_LISTED);
+        return no_result("search.objectives", name, err);
     if (o->objectives >> k & 1)
         return bad_data(err, "search.objectives: %s stands there twice", name);
     add_objective(o, k);

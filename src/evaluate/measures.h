@@ -96,9 +96,9 @@ typedef enum {
         MEASURES_LISTED
 } MeasureId;
 
-/* Behind those of the list, only where search.objectives or search.limits name them: chances p(NAME>NUMBER) or
- * p(NAME<NUMBER), of a simulation 1 where that is so and else 0, so that their mean over all records and replicates is
- * a probability, whatever sim.robust says. */
+/* Behind those of the list, only where search.objectives or search.limits name them: chances p(NAME>NUMBER), of what is
+ * better when it is more p(NAME<NUMBER), of a simulation 1 where that is so and else 0, so that their mean over all
+ * records and replicates is a probability, whatever sim.robust says. */
 enum { N_MEASURES = MEASURES_LISTED + CHANCES_MAX };
 
 typedef struct {
@@ -118,6 +118,7 @@ typedef struct {
 } Measure;
 
 const Measure *measure(int k);                   /* k = 0..N_MEASURES-1 */
+int measure_is_share(int k);                     /* of 1, where a number above it is meant as per cent */
 double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: not known */
 
 /* What is kept of a simulation: a part of a design in the queue, also between machines. */
