@@ -313,9 +313,13 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
             assert_less(json_number_value(rate), 0.1);
     }
     json_decref(o);
-    free(output_of(CURVES "--csv @/rows.csv"));
-    char *rows = read_in_place("rows.csv");
+    char *table = output_of(CURVES "--csv @/rows.csv --hazard @/hazard.csv"), *rows = read_in_place("rows.csv");
+    assert_non_null(strstr(table, "per_year"));
     assert_non_null(strstr(rows, "record,scene,outcome,sa_g,pga_g,scale,"));
+    free(table);
+    table = output_of(CURVES "--csv -");
+    assert_string_equal(table, rows);
+    free(table);
     free(rows);
     if (system("command -v gnuplot >/dev/null") == 0)
         expect_key_above_the_panels();

@@ -10,6 +10,7 @@
 #include "cmd/designs.h"
 #include "cmd/fragilities.h"
 #include "cmd/full_model.h"
+#include "cmd/outputs.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
@@ -321,7 +322,7 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
     print_refused(stdout, e);
 }
 
-/* All that is asked for; the tables where nothing is. */
+/* All that is asked for; the tables where nothing is, those of fragilities wherever standard output is free. */
 static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err *err)
 {
     if (args_has(args, "--csv"))
@@ -335,7 +336,8 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
         TRY(demands_write(e, args_value(args, "--pelicun"), err));
     if (args_has(args, "--json"))
         return show_as_json(args, c, e, err);
-    if (!args_has(args, "--csv") && !args_has(args, "--svg") && !args_has(args, "--pelicun"))
+    if (c->fragilities.limits.n > 0 ? !outputs_standard(args, 0)
+                                    : !args_has(args, "--csv") && !svg && !args_has(args, "--pelicun"))
         print_all(args, c, e);
     return STATUS_OK;
 }
