@@ -132,7 +132,7 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
     snprintf(path, sizeof path, "%s/six.ini", place.folder);
     FILE *ini = fopen(path, "ae");
     assert_non_null(ini);
-    fputs("[search]\nfidelity = replicates\n", ini); /* with one replicate */
+    fputs("[search]\nfidelity = replicates\n[sim]\nreplicates = 2\n", ini);
     fclose(ini);
     write_in_place("mm.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                              "0.1,0.1,0.1,0.1,50,50,0.01,0.02\n0.1,0.1,0.1,0.1,50,50,0.01,0.02\n");

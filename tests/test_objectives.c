@@ -198,6 +198,8 @@ TEST(names_that_are_no_results_are_refused_with_the_words_there_are)
            "check @/tower.ini --set search.objectives=nonsense_of_sorts");
     write_in_place("alike.ini", "[search]\nfidelity = records\nobjectives = j1_m, p(drift_ratio>-0.02)\n");
     expect(65, "alike.ini:2:12: search.fidelity: records needs several", "check @/alike.ini");
+    expect(65, "search.fidelity: replicates needs several of them: set sim.replicates to 2",
+           "check @/tower.ini --set search.fidelity=replicates");
     expect(65, "alike.ini:3:14: search.objectives: p(drift_ratio>-0.02) is the same for all", "check @/alike.ini");
     expect(65, "search.objectives: all designs have the same devices: set design.devices",
            "check @/tower.ini --set search.objectives=j1_m,devices");

@@ -965,7 +965,7 @@ static int begin(void **state)
         "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2",
         "--out @/runs/d --set design.step_thickness_m=0.01,0.02,0.03 --set search.max_evals=24 --set sim.duration_s=12 "
         "--set search.initial=16 --set "
-        "search.population=8 --set sim.replicates=2 --set sim.gap_tolerance_m=0.003 "
+        "search.population=8 --set sim.replicates=2 --set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 "
         "--set sim.uncertain=restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
         "motion.factor=0.5"};
     for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {

@@ -251,7 +251,8 @@ static Status prepare(OnDemand *o, const Run *run, Err *err)
 static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1};
 
 /* Of `imtet simulate`, for the one simulation of the design as designed. */
-static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none";
+static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none "
+                           "--set search.fidelity=off";
 static const char CERTAIN[] = " --set sim.uncertain=none";
 static const char SCALED_OTHERWISE[] = " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none";
 

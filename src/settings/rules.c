@@ -80,10 +80,12 @@ static void check_replicates(const Settings *s, const Rules *r)
         break_rule(r, "sim.uncertain: ground_stiffness is that of core.foundation, which is fixed");
 }
 
-static void check_fidelity(const SearchOptions *s, const char *records, const Rules *r)
+static void check_fidelity(const SearchOptions *s, long replicates, const char *records, const Rules *r)
 {
     if (s->fidelity == FIDELITY_OFF)
         return;
+    if (s->fidelity == FIDELITY_REPLICATES && replicates < 2)
+        break_rule(r, "search.fidelity: replicates needs several of them: set sim.replicates to 2 or more");
     if (s->fidelity == FIDELITY_RECORDS && !list_is_given(records))
         break_rule(r, "search.fidelity: records needs several of them: set motion.records");
     if (s->asynchronous == SWITCH_ON)
@@ -100,7 +102,7 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
     check_core(&s->core, r);
     check_variables(s, r);
     check_replicates(s, r);
-    check_fidelity(&s->search, s->motion.records, r);
+    check_fidelity(&s->search, s->sim.replicates, s->motion.records, r);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
         break_rule(r, "problem.command: is none; problem.kind = external needs the command of the simulator");
 }
