@@ -508,16 +508,23 @@ TEST(designs_records_and_floors_that_are_not_there_are_refused)
     expect(74, "", "report @/dtlz --out /no/such/folder/x.html");
 }
 
-/* The number in the first cell behind a row's name, below a heading. */
-static double first_cell(const char *page, const char *heading, const char *name)
+/* The number in cell n, from 1, behind a row's name, below a heading. */
+static double cell(const char *page, const char *heading, const char *name, int n)
 {
     char row[80];
     const char *at = strstr(page, heading);
-    snprintf(row, sizeof row, ">%s</th><td>", name);
+    snprintf(row, sizeof row, ">%s</th>", name);
     at = at ? strstr(at, row) : NULL;
+    for (int i = 0; at && i < n; i++)
+        at = strstr(at + 1, "<td>");
     if (!at)
         fail_msg("%s: no %s", heading, row);
-    return at ? atof(at + strlen(row)) : NAN;
+    return at ? atof(at + strlen("<td>")) : NAN;
+}
+
+static double first_cell(const char *page, const char *heading, const char *name)
+{
+    return cell(page, heading, name, 1);
 }
 
 TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covered)
@@ -554,6 +561,37 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     assert_close(first_cell(page, "<h1>", "no core"), report.detail.result[SCENE_NO_CORE].j1_m, 5e-3);
     assert_null(strstr(page, "<script"));
     json_decref(fine);
+    free(page);
+}
+
+TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_demands_of_all)
+{
+    static const char *const RECORDS[] = {"kobe", "sylmar", "elcentro"}; /* the mildest first */
+    double stress = 0, j1 = 0;
+    char arguments[800];
+    expect(0, "",
+           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 24 --set search.population=8 --set search.initial=16 "
+           "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --record builtin:kobe-like "
+           "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
+           "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
+    expect(0, "", "report @/several --dossier @/several.html");
+    char *page = read_in_place("several.html");
+    for (size_t i = 0; i < N_OF(RECORDS); i++) {
+        snprintf(arguments, sizeof arguments,
+                 "simulate @/several/settings.ini --design @/several:knee --set motion.records=none --record "
+                 "builtin:%s-like --json",
+                 RECORDS[i]);
+        json_t *alone = json_of(arguments);
+        j1 = fmax(j1, number(alone, "j1_m"));
+        stress = fmax(stress, number(alone, "core_stress_pa"));
+        json_decref(alone);
+    }
+    assert_close(first_cell(page, "<h1>", "this design"), j1, 5e-3);
+    assert_close(first_cell(page, "Forces and stresses", "core stress [MPa]"), 1e-6 * stress, 5e-3);
+    assert_close(first_cell(page, "Forces and stresses", "p(drift_ratio&#62;0.2)"), 0, 0);
+    assert_non_null(strstr(page, "&#60;= 0.5</td><td class=\"words\">kept"));
+    assert_non_null(strstr(page, "By what the study judges: worst of 3 records."));
+    assert_non_null(strstr(page, "Forces and strokes under builtin:kobe-like, the first of 3 records."));
     free(page);
 }
 

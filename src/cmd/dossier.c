@@ -40,6 +40,9 @@ typedef struct {
     const Settings *s;
     const double *x;
     FILE *out;
+    size_t n_records;
+    const SimResult *by_record; /* (n_records) the design under every record of the study */
+    char record[200];           /* of the figures in detail: "builtin:kobe-like, the first of 22 records" */
 } Dossier;
 
 /* ---- figures --------------------------------------------------------------------------------------------------- */
@@ -57,17 +60,16 @@ static void add_line(json_t *table, const char *what, const char *text)
 
 enum { HEAD_MAX = 80 };
 
-static Words head_of(MeasureId k, char head[HEAD_MAX])
+static Words head_of(Words w, char head[HEAD_MAX])
 {
-    const Words w = words_of_measure(k);
     snprintf(head, HEAD_MAX, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
     return w;
 }
 
-static void put_named(json_t *row, MeasureId k, double value, double error, double sd)
+static void put_named(json_t *row, Words words, double value, double error, double sd)
 {
     char head[HEAD_MAX];
-    const Words w = head_of(k, head);
+    const Words w = head_of(words, head);
     figures_put(row, head, w.factor * value, w.factor * error, w.factor * sd);
 }
 
@@ -76,7 +78,7 @@ static void add_response(json_t *table, const char *label, const SimResult *r, c
 {
     json_t *row = json_put(figures_row(table), "=%s", label);
     for (size_t i = 0; i < N_OF(RESPONSE); i++)
-        put_named(row, RESPONSE[i], r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
+        put_named(row, words_of_measure(RESPONSE[i]), r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
                   error ? error[RESPONSE[i]] : NAN, NAN);
     json_put(row, "impacts=%ld", r->impacts);
     if (r->outcome != RUN_OK)
@@ -95,6 +97,41 @@ static void say(const Dossier *o, const char *text)
     fputs("</p>\n", o->out);
 }
 
+/* What is of one record, which it names. */
+static void say_under(const Dossier *o, const char *text)
+{
+    char all[400];
+    snprintf(all, sizeof all, "%s under %s.", text, o->record);
+    say(o, all);
+}
+
+/* Of a record; N_MEASURES: the shear stress of the core, which is no measure. NAN: the simulation failed. */
+static double demand_of(const SimResult *r, int k)
+{
+    return r->outcome != RUN_OK ? NAN : k < N_MEASURES ? measure_value(r, k) : r->forces.core_shear_stress_pa;
+}
+
+/* Over the records of the study; NAN: none has it. */
+static double largest(const Dossier *o, int k)
+{
+    double most = NAN;
+    for (size_t i = 0; i < o->n_records; i++)
+        most = fmax(most, demand_of(&o->by_record[i], k));
+    return most;
+}
+
+/* ", which the core exceeds (under 7 of 22 records)", where it does. */
+static void print_exceeded(const Dossier *o, int k, double bound, const char *what)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < o->n_records; i++)
+        n += demand_of(&o->by_record[i], k) > bound;
+    if (n > 0)
+        fprintf(o->out, ", which %s exceeds", what);
+    if (n > 0 && o->n_records > 1)
+        fprintf(o->out, " under %zu of %zu records", n, o->n_records);
+}
+
 static void put_lines(json_t *table, const char *what, const char *format, double value)
 {
     char text[64];
@@ -104,10 +141,31 @@ static void put_lines(json_t *table, const char *what, const char *format, doubl
 
 /* ---- what it is ------------------------------------------------------------------------------------------------ */
 
+/* A study of several simulations judges by none of them. */
+static void add_judged(const Dossier *o, json_t *table)
+{
+    const Schema *schema = &o->r->run->schema;
+    double error[OBJECTIVES_MAX];
+    run_likely(o->r->run, o->r->chosen, error);
+    for (int i = -1; i < N_BASELINES; i++) {
+        json_t *row = json_put(figures_row(table), "=%s", i < 0 ? "this design" : baseline_words(i));
+        for (size_t k = 0; k < schema->n_obj; k++)
+            put_named(row, words_of_objective(schema, k),
+                      i < 0 ? run_f(o->r->run, o->r->chosen)[k] : o->d->baseline[i].value[schema->order.of[k]],
+                      i < 0 ? error[k] : NAN, NAN);
+    }
+}
+
+static void add_single(const Dossier *o, json_t *table)
+{
+    add_response(table, "this design", &o->d->result[SCENE_IMPACT], o->d->error);
+    for (int k = 0; k < N_BASELINES; k++)
+        add_response(table, baseline_words(k), &o->d->baseline[k].first, NULL);
+}
+
 static void write_summary(const Dossier *o)
 {
     const Detail *d = o->d;
-    const SimResult *own = &d->result[SCENE_IMPACT];
     json_t *table = json_array();
     char now[24], rule[RULE_WORDS_MAX];
     utc_now(now);
@@ -119,11 +177,13 @@ static void write_summary(const Dossier *o)
             "nondominated.</p>\n",
             program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
             o->r->run->n_front);
-    add_response(table, "this design", own, d->error);
-    for (int k = 0; k < N_BASELINES; k++)
-        add_response(table, baseline_words(k), &d->baseline[k].first, NULL);
+    (o->r->is_robust ? add_judged : add_single)(o, table);
     figures_html(o->out, table);
-    say(o, "Under the first record of the study. Behind the sign stands the likely error of the integration. The other "
+    if (o->r->is_robust)
+        fprintf(o->out, "<p>By what the study judges: %s.</p>\n", rule);
+    else
+        say_under(o, "All");
+    say(o, "Behind the sign stands the likely error of the integration. The other "
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
     fputs("<p class=\"lines\">", o->out);
@@ -131,10 +191,12 @@ static void write_summary(const Dossier *o)
     fprintf(
         o->out,
         "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>, of a link or tuned mass: <b>%.3g MN</b>. Largest bending "
-        "stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall. Nothing here is "
-        "designed for them.</p>\n",
-        1e-6 * own->forces.contact_force_max_n, 1e-6 * own->dashpot_n, 1e-6 * own->forces.core_stress_pa,
-        own->forces.buckling_known ? own->forces.core_buckling_ratio : NAN);
+        "stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall",
+        1e-6 * largest(o, MEASURE_CONTACT_FORCE), 1e-6 * largest(o, MEASURE_DEVICE_FORCE),
+        1e-6 * largest(o, MEASURE_CORE_STRESS), largest(o, MEASURE_CORE_BUCKLING));
+    if (o->n_records > 1)
+        fprintf(o->out, ", each over %zu records", o->n_records);
+    fputs(". Nothing here is designed for them.</p>\n", o->out);
 }
 
 static void write_building(const Dossier *o)
@@ -163,7 +225,7 @@ static void write_building(const Dossier *o)
         put_lines(table, "length of the motion [s]", "%.1f", o->d->duration_s);
         add_line(table, "model of the building", o->s->building.model);
         add_line(table, "foundation of the core", o->s->core.foundation);
-        add_line(table, "ground motion", o->d->record);
+        add_line(table, "ground motion", o->record);
         figures_html(o->out, table);
         fputs("<figure class=\"wide\">", o->out);
         status = building_svg(o->out, &b, has_frame ? &frame : NULL, &e);
@@ -215,6 +277,7 @@ static void list_devices(const Dossier *o, const Design *design)
     if (design->mass_kg > 0)
         fprintf(o->out, "<p>Tuned mass: force %.3g MN, stroke %.3g mm.</p>\n", 1e-6 * r->device[FLOORS_MAX].force,
                 1e3 * r->device[FLOORS_MAX].stroke);
+    say_under(o, "Forces and strokes");
 }
 
 static void write_design(const Dossier *o)
@@ -289,9 +352,9 @@ static void write_response(const Dossier *o)
     add_with(o, table, "by CVODE (SUNDIALS)", "sim.engine", "cvode");
     add_full_model(o, table);
     figures_html(o->out, table);
-    say(o,
-        "The same record each time. CVODE integrates the equations of motion without the study's engine. Contacts that "
-        "graze may separate two calculations: J3 is then the least certain figure.");
+    say_under(o, "All");
+    say(o, "CVODE integrates the equations of motion without the study's engine. Contacts that graze may separate two "
+           "calculations: J3 is then the least certain figure.");
     for (int c = 0; c < CURVES_SHOWN; c++)
         if (curve[c]->outcome == RUN_OK) {
             panels[0].curve[c] = curve[c]->peak_displacement_m;
@@ -307,23 +370,58 @@ static void write_response(const Dossier *o)
 
 /* ---- what it has to bear --------------------------------------------------------------------------------------- */
 
-/* The study's limit on measure k in words, and whether the value keeps it. */
-static void put_limit(const Dossier *o, json_t *row, int k, double value)
+/* The study's limits, on what it judged: of several simulations none by itself. */
+static void write_limits(const Dossier *o)
 {
-    const Schema *schema = &o->r->run->schema;
+    const Run *run = o->r->run;
+    json_t *table = json_array();
     Limits l = {0};
-    char text[64] = "none set";
-    const char *kept = "-";
-    if (limits_read(&l, schema, o->s->search.limits, NULL) != STATUS_OK)
+    if (limits_read(&l, &run->schema, o->s->search.limits, NULL) != STATUS_OK)
         l.n = 0;
-    for (size_t i = 0; i < l.n; i++)
-        if (schema->order.of[l.limit[i].result] == k) {
-            snprintf(text, sizeof text, "%s %.4g",
-                     l.limit[i].sign > 0 ? "<=" : ">=", words_of_measure(k).factor * l.limit[i].bound);
-            kept = l.limit[i].sign * (value - l.limit[i].bound) <= 0 ? "kept" : "exceeded";
-        }
-    put_text(row, " limit of the study", text);
-    put_text(row, " verdict", kept);
+    for (size_t i = 0; i < l.n; i++) {
+        char head[HEAD_MAX], text[64];
+        const Limit *limit = &l.limit[i];
+        const Words w = head_of(words_of_objective(&run->schema, limit->result), head);
+        const double value = run_result(run, o->r->chosen, limit->result);
+        json_t *row = json_put(figures_row(table), "=%s", head);
+        snprintf(text, sizeof text, "%s %.4g", limit->sign > 0 ? "<=" : ">=", w.factor * limit->bound);
+        figures_put(row, "as the study judges it", w.factor * value, NAN, NAN);
+        put_text(row, " limit of the study", text);
+        put_text(row, " verdict",
+                 isnan(value)                                ? "not known"
+                 : limit->sign * (value - limit->bound) <= 0 ? "kept"
+                                                             : "exceeded");
+    }
+    if (l.n == 0)
+        say(o, "The study sets no limits.");
+    if (l.n > 0)
+        figures_html(o->out, json_incref(table));
+    json_decref(table);
+}
+
+/* Row of a demand that it has: of the first record, and the largest. */
+static void add_demand(const Dossier *o, json_t *table, int k, Words words, double error)
+{
+    const double value = demand_of(o->by_record, k), most = largest(o, k);
+    char head[HEAD_MAX], column[220];
+    if (!isfinite(most) || (most <= 0 && k != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
+        return;
+    const Words w = head_of(words, head);
+    json_t *row = json_put(figures_row(table), "=%s", head);
+    snprintf(column, sizeof column, "largest of %zu records", o->n_records);
+    if (o->n_records > 1)
+        figures_put(row, column, w.factor * most, NAN, NAN);
+    snprintf(column, sizeof column, "under %s", o->record);
+    figures_put(row, column, w.factor * value, w.factor * error, NAN);
+}
+
+/* Whether the stop of floor j has closed under any record. */
+static int has_closed(const Dossier *o, int j)
+{
+    size_t i = 0;
+    while (i < o->n_records && o->by_record[i].closings[j] == 0)
+        i++;
+    return i < o->n_records;
 }
 
 static void write_demand(const Dossier *o)
@@ -336,37 +434,29 @@ static void write_demand(const Dossier *o)
     static const char *const NAMES[CURVES_SHOWN] = {"this design"};
     json_t *table = json_array();
     heading(o, "Forces and stresses, with their limits");
-    for (size_t i = 0; i < N_OF(DEMAND); i++) {
-        char head[HEAD_MAX];
-        const Words w = head_of(DEMAND[i], head);
-        const double value = measure_value(r, DEMAND[i]);
-        if (!isfinite(value) || (value <= 0 && DEMAND[i] != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
-            continue;
-        json_t *row = json_put(figures_row(table), "=%s", head);
-        figures_put(row, "value", w.factor * value, w.factor * o->d->error[DEMAND[i]], NAN);
-        put_limit(o, row, DEMAND[i], value);
-    }
-    if (f->core_shear_stress_pa > 0)
-        figures_put(json_put(figures_row(table), "=%s", "core shear stress [MPa]"), "value",
-                    1e-6 * f->core_shear_stress_pa, NAN, NAN);
+    for (size_t i = 0; i < N_OF(DEMAND); i++)
+        add_demand(o, table, DEMAND[i], words_of_measure(DEMAND[i]), o->d->error[DEMAND[i]]);
+    add_demand(o, table, N_MEASURES, (Words){"core shear stress", "MPa", 1e-6}, NAN);
     figures_html(o->out, table);
-    fprintf(
-        o->out,
-        "<p>For comparison: ordinary steel yields at %.0f MPa%s, in shear at %.0f MPa%s. Stops that never close, on "
-        "floors: ",
-        1e-6 * YIELD_PA, f->core_stress_pa > YIELD_PA ? ", which the core exceeds" : "", 1e-6 * YIELD_PA / sqrt(3),
-        f->core_shear_stress_pa > YIELD_PA / sqrt(3) ? ", which its shear stress exceeds" : "");
+    write_limits(o);
+    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
+    print_exceeded(o, MEASURE_CORE_STRESS, YIELD_PA, "the core");
+    fprintf(o->out, ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
+    print_exceeded(o, N_MEASURES, YIELD_PA / sqrt(3), "its shear stress");
+    fprintf(o->out, ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
     int n = 0;
     for (int j = 0; j < o->d->n_floors; j++)
-        if (r->closings[j] == 0 && o->d->gap_m[j] < INFINITY)
+        if (!has_closed(o, j) && o->d->gap_m[j] < INFINITY)
             fprintf(o->out, "%s%d", n++ ? ", " : "", j + 1);
     fprintf(o->out, "%s.</p>\n<figure>", n ? "" : "none");
     const size_t first = f->contact_force_max_n > 0 ? 0 : SIDES;
     if (r->forces_known)
         draw_profiles(o->out, o->d, NAMES, N_OF(panels) - !f->stress_known - first, panels + first);
     fputs("<figcaption>Largest forces of contacts by side of the core, where there are any; largest bending stress by "
-          "storey.</figcaption></figure>\n",
+          "storey: under ",
           o->out);
+    text_html(o->out, o->record);
+    fputs(".</figcaption></figure>\n", o->out);
 }
 
 static void write_ladder(const Dossier *o)
@@ -389,6 +479,8 @@ static void write_ladder(const Dossier *o)
         figures_html(o->out, table);
     else
         json_decref(table);
+    if (l)
+        say_under(o, "All");
     say(o, l ? "What leaving out each effect changes of a model that has them all; needed: more than 2 % or the "
                "scatter as "
                "built. An effect that is needed and not in the study is an open point of this design."
@@ -503,15 +595,18 @@ static void write_as_built(const Dossier *o)
     ReplicateSummary summary = {0};
     Err e = {0};
     char text[300];
-    json_t *table = json_array(), *row = json_put(figures_row(table), "=%s", "mean and standard deviation");
+    json_t *table = json_array(), *row = figures_row(table);
     heading(o, "As built, and what the figures hang on");
     const Status status = find_as_built(o, &s, &summary, &e);
+    json_object_set_new(row, "",
+                        json_sprintf("%s and standard deviation", status == STATUS_OK ? summary.rule : "mean"));
     if (status == STATUS_OK && !summary.n_failed)
         for (size_t i = 0; i < N_OF(RESPONSE); i++)
-            put_named(row, RESPONSE[i], summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
+            put_named(row, words_of_measure(RESPONSE[i]), summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
     figures_html(o->out, table);
     snprintf(text, sizeof text,
-             "%d structures whose gaps differ from the drawing by %g mm (standard deviation; none below 0)%s.",
+             "%d structures under every record of the study, whose gaps differ from the drawing by %g mm (standard "
+             "deviation; none below 0)%s.",
              AS_BUILT, 1e3 * s.sim.gap_tolerance_m,
              spread_word(0, &s.sim.uncertain)[0] == 'a' ? ", with what sim.uncertain of the study says" : "");
     say(o, status != STATUS_OK ? e.text : text);
@@ -536,13 +631,14 @@ static void write_sensitivities(const Dossier *o)
         json_t *row =
             json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
         for (size_t k = 0; k < N_OF(SHOWN); k++)
-            put_named(row, SHOWN[k], list[i].step * list[i].slope[SHOWN[k]], list[i].step * list[i].error[SHOWN[k]],
-                      NAN);
+            put_named(row, words_of_measure(SHOWN[k]), list[i].step * list[i].slope[SHOWN[k]],
+                      list[i].step * list[i].error[SHOWN[k]], NAN);
     }
     if (json_array_size(table) > 0)
         figures_html(o->out, json_incref(table));
     json_decref(table);
-    say(o, "Change of each result for one step of a parameter, with its error. Gaps that change nothing are left out.");
+    say_under(o, "Gaps that change nothing are left out. Change of each result for one step of a parameter, with its "
+                 "error,");
     free(list);
 }
 
@@ -551,24 +647,22 @@ static void write_sensitivities(const Dossier *o)
 static void write_not_covered(const Dossier *o)
 {
     const Settings *s = o->s;
-    const SimForces *f = &o->d->result[SCENE_IMPACT].forces;
     heading(o, "What is not covered");
     fputs("<ul>\n<li>Torsion, friction and the vertical motion. One contact per floor and side.</li>\n", o->out);
     fprintf(o->out,
             "<li>The mass of the core, %.0f t, is that of its bare walls. It has <b>no stiffeners</b>, diaphragms or "
             "connections%s.</li>\n",
             1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
-            f->buckling_known && f->core_buckling_ratio > 1
-                ? ", and the bare wall would buckle: stiffeners are needed, "
-                  "and their mass is missing here and in every objective"
-                : "");
+            largest(o, MEASURE_CORE_BUCKLING) > 1 ? ", and the bare wall would buckle: stiffeners are needed, "
+                                                    "and their mass is missing here and in every objective"
+                                                  : "");
     fputs("<li>Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
           "floors as diaphragms, local stresses and fatigue are not designed.</li>\n",
           o->out);
     if (strcmp(s->core.foundation, "fixed") == 0)
         fprintf(o->out,
-                "<li>The core is clamped: its foundation bears %.3g MN and %.4g MN m without giving way.</li>\n",
-                1e-6 * f->core_base_shear_n, 1e-6 * f->core_overturning_nm);
+                "<li>The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.</li>\n",
+                1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
         fputs("<li>The tower is linear: nothing yields, whatever its drift.</li>\n", o->out);
     if (!s->building.p_delta)
@@ -638,7 +732,11 @@ static const char STYLE[] =
 
 static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n, const char *const records[])
 {
-    const Dossier o = {.r = r, .d = &r->detail, .s = s, .x = run_x(r->run, r->chosen), .out = out};
+    const Detail *d = &r->detail;
+    Dossier o = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .out = out, .n_records = d->n_records};
+    o.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
+    snprintf(o.record, sizeof o.record, o.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
+             o.n_records);
     fputs(STYLE, out);
     write_summary(&o);
     write_building(&o);
