@@ -564,11 +564,12 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     free(page);
 }
 
+/* Coarse, so that the run knows its knee by other steps than those of its accuracy. */
 TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_demands_of_all)
 {
     static const char *const RECORDS[] = {"kobe", "sylmar", "elcentro"}; /* the mildest first */
     double stress = 0, j1 = 0;
-    char arguments[800];
+    char arguments[800], command[800];
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS "--max-evals 24 --set search.population=8 --set search.initial=16 "
            "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --record builtin:kobe-like "
@@ -592,6 +593,11 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     assert_non_null(strstr(page, "&#60;= 0.5</td><td class=\"words\">kept"));
     assert_non_null(strstr(page, "By what the study judges: worst of 3 records."));
     assert_non_null(strstr(page, "Forces and strokes under builtin:kobe-like, the first of 3 records."));
+    assert_int_equal(sscanf(strstr(page, "<code>imtet "), "<code>imtet %799[^<]", command), 1);
+    json_t *again = json_of(command);
+    assert_close(cell(page, "The response, by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
+    assert_int_equal(cell(page, "The response, by", "accuracy fine", 8), number(again, "impacts"));
+    json_decref(again);
     free(page);
 }
 

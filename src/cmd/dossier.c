@@ -301,6 +301,7 @@ static Status simulate_with(const Dossier *o, const char *key, const char *value
 {
     Settings s = *o->s;
     Problem p;
+    s.sim.steps_per_contact = 0; /* those of the value, and not those by which the run knows the design */
     TRY(settings_put(&s, key, value, err));
     TRY(settings_check(&s, err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
