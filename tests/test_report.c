@@ -598,6 +598,9 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     assert_close(cell(page, "The response, by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
     assert_int_equal(cell(page, "The response, by", "accuracy fine", 8), number(again, "impacts"));
     json_decref(again);
+    char *said = output_of("simulate @/several/settings.ini --design @/several:knee");
+    assert_non_null(strstr(said, "of replacement; under builtin:kobe-like\n"));
+    free(said);
     free(page);
 }
 

@@ -152,7 +152,7 @@ static void print_table(const Args *args, const Job *job, const Settings *s, con
     }
     figures_print(table);
     if (job->n == 1 && *damage_words(job->results, damage))
-        printf("\n%s\n", damage);
+        printf("\n%s; under %s\n", damage, tower_record(t, 0)->motion.name);
 }
 
 static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
