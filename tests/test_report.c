@@ -324,6 +324,36 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
     free(r);
 }
 
+/* Other words behind the path, another channel or factor, make another record of the same file. */
+TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
+{
+    static const char MOTION[] = "0,0\n0.01,1\n0.02,-1\n0.03,0\n", OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
+    Err err = {0};
+    OtherRecords *r = calloc(1, sizeof *r);
+    char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
+    MotionOptions study = tower.settings->motion;
+    write_in_place("own.csv", MOTION);
+    write_in_place("twin.csv", MOTION);
+    write_in_place("other.csv", OTHER);
+    snprintf(study.record, sizeof study.record, "%s", own);
+    snprintf(twice, sizeof twice, "%s factor=2", own);
+    CHECK_OK(elsewhere_of_study(r, &study, &err), &err);
+    for (int k = 0; k < 2; k++) {
+        CHECK_OK(elsewhere_add(r, twin, &err), &err);
+        CHECK_OK(elsewhere_add(r, other, &err), &err);
+        CHECK_OK(elsewhere_add(r, twice, &err), &err);
+    }
+    assert_int_equal(r->n, 2);
+    assert_string_equal(r->source[0], other);
+    assert_string_equal(r->source[1], twice);
+    expect(0, "twin.csv has the content of ",
+           "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2 --out @/twin.html");
+    free(own);
+    free(twin);
+    free(other);
+    free(r);
+}
+
 /* The band of the page ends where the worst of the records, simulated each on its own, ends. */
 TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
 {

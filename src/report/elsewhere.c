@@ -1,41 +1,52 @@
 #include "report/elsewhere.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/csv.h"
+#include "base/hash.h"
 #include "motion/builtin.h"
 #include "motion/suite.h"
 
-/* The file of a source, or what it is called. */
-static void place_of(const char *source, char place[PATH_MAX])
+/* Of the bytes of its file and the words behind the path; of what is no file, of its name. */
+static uint64_t content_of(const char *source)
 {
-    if (!realpath(source, place))
-        snprintf(place, PATH_MAX, "%s", source);
+    const size_t end = source_path_length(source);
+    char path[OPTION_TEXT_MAX], *bytes;
+    uint64_t hash = HASH_SEED;
+    size_t length;
+    Err unused;
+    snprintf(path, sizeof path, "%.*s", (int)end, source);
+    if (file_read(path, FILE_LARGEST, &bytes, &length, &unused) != STATUS_OK)
+        return hash_fnv1a(source, strlen(source), hash);
+    hash = hash_fnv1a(bytes, length, hash);
+    free(bytes);
+    return hash_fnv1a(source + end, strlen(source + end), hash);
 }
 
-static int is_there(const OtherRecords *r, const char *source)
+/* The same record under another name counts once too, which is said. */
+static int is_there(const OtherRecords *r, const char *source, uint64_t content)
 {
-    char place[PATH_MAX], other[PATH_MAX];
-    place_of(source, place);
-    for (size_t i = 0; i <= r->n; i++) {
-        place_of(i < r->n ? r->source[i] : r->own, other);
-        if (strcmp(place, other) == 0)
-            return 1;
-    }
-    return 0;
+    size_t i = 0;
+    while (i <= r->n && r->content[i] != content)
+        i++;
+    const char *other = i == 0 ? r->own : i <= r->n ? r->source[i - 1] : source;
+    if (strcmp(source, other) != 0)
+        fprintf(stderr, "note: %s has the content of %s, which is shown already\n", source, other);
+    return i <= r->n;
 }
 
 static Status add(const char *source, void *user, Err *err)
 {
     OtherRecords *r = user;
-    if (is_there(r, source))
+    const uint64_t content = content_of(source);
+    if (is_there(r, source, content))
         return STATUS_OK;
     if (r->n == ELSEWHERE_MAX)
         return misused(err, "more than %d earthquakes make no report", ELSEWHERE_MAX);
     TRY(option_put_path(r->text[r->n], source, err));
     r->source[r->n] = r->text[r->n];
-    r->n++;
+    r->content[++r->n] = content;
     return STATUS_OK;
 }
 
@@ -43,7 +54,10 @@ static Status add(const char *source, void *user, Err *err)
 static Status add_own(const char *source, void *user, Err *err)
 {
     OtherRecords *r = user;
-    return r->n_seen++ > 0 ? add(source, r, err) : option_put_path(r->own, source, err);
+    if (r->n_seen++ > 0)
+        return add(source, r, err);
+    r->content[0] = content_of(source);
+    return option_put_path(r->own, source, err);
 }
 
 Status elsewhere_of_study(OtherRecords *r, const MotionOptions *study, Err *err)
