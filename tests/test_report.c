@@ -634,6 +634,19 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     free(page);
 }
 
+TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
+{
+    expect(0, "",
+           "optimize configs/quick.ini " SIX_FLOORS
+           "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
+           "search.polish=0 --set sim.duration_s=8 --set motion.records=builtin:sylmar-like,builtin:elcentro-like "
+           "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
+    expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
+    char *page = read_in_place("screened.html");
+    assert_non_null(strstr(page, "of 3 records, of which this design, screened only, has had a part.</p>"));
+    free(page);
+}
+
 /* Links on the floors of a zone or none at all; the building alone costs nothing. */
 TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and_forces)
 {

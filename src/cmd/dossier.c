@@ -180,7 +180,10 @@ static void write_summary(const Dossier *o)
     (o->r->is_robust ? add_judged : add_single)(o, table);
     figures_html(o->out, table);
     if (o->r->is_robust)
-        fprintf(o->out, "<p>By what the study judges: %s.</p>\n", rule);
+        fprintf(o->out, "<p>By what the study judges: %s%s.</p>\n", rule,
+                o->r->run->table.row[o->r->chosen].kind == KIND_SCREENED
+                    ? ", of which this design, screened only, has had a part"
+                    : "");
     else
         say_under(o, "All");
     say(o, "Behind the sign stands the likely error of the integration. The other "
