@@ -215,6 +215,25 @@ const tried = {
     assert.ok(differences.length >= 5 && differences.every((text) => /^[+\u2212][\d.]+ %$/.test(text)), differences.join());
     assert.ok((await page.evaluate("document.querySelectorAll('#compare figure svg').length")) >= 4);
   },
+  async "beside the drawer nothing of what-if, of designs side by side and of tables is cut, and no letter is smaller than 12 px"() {
+    await page.evaluate("document.querySelectorAll('details.part').forEach((d) => (d.open = true))");
+    await until("!document.getElementById('drawer').hidden && document.querySelectorAll('#compare svg').length >= 4");
+    const cut = await page.evaluate(`Array.from(document.querySelectorAll("main .scroll")).filter((e) => e.scrollWidth > e.clientWidth && !e.querySelector("#designs")).map((e) => e.outerHTML.slice(0, 80))`);
+    assert.deepEqual(cut, []);
+    const words = await page.evaluate(`Array.from(document.querySelectorAll("#what-if svg text, #compare svg text"), (e) => [e.textContent, parseFloat(getComputedStyle(e).fontSize) * Math.hypot(e.getScreenCTM().a, e.getScreenCTM().b), e.getBoundingClientRect().right - e.closest("section").getBoundingClientRect().right])`);
+    assert.deepEqual(words.filter(([text, size, beyond]) => text && (size < 11.99 || beyond > 0)), []);
+    const titles = await page.evaluate(`Array.from(document.querySelectorAll("#what-if .words span")).filter((e) => (e.textContent = e.textContent.replace(/^J2 .*/, "p(drift_ratio>0.01) [%]"), e.scrollWidth > e.clientWidth || e.scrollHeight > e.clientHeight || e.getBoundingClientRect().bottom > e.closest(".layers").getBoundingClientRect().bottom)).map((e) => e.textContent)`);
+    assert.deepEqual(titles, []);
+  },
+  async "whatever the key of what-if names is in its front"() {
+    const missing = await page.evaluate(`(() => {
+      const canvas = document.querySelector("#what-if .strip canvas[role=img]"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const isThere = (rgb) => { for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 100 && rgb.every((v, k) => Math.abs(data[i + k] - v) < 8)) return true; };
+      return Array.from(document.querySelectorAll("#what-if .legend span"), (e) => [e.textContent, e.style.getPropertyValue("--key").match(/[0-9a-f]{2}/gi)]).filter(([, hex]) => hex?.length === 3 && !isThere(hex.map((h) => parseInt(h, 16)))).map(([text]) => text);
+    })()`);
+    assert.deepEqual(missing, []);
+    assert.equal(await page.evaluate("document.getElementById('parts').lastElementChild.id"), "theme"); // no link behind it
+  },
   async "at 50 kB/s a first picture is there within 120 kB, while the rest is loading"() {
     const slow = await browser.openPage(), at = (await runs()).find((r) => r.name === "a").at;
     await slow.call("Network.emulateNetworkConditions", { offline: false, latency: 400, downloadThroughput: 50 * 1024, uploadThroughput: 50 * 1024 });

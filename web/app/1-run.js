@@ -101,6 +101,7 @@ function element(tag, attributes = {}, ...children) {
   const e = document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) e.addEventListener(key.slice(2), value);
+    else if (key === "style") e.style.cssText = value; // as an attribute the policy refuses it
     else if (value === true) e.setAttribute(key, "");
     else if (value !== false && value !== null && value !== undefined) e.setAttribute(key, value);
   }

@@ -48,11 +48,7 @@ function chart(options) {
 }
 
 function legend(entries) {
-  return element("div", { class: "legend" }, ...entries.map(([label, colour, mark]) => {
-    const item = element("span", { "data-mark": mark }, label);
-    item.style.setProperty("--key", colour);
-    return item;
-  }));
+  return element("div", { class: "legend" }, ...entries.map(([label, colour, mark]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
 }
 const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]));
 

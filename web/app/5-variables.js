@@ -137,8 +137,7 @@ function typesPart(host) {
   const part = folded(host, `Typical designs: ${types.length} kinds on this front`, true);
   const rowOfType = (t, k) => {
     const name = element("button", { type: "button", title: "mark its typical design", onclick: () => mark(t.typical) }, t.name);
-    const key = element("span", { class: "key" }, String(k + 1));
-    key.style.background = PALETTE[k];
+    const key = element("span", { class: "key", style: `background: ${PALETTE[k]}` }, String(k + 1));
     return line([[key, name], count(t.rows.length), String(ids[t.typical]), ...objectives.map((c) => digits(c.value[t.typical]))]);
   };
   part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),

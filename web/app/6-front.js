@@ -25,12 +25,10 @@ function colourBar() {
 
 // One legend for all pictures of the front: what is compared with, each of them to be turned off; the marked design.
 function overlayLegend() {
-  const marked = element("span", { "data-mark": "\u25cf" });
-  marked.style.setProperty("--key", "var(--ink)");
+  const marked = element("span", { "data-mark": "\u25cf", style: "--key: var(--ink)" });
   follow(null, () => (marked.textContent = state.marked === undefined ? "no design marked" : designName(state.marked)));
   return element("div", { class: "legend", id: "overlays" }, marked, ...overlays.map((o) => {
-    const item = element("span", { "data-mark": o.mark, title: o.device }, o.words);
-    item.style.setProperty("--key", o.colour);
+    const item = element("span", { "data-mark": o.mark, title: o.device, style: `--key: ${o.colour}` }, o.words);
     return element("label", {}, element("input", { type: "checkbox", checked: o.isShown, name: o.key, onchange: (event) => {
       o.isShown = event.target.checked;
       layoutChanged();

@@ -149,11 +149,7 @@ function standoutTable() {
 }
 
 // Where the knee in detail is still to come, its place is kept: nothing moves when it does.
-const skeleton = (height) => {
-  const box = element("div", { class: "skeleton", "aria-hidden": "true" });
-  box.style.height = `${height}px`;
-  return box;
-};
+const skeleton = (height) => element("div", { class: "skeleton", "aria-hidden": "true", style: `height: ${height}px` });
 
 function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
@@ -204,7 +200,7 @@ function contents() {
   }, { id: "theme" });
   skip.className = "skip";
   views.layout.push(() => (theme.textContent = state.theme === "dark" ? "Light" : "Dark"));
-  document.getElementById("parts").append(skip, theme, ...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)));
+  document.getElementById("parts").append(skip, ...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)), theme);
 }
 
 // The focus goes along.

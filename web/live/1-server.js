@@ -26,7 +26,7 @@ function frontStrip(host, label, height = 208) {
   layers.style.minWidth = `${92 * objectives.length}px`; // no word lies on another
   const [back, over] = [0, 1].map((k) => layers.appendChild(element("canvas", k ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
   const words = layers.appendChild(element("div", { class: "words", "aria-hidden": "true" }));
-  const top = 22, bottom = 58, side = 54, down = height - bottom, span = down - top;
+  const top = 22, bottom = 64, side = 54, down = height - bottom, span = down - top;
   let last = [], width = 0, ranges, drawnBack;
   layers.style.height = `${height}px`;
 
@@ -56,15 +56,11 @@ function frontStrip(host, label, height = 208) {
     objectives.forEach((_, k) => pen.strokeRect(at(k), top, 0, span));
     drawLines(pen, first);
     prepare(over, width, height);
+    const room = Math.min(2 * side, (width - 2 * side) / Math.max(1, objectives.length - 1)); // of a word: the outer ones have no more
     words.replaceChildren(...objectives.flatMap((c, k) => {
       const [worse, better] = c.sense < 0 ? ranges[k] : [ranges[k][1], ranges[k][0]];
-      return [[worse * c.factor, 2], [better * c.factor, down + 1], [null, down + 18]].map(([v, where]) => {
-        const word = element("span", { title: c.what }, v === null ? titleUnit(c) : show(v));
-        word.style.left = `${at(k)}px`;
-        word.style.top = `${where}px`;
-        word.style.width = `${Math.min(2 * side, (width - 2 * side) / Math.max(1, objectives.length - 1))}px`; // the outer ones have no more room
-        return word;
-      });
+      return [[worse * c.factor, 2], [better * c.factor, down + 1], [null, down + 18]].map(([v, where]) =>
+        element("span", { title: c.what, style: `left: ${at(k)}px; top: ${where}px; width: ${room}px` }, v === null ? titleUnit(c) : show(v)));
     }));
   }
 

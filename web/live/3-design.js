@@ -73,7 +73,7 @@ function showCompared() {
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
     host.append(element("h2", {}, "Side by side"), compareTable());
-    const grid = host.appendChild(element("div", { class: "grid4" }));
+    const grid = host.appendChild(element("div", { class: "grid3" }));
     for (const [key, title, label] of [["gap_mm", "Gaps", "gap [mm]"], ...PEAKS]) {
       const lines = compared.map((one, i) => ({ name: one.name, values: one.peaks[key] ?? one.gap_m.map((g) => 1e3 * g), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
       figure(grid, title, null, (width) => heightChart(width, 300, label, lines));

@@ -116,13 +116,13 @@ function whatIfPart() {
   const peaks = pictures.appendChild(element("div", { class: "grid3" }));
   const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
 
-  // Baselines of the run itself: under another motion only the building without core is simulated anew.
-  const beside = () => overlays.filter((o) => run.detail?.[o.key] && o.key !== "no_core" && !GROUND.some(([key]) => key in answer.ground));
+  // Baselines of the run itself: under another motion only the building without core is simulated anew, for its peaks.
+  const beside = () => overlays.filter((o) => run.detail?.[o.key] && !GROUND.some(([key]) => key in answer.ground));
 
   // Within a picture its lines move, as long as they fit its axis: a picture takes ten times as long to make.
   function drawPeaks(isNew) {
     for (const [key, label, host] of places) {
-      const lines = [["without core", VERMILLION, answer.no_core], ...beside().map((o) => [o.words, o.colour, run.detail[o.key]]), ["where it began", INK, start.peaks], ["what if", TRIAL, answer.peaks]].filter(([, , peaks]) => peaks)
+      const lines = [["without core", VERMILLION, answer.no_core], ...beside().filter((o) => o.key !== "no_core").map((o) => [o.words, o.colour, run.detail[o.key]]), ["where it began", INK, start.peaks], ["what if", TRIAL, answer.peaks]].filter(([, , peaks]) => peaks)
         .map(([name, colour, peaks]) => ({ name, colour, values: peaks[key], thick: colour === TRIAL ? 2.6 : 1.4 }));
       const svg = host.firstChild, paths = host.querySelectorAll("[aria-label=line] path"), most = Math.max(...lines.flatMap(({ values }) => values));
       if (!isNew && lines.length && paths.length === lines.length && most <= svg.scale("x").domain[1] && most > 0.5 * svg.scale("x").domain[1]) {
