@@ -190,9 +190,10 @@ const tried = {
     await page.evaluate("document.querySelector('g.axis').scrollIntoView({ block: 'center' })");
     const box = await boxOf(".layers", 0);
     const axes = await page.evaluate("Array.from(document.querySelectorAll('g.axis'), (g) => +g.getAttribute('transform').match(/[\\d.]+/)[0])");
-    let shown = "";
+    let shown = "", where;
     for (let k = 1; k < 40 && !shown; k++) {
-      await mouse("mouseMoved", box.x + (axes[0] + axes[1]) / 2, box.y + 60 + (k / 40) * (box.height - 70), 0);
+      where = [box.x + (axes[0] + axes[1]) / 2, box.y + 60 + (k / 40) * (box.height - 70)];
+      await mouse("mouseMoved", ...where, 0);
       shown = await page.evaluate("document.getElementById('tip').hidden ? '' : document.querySelector('#tip strong').textContent");
     }
     const id = +shown.match(/^Design (\d+)/)?.[1];
@@ -201,10 +202,7 @@ const tried = {
     const told = await page.evaluate("parseFloat(document.querySelector('#tip dd').textContent)");
     assert.ok(Math.abs(told - value) <= 0.006 * Math.abs(value), `${told} is ${value}`);
     assert.deepEqual(await page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr.hovered'), (tr) => +tr.dataset.id)"), (await tableIds()).includes(id) ? [id] : []);
-    for (const type of ["mousePressed", "mouseReleased"]) {
-      const where = await page.evaluate("(() => { const t = document.getElementById('tip'); return [t.offsetLeft, t.offsetTop]; })()");
-      await mouse(type, where[0] - 16, where[1] - 16);
-    }
+    for (const type of ["mousePressed", "mouseReleased"]) await mouse(type, ...where);
     assert.ok((await page.evaluate("document.querySelector('#overlays').textContent")).startsWith(`Design ${id}`) || !run.tower);
     assert.match(await page.evaluate("location.hash"), id === run.chosen ? /^/ : new RegExp(`mark=${id}`));
   },
@@ -329,6 +327,45 @@ const tried = {
     assert.ok(await page.evaluate("Array.from(document.querySelectorAll('#drawer .scroll')).every((e) => e.scrollWidth <= e.clientWidth)"), "a column is cut");
     await press("Escape");
     assert.ok(await page.evaluate("document.getElementById('drawer').hidden && document.activeElement.textContent") === String(id), "the focus goes back");
+  },
+  async "a row keeps the focus when the table is made anew, and Escape gives it back to the table where it was"() {
+    const focused = "(({ id, textContent, parentElement: cell }) => [cell.closest('table')?.id ?? id, textContent].join())(document.activeElement)";
+    await page.evaluate("document.getElementById('choose-by-weights-or-a-reference-point')?.setAttribute('open', '')");
+    for (const table of ["ranked", "designs"]) {
+      if (!(await page.evaluate(`Boolean(document.querySelector("#${table} td button"))`))) continue;
+      const wanted = `${table},${await page.evaluate(`document.querySelector("#${table} td button").textContent`)}`;
+      await page.evaluate(`document.querySelector("#${table} td button").focus({ preventScroll: true })`);
+      await page.evaluate("document.querySelector('input[name=axes][value=all]').click()");
+      await settle();
+      assert.equal(await page.evaluate(focused), wanted);
+      await page.evaluate("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))");
+      await settle();
+      assert.equal(await page.evaluate(focused), wanted);
+      await page.evaluate("document.activeElement.click()");
+      await settle();
+      await press("Escape");
+      assert.equal(await page.evaluate(focused), wanted);
+    }
+    await page.evaluate("document.getElementById('choose-by-weights-or-a-reference-point')?.removeAttribute('open')");
+  },
+  async "a finger that does not move before opens the design below it, and beside a line or on a title none"() {
+    await page.evaluate("document.querySelector('.panel').scrollIntoView({ block: 'center' })");
+    const id = await page.evaluate(`(() => {
+      const layers = document.querySelector(".panel").closest(".layers"), box = layers.getBoundingClientRect(), click = (at, clientX, clientY) => at.dispatchEvent(new MouseEvent("click", { bubbles: true, clientX, clientY }));
+      for (let k = 0; k < 3000 && document.getElementById("drawer").hidden; k++) click(layers, box.left + box.width * ((k * 0.618) % 1), box.top + (box.height * k) / 3000);
+      const id = document.getElementById("drawer").dataset.wanted, line = document.querySelector("#front .layers");
+      layers.dispatchEvent(new PointerEvent("pointermove", { clientX: 0, clientY: 0 }));
+      click(line.querySelector(".heading"), line.getBoundingClientRect().left + 60, line.getBoundingClientRect().top + 200);
+      return document.getElementById("drawer").hidden ? "" : [id, document.getElementById("drawer").dataset.wanted].join();
+    })()`);
+    assert.ok(rows.some((r) => `${r[0]},${r[0]}` === id), id);
+    await press("Escape");
+    await press("Escape");
+  },
+  async "an address that no page wrote leaves a page that is drawn"() {
+    await open(`#in=%25&axes=%25&x=%E0%A4%A&weights=%25:3&steps=%2B%25:1:2`);
+    assert.equal(await counted(), rows.length);
+    await open();
   },
   async "designs are reached from a picture by keys"() {
     await page.evaluate("document.querySelector('#front .layers').focus()");

@@ -60,6 +60,13 @@ const table = (id, heads, rows) => element("div", { class: "scroll" }, element("
 // Cells: words, or a list of what is in one.
 const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", {}, ...[inside].flat())));
 
+// What holds rows anew, the focus on the button of the same design.
+function refillRows(host, ...inside) {
+  const id = host.contains(document.activeElement) && document.activeElement.closest("tr")?.dataset.id;
+  host.replaceChildren(...inside);
+  if (id) host.querySelector(`[data-id="${id}"] button`)?.focus({ preventScroll: true });
+}
+
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
   const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));

@@ -146,13 +146,13 @@ function byKeys(layers) {
 
 // The pointer over a picture: rowAt (x, y, event) is the design there.
 function pointed(place, rowAt, isBelow = false) {
-  place.addEventListener("pointermove", (event) => {
-    if (event.buttons) return;
+  const look = (event) => {
     const box = place.getBoundingClientRect();
-    hover(rowAt(event.clientX - box.left, event.clientY - box.top, event), event, isBelow && box);
-  });
+    if (!event.buttons) hover(rowAt(event.clientX - box.left, event.clientY - box.top, event), event, isBelow && box);
+    if (event.type === "click" && state.hovered !== undefined) mark(state.hovered);
+  };
+  for (const type of ["pointermove", "click"]) place.addEventListener(type, look); // a finger does not move before
   place.addEventListener("pointerleave", () => hover(undefined));
-  place.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
 }
 
 // Three canvases below an SVG: all designs, those that are selected, and what stands out of them.
@@ -174,7 +174,7 @@ function layered(host, label, rowAt, isBelow) {
 const byName = (name) => columns.find((c) => c.name === name);
 const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (Number.isFinite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
 const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
-const partsFrom = (text = "") => text.split(",").map((part) => part.split(":")).map(([name, ...words]) => [byName(decodeURIComponent(name)), ...words]).filter(([c]) => c);
+const partsFrom = (text = "") => text.split(",").map((part) => part.split(":")).map(([name, ...words]) => [columns.find((c) => [c.name, encodeURIComponent(c.name)].includes(name)), ...words]).filter(([c]) => c);
 const endFrom = (word, open) => (word && Number.isFinite(+word) ? +word : open);
 const rangesFrom = (text) => new Map(partsFrom(text).map(([c, a, b]) => [c, [endFrom(a, -Infinity), endFrom(b, Infinity)]]));
 const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && Number.isFinite(+v)).map(([c, v]) => [c, +v]));

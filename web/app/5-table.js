@@ -56,7 +56,7 @@ function designTable(host) {
     const first = page * PAGE, found = [];
     for (let k = 0, passed = 0; k < n && found.length < PAGE; k++)
       if (state.selected[order[k]] && passed++ >= first) found.push(order[k]);
-    body.replaceChildren(...found.map(rowOfDesign));
+    refillRows(body, ...found.map(rowOfDesign));
     back.disabled = page === 0;
     next.disabled = page >= last;
     where.textContent = found.length ? `${count(first + 1)}\u2013${count(first + found.length)} of ${count(state.nSelected)}` : "no design within these ranges";

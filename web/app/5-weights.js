@@ -46,7 +46,7 @@ function weightsPart(host) {
       if (document.activeElement !== point) point.value = state.reference.get(c) ?? "";
     }
     const best = charts.range(n).filter((i) => state.selected[i]).sort((a, b) => score.value[a] - score.value[b] || a - b).slice(0, RANKED);
-    list.replaceChildren(table("ranked", ["design", "score", ...objectives], best.map((i) => line([element("button", { type: "button", onclick: () => mark(i) }, String(ids[i])), digits(score.value[i]), ...objectives.map((c) => known(c, i))], { "data-id": ids[i] }))));
+    refillRows(list, table("ranked", ["design", "score", ...objectives], best.map((i) => line([element("button", { type: "button", onclick: () => mark(i) }, String(ids[i])), digits(score.value[i]), ...objectives.map((c) => known(c, i))], { "data-id": ids[i] }))));
   }
 
   host.append(element("p", { class: "note" }, "Weights of the objectives over their ranges on the front; with a value of the reference point in any objective, the design nearest to it. The pictures are coloured by the score; the best of the selected designs:"),

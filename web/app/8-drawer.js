@@ -25,10 +25,10 @@ function showDrawer(isOpen) {
   });
 }
 
-let opener; // had the focus before; a table's row may have been made anew meanwhile
+let opener, openerTable; // had the focus before; a table's row may have been made anew meanwhile
 function closeDrawer() {
   showDrawer(false);
-  const again = opener?.isConnected ? [opener] : [...document.querySelectorAll(`main tr[data-id="${drawer.dataset.wanted}"] button`)];
+  const again = opener?.isConnected ? [opener] : [openerTable, "main"].flatMap((place) => [...document.querySelectorAll(`${place} tr[data-id="${drawer.dataset.wanted}"] button`)]);
   again.find((e) => e.getClientRects().length)?.focus({ preventScroll: true });
 }
 
@@ -85,7 +85,7 @@ function fillDrawer(row, d) {
 
 async function openDrawer(row) {
   const id = ids[row];
-  if (!drawer.contains(document.activeElement)) opener = document.activeElement;
+  if (!drawer.contains(document.activeElement)) [opener, openerTable] = [document.activeElement, `#${document.activeElement.closest("table")?.id || "main"}`];
   const answer = drawerMore.detail(row);
   drawer.dataset.wanted = id;
   fillDrawer(row, answer ? { waits: true } : id === run.chosen ? run.detail : null);
