@@ -290,8 +290,9 @@ const tried = {
   async "what the errors leave out by the ladder, and where the ranking turns over with it, the first screen says"() {
     if (!run.tower) return;
     const by = (name) => run.schema.objectives.findIndex((o) => o.name === name), { with_core: own, ladder } = run.detail, titles = { j1_m: "J1", drift_ratio: "drift ratio", j3_g: "J3" };
-    const sayWith = async (set) => {
-      writeFileSync(doctored, html.replace(/"by_the_set":\{.*?\}\}/, `"by_the_set":${JSON.stringify(set)}`));
+    const sayWith = async (set, error) => {
+      const errors = error ? `"chosen_error":${JSON.stringify(run.schema.objectives.map(() => error))}` : "$&";
+      writeFileSync(doctored, html.replace(/"by_the_set":\{.*?\}\}/, `"by_the_set":${JSON.stringify(set)}`).replace(/"chosen_error":(null|\[[^\]]*\])/, errors));
       await open("", doctored);
       return page.evaluate("document.querySelector('.warnings').textContent");
     };
@@ -302,6 +303,7 @@ const tried = {
         if (name) set[key][name] = own.objectives[by(name)] * (own.objectives[by(name)] > set[key][name] ? 1.1 : 0.9);
         const said = await sayWith(set);
         assert.equal(new RegExp(`turns over: ${titles[name]} [^.]*(\\.\\d[^.]*)*${words}`).test(said), name !== "", `${name}: ${said}`);
+        assert.doesNotMatch(await sayWith(set, 1e3), /turns over/, "what differs by less than its error is neither better nor worse");
         assert.ok(/J3 is \S+ g instead of/.test(await sayWith({ ...set, with_core: { ...set.with_core, j3_g: 2 * set.with_core.j3_g } })), said);
       }
     await open();

@@ -15,11 +15,14 @@ function change(value, before) {
 // The likely errors of the chosen design.
 const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.error);
 
-// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth and its error; NaN: not known, or of
+// 1: more than before, -1: less, 0: neither, within a thousandth and its error.
+const compareTo = (before, v, error) => (Math.abs(v - before) <= Math.max(1e-3 * Math.abs(before), error ?? 0) ? 0 : Math.sign(v - before));
+
+// -1: the design is worse than the baseline in objective k, 1: better, 0: neither; NaN: not known, or of
 // what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
 function verdict(raw, b, k) {
-  const before = b.raw[k], error = chosenError()?.[k] ?? 0, { sense, name } = objectives[k], gain = sense * (before - raw[k]);
-  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : Math.abs(gain) <= Math.max(1e-3 * Math.abs(before), error) ? 0 : Math.sign(gain);
+  const before = b.raw[k], { sense, name } = objectives[k];
+  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : -sense * compareTo(before, raw[k], chosenError()?.[k]);
 }
 
 // The first objective that gains against the building alone, and the one that pays most.
@@ -94,7 +97,8 @@ function leftOut(d) {
   const turned = ["rigid", "no_core"].flatMap((key) => LADDER.flatMap(([name, title, unit, factor]) => {
     if (d[key].reason || set[key].reason || set[key][name] === null) return [];
     const [a, b, c, e] = [here[name], peaks(d[key])[name], set.with_core[name], set[key][name]].map((v) => v * factor);
-    return a > b === c > e ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
+    const error = factor * (chosenError()?.[objectives.findIndex((o) => o.name === name)] ?? 0);
+    return compareTo(b, a, error) * compareTo(e, c, error) >= 0 ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
   }));
   return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
     (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
