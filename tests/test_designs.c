@@ -53,7 +53,9 @@ TEST(a_front_of_a_taller_building_is_refused)
     mkdir(folder, 0777);
     free(folder);
     write_in_place("two/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.5,300,4e5\n3.5,300,4e5\n");
-    expect(65, "/run/front.csv: column gap_03_m is of another building: a design of 2 floors has none",
+    expect(65,
+           "/run/front.csv: column gap_03_m is of another building or of other design.variables: a design of these 2 "
+           "floors has none",
            "simulate configs/quick.ini --set building.model=@/two --set core.width_m=2 --design @/run/front.csv");
 }
 

@@ -218,7 +218,7 @@ TEST(designs_of_other_variables_are_refused)
     forget(&s);
     run(&s, "simulate configs/quick.ini " SHORT "--design @/run/front.csv");
     assert_int_not_equal(s.code, 0);
-    assert_non_null(strstr(s.err, "no column gap_01_m"));
+    assert_non_null(strstr(s.err, "of other design.variables: a design of these"));
     forget(&s);
 }
 

@@ -25,9 +25,11 @@ static Status drop_results(Table *t, const char *path, const DesignSpace *space,
     char name[TABLE_NAME_MAX];
     for (size_t c = 0; c < t->n_cols; c++)
         if (strncmp(t->names[c], "gap", 3) == 0 && !is_variable(space, t->names[c]))
-            return bad_data(err,
-                            "%s: column %s is of another building: a design of %d floors has none (design.variables)",
-                            path, t->names[c], space->n_floors);
+            return bad_data(
+                err,
+                "%s: column %s is of another building or of other design.variables: a design of these %d floors "
+                "has none",
+                path, t->names[c], space->n_floors);
     for (int v = 0; v < space->n_var; v++) {
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
