@@ -142,8 +142,8 @@ static int open_motion(Check *c, CheckedScene *p)
     return note(c, status, "motion.record", &e);
 }
 
-/* Designs that are spread over the search box, their gaps and what else is searched by its logarithm by that; the core
- * is the same, in the middle. */
+/* Designs that are spread over the search box as its sample is, which their time stands for; the core is the same, in
+ * the middle. */
 static void spread_designs(CheckedScene *p)
 {
     const DesignSpace *s = &p->space;
@@ -153,12 +153,11 @@ static void spread_designs(CheckedScene *p)
     p->n_tried = TRIED_MAX;
     for (int j = 0; j < s->n_var; j++) {
         const int is_core = (j >= s->n_gaps && j < walls_end) || (j == side && s->has_side);
-        const double least = j < s->n_gaps ? fmax(lower[j], 1e-3 * upper[j]) : lower[j];
         for (int k = 0; k < TRIED_MAX; k++) {
             const double share = is_core ? 0.5 : fmod(GOLDEN_RATIO * (j + 1) + (double)k / TRIED_MAX, 1);
             double *x = &p->tried[k][j];
-            *x = j < s->n_gaps || design_is_log(s, j) ? least * pow(upper[j] / least, share)
-                                                      : lower[j] + (upper[j] - lower[j]) * share;
+            *x = design_is_log(s, j) ? lower[j] * pow(upper[j] / lower[j], share)
+                                     : lower[j] + (upper[j] - lower[j]) * share;
             *x = design_word(s, j, *x) ? round(*x) : *x;
         }
     }
