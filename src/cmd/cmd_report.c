@@ -87,7 +87,7 @@ static Status report(const Args *args, const Run *run, Err *err)
 {
     char path[PATH_MAX];
     Report r = {0};
-    OtherRecords records = {0};
+    OtherRecords records = {.notes = stderr};
     json_t *notes;
     const int is_dossier = args_has(args, "--dossier");
     Status status = notes_of_run(run, &notes, err);

@@ -24,15 +24,15 @@ static uint64_t content_of(const char *source)
     return hash_fnv1a(source + end, strlen(source + end), hash);
 }
 
-/* The same record under another name counts once too, which is said. */
+/* The same record under another name counts once too, which the notes say. */
 static int is_there(const OtherRecords *r, const char *source, uint64_t content)
 {
     size_t i = 0;
     while (i <= r->n && r->content[i] != content)
         i++;
     const char *other = i == 0 ? r->own : i <= r->n ? r->source[i - 1] : source;
-    if (strcmp(source, other) != 0)
-        fprintf(stderr, "note: %s has the content of %s, which is shown already\n", source, other);
+    if (r->notes && strcmp(source, other) != 0)
+        fprintf(r->notes, "note: %s has the content of %s, which is shown already\n", source, other);
     return i <= r->n;
 }
 

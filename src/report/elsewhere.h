@@ -6,6 +6,8 @@
 #ifndef IMTET_REPORT_ELSEWHERE_H
 #define IMTET_REPORT_ELSEWHERE_H
 
+#include <stdio.h>
+
 #include "settings/options.h"
 
 enum { ELSEWHERE_MAX = 127 }; /* those of the largest study and as many again */
@@ -15,6 +17,7 @@ typedef struct {
     char own[OPTION_TEXT_MAX]; /* that one */
     const char *source[ELSEWHERE_MAX];
     uint64_t content[ELSEWHERE_MAX + 1]; /* hashes: of own, then of every source */
+    FILE *notes; /* the caller's, for a line on each record that is left out as a copy; NULL: none is wanted */
     char text[ELSEWHERE_MAX][OPTION_TEXT_MAX];
 } OtherRecords;
 
