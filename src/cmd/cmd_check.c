@@ -177,7 +177,7 @@ static int choose_designs(Check *c, CheckedScene *p, const char *path)
     Designs d;
     if (!note(c, designs_take(&d, path, s, NULL, 0, NULL, &e), "--design", &e))
         return 0;
-    p->n_tried = d.n < TRIED_MAX ? d.n : TRIED_MAX;
+    p->n_tried = MIN_OF(d.n, (size_t)TRIED_MAX);
     for (size_t i = 0; i < p->n_tried; i++)
         memcpy(p->tried[i], d.x + i * s->n_var, s->n_var * sizeof *d.x);
     warn_of_designs(&d, path, warn, c);
