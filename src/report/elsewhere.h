@@ -6,8 +6,6 @@
 #ifndef IMTET_REPORT_ELSEWHERE_H
 #define IMTET_REPORT_ELSEWHERE_H
 
-#include <stdio.h>
-
 #include "settings/options.h"
 
 enum { ELSEWHERE_MAX = 127 }; /* those of the largest study and as many again */
