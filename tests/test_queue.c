@@ -2,10 +2,13 @@
  * number. */
 #include "check.h"
 
+#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/random.h"
+#include "evaluate/isolated.h"
 #include "evaluate/queue.h"
 
 enum { VAR = 2, OBJ = 2, PARTS = 3, DESIGNS = 60, WORKERS = 4 };
@@ -385,6 +388,45 @@ TEST(designs_without_end_need_no_more_memory_than_those_pending)
         assert_int_equal(queue_pending(q), 20);
     }
     queue_close(q);
+}
+
+/* -- simulations in processes of their own ------------------------------------------------------------------------- */
+
+/* Twice x; a negative one crashes, 0 ends the process. */
+static Status double_or_die(void *self, size_t worker, const Task *t, Err *err)
+{
+    (void)self;
+    (void)worker;
+    (void)err;
+    if (t->x[0] < 0.0)
+        raise(SIGKILL);
+    if (t->x[0] == 0.0)
+        _exit(3);
+    *(double *)t->result = 2.0 * t->x[0];
+    return STATUS_OK;
+}
+
+static int go_on(void *user)
+{
+    (void)user;
+    return 1;
+}
+
+TEST(a_simulation_that_crashes_ends_its_own_task_alone)
+{
+    Isolated *q;
+    Err err = {0};
+    CHECK_OK(isolated_open(&q, WORKERS, &(IsolatedWork){double_or_die, NULL, 1}, &err), &err);
+    for (int i = 0; i < DESIGNS; i++) {
+        const double x = (double)((i * 7) % 11 - 3);
+        double result = 0.5;
+        const Task task = {.x = &x, .result = &result, .size = sizeof result, .may_go_on = go_on};
+        int how;
+        CHECK_OK(isolated_run(q, (size_t)i % WORKERS, &task, &how, &err), &err);
+        assert_int_equal(how, x < 0.0 ? SIGKILL : x == 0.0 ? -1 : 0);
+        assert_true(result == (how == 0 ? 2.0 * x : 0.5));
+    }
+    isolated_close(q);
 }
 
 int main(void)
