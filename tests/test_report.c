@@ -5,6 +5,7 @@
 
 #include "base/linalg.h"
 #include "base/random.h"
+#include "base/stat.h"
 #include "evaluate/replicates.h"
 #include "report/elsewhere.h"
 #include "report/importance.h"
@@ -354,7 +355,8 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
     free(r);
 }
 
-/* The band of the page ends where the worst of the records, simulated each on its own, ends. */
+/* The band of the page ends where the worst of the records, simulated each on its own, ends; the standard error of their
+ * mean is that of drawing with replacement, to what 200 drawings leave open (5 %, three times that here). */
 TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
 {
     static const char *const RECORDS[] = {"builtin:kobe-like", "builtin:sylmar-like", "builtin:elcentro-like"};
@@ -362,23 +364,28 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
     Settings s = *tower.settings;
     Detail several, alone;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
+    CHECK_OK(settings_put(&s, "sim.robust", "mean", &err), &err);
     const double *x = tower.table.row[run_knee(&tower)].x;
     const DetailOptions options = {.floor = -1, .without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
     json_t *page = detail_json(&several, &tower.schema.order),
            *ends = json_object_get(json_object_get(page, "band"), "drift_m");
-    double low = INFINITY, high = 0;
+    double low = INFINITY, high = 0, j1[3], mean, sd;
     for (int i = 0; i < 3; i++) {
         CHECK_OK(settings_put(&s, "motion.records", "none", &err), &err);
         CHECK_OK(settings_put(&s, "motion.record", RECORDS[i], &err), &err);
         CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &alone, &err), &err);
         low = fmin(low, alone.result[SCENE_IMPACT].peak_drift_m[4]);
         high = fmax(high, alone.result[SCENE_IMPACT].peak_drift_m[4]);
+        j1[i] = alone.result[SCENE_IMPACT].j1_m;
+        assert_true(isnan(alone.standard_error[MEASURE_J1]));
         detail_free(&alone);
     }
     assert_true(low < 0.98 * high);
     assert_close(json_number_value(json_array_get(json_array_get(ends, 0), 4)), low, 1e-12);
     assert_close(json_number_value(json_array_get(json_array_get(ends, 1), 4)), high, 1e-12);
+    mean_and_sd_of(3, j1, &mean, &sd);
+    assert_close(several.standard_error[MEASURE_J1], sd * sqrt(2.0 / 3) / sqrt(3), 0.15);
     json_decref(page);
     detail_free(&several);
 }

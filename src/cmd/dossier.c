@@ -154,6 +154,13 @@ static void add_judged(const Dossier *o, json_t *table)
                       i < 0 ? run_f(o->r->run, o->r->chosen)[k] : o->d->baseline[i].value[schema->order.of[k]],
                       i < 0 ? error[k] : NAN, NAN);
     }
+    if (o->n_records < 2)
+        return;
+    char label[64];
+    snprintf(label, sizeof label, "standard error over %zu records", o->n_records);
+    json_t *row = json_put(figures_row(table), "=%s", label);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        put_named(row, words_of_objective(schema, k), o->d->standard_error[schema->order.of[k]], NAN, NAN);
 }
 
 static void add_single(const Dossier *o, json_t *table)

@@ -596,6 +596,18 @@ static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)
     return queue_ask(q, &(Asked){.x = task->x, .variant = variant, .n_parts = task->n_parts ? task->n_parts : 1}, err);
 }
 
+void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES])
+{
+    const ReplicatePlan plan = plan_of(t, t->plan.n_records);
+    Measured parts[TOWER_RECORDS_MAX];
+    ReplicateSummary sum;
+    for (size_t i = 0; i < plan.n_records; i++)
+        parts[i] = measured(&by_record[i]);
+    replicates_summarise(&plan, parts, sizeof *parts, &sum);
+    replicates_errors(&plan, parts, sizeof *parts, &sum);
+    memcpy(error, sum.error, sizeof sum.error);
+}
+
 static void take(const Problem *p, const SimTask *task, SimResult *result, const char *parts)
 {
     const size_t n = task->n_parts ? task->n_parts : 1;

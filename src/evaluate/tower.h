@@ -44,6 +44,10 @@ const Tower *tower_of(const Problem *p);
 int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
+
+/* Standard errors (evaluate/replicates.h) of a design simulated once under each of the n_records. */
+void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES]);
+
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* of a search; 0: motion.record */
 

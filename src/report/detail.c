@@ -31,12 +31,16 @@ static Status simulate_records(const Problem *p, const double x[], Detail *d, Er
 {
     SimTask tasks[TOWER_RECORDS_MAX];
     d->n_records = tower_n_records(tower_of(p));
+    for (int k = 0; k < N_MEASURES; k++)
+        d->standard_error[k] = NAN;
     if (d->n_records < 2)
         return STATUS_OK;
     for (size_t i = 0; i < d->n_records; i++)
         tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = x, .scene = i};
     TRY_ROOM(d->by_record, d->n_records, "results", err);
-    return tower_simulate(p, d->n_records, tasks, d->by_record, err);
+    TRY(tower_simulate(p, d->n_records, tasks, d->by_record, err));
+    tower_standard_errors(tower_of(p), d->by_record, d->standard_error);
+    return STATUS_OK;
 }
 
 static void describe(const Scenario *w, const double x[], Detail *d)

@@ -41,7 +41,8 @@ typedef struct {
     Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
     size_t n_records;               /* of the run */
     SimResult *by_record;           /* (n_records) the design under each of them; NULL: there is one */
-    Ladder *ladder;                 /* of the design; NULL: not asked for, or `no_ladder` says why there is none */
+    double standard_error[N_MEASURES]; /* of what those are by its rule (evaluate/replicates.h); NAN: there is one */
+    Ladder *ladder;                    /* of the design; NULL: not asked for, or `no_ladder` says why there is none */
     Err no_ladder;
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */

@@ -209,10 +209,12 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
         json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_loads(d),
         json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
         json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
-    json_t *error = json_array();
-    for (int k = 0; k < order->n_obj; k++)
+    json_t *error = json_array(), *standard = json_array();
+    for (int k = 0; k < order->n_obj; k++) {
         json_array_append_new(error, json_number(d->error[order->of[k]]));
-    json_put(o, "error=%p band=%p records=%ld", error, json_of_band(d), d->n_records);
+        json_array_append_new(standard, json_number(d->standard_error[order->of[k]]));
+    }
+    json_put(o, "error=%p standard_error=%p band=%p records=%ld", error, standard, json_of_band(d), d->n_records);
     if (d->ladder || d->no_ladder.text[0])
         json_put(o, "ladder=%p", d->ladder ? ladder_json(d->ladder) : json_of("reason=%s", d->no_ladder.text));
     if (d->gap_sides != GAPS_BOTH)

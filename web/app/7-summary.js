@@ -53,6 +53,10 @@ function shownValue(c, value, error) {
   return [known, " ", element("small", {}, `${rest ? rest.trim() + " " : ""}${c.unit}`)];
 }
 
+// How far the number would be from that of the next suite: not an error of comparisons, which are under the same records.
+const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", title: `Standard error of this number over the ${run.detail.records} records, by the bootstrap.` },
+  "records \u00b1 ", show(error * c.factor), " ", element("small", {}, c.unit)) : "");
+
 function cards() {
   const raw = run.chosen_f, error = chosenError();
   const against = (c, k, o) => {
@@ -63,6 +67,7 @@ function cards() {
   return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
     element("div", { class: "value" }, ...shownValue(c, raw[k], error?.[k])),
+    bySuite(c, run.detail?.standard_error?.[k]),
     ...(run.tower && !run.detail ? [skeleton(36)] : overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o))))));
 }
 
@@ -162,7 +167,7 @@ function summaryPart() {
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
   if (run.notes_fault) host.append(element("p", { class: "warn" }, `Notes: ${run.notes_fault}`));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
-  if (d) peakPart(host, d, 250);
+  if (d) peakPart(host, d, 220);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
