@@ -55,7 +55,7 @@ function shownValue(c, value, error) {
 
 // How far the number would be from that of the next suite: not an error of comparisons, which are under the same records.
 const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", title: `Standard error of this number over the ${run.detail.records} records, by the bootstrap.` },
-  "records \u00b1 ", show(error * c.factor), " ", element("small", {}, c.unit)) : "");
+  `records \u00b1 ${+(error * c.factor).toPrecision(2)} `, element("small", {}, c.unit)) : "");
 
 function cards() {
   const raw = run.chosen_f, error = chosenError();
