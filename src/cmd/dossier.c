@@ -141,6 +141,16 @@ static void put_lines(json_t *table, const char *what, const char *format, doubl
 
 /* ---- what it is ------------------------------------------------------------------------------------------------ */
 
+static void add_standard_errors(const Dossier *o, json_t *table)
+{
+    const Schema *schema = &o->r->run->schema;
+    char label[64];
+    snprintf(label, sizeof label, "its standard error over %zu records", o->n_records);
+    json_t *row = json_put(figures_row(table), "=%s", label);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        put_named(row, words_of_objective(schema, k), o->d->standard_error[schema->order.of[k]], NAN, NAN);
+}
+
 /* A study of several simulations judges by none of them. */
 static void add_judged(const Dossier *o, json_t *table)
 {
@@ -153,14 +163,9 @@ static void add_judged(const Dossier *o, json_t *table)
             put_named(row, words_of_objective(schema, k),
                       i < 0 ? run_f(o->r->run, o->r->chosen)[k] : o->d->baseline[i].value[schema->order.of[k]],
                       i < 0 ? error[k] : NAN, NAN);
+        if (i < 0 && o->n_records > 1)
+            add_standard_errors(o, table);
     }
-    if (o->n_records < 2)
-        return;
-    char label[64];
-    snprintf(label, sizeof label, "standard error over %zu records", o->n_records);
-    json_t *row = json_put(figures_row(table), "=%s", label);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        put_named(row, words_of_objective(schema, k), o->d->standard_error[schema->order.of[k]], NAN, NAN);
 }
 
 static void add_single(const Dossier *o, json_t *table)
