@@ -258,9 +258,9 @@ TEST(damage_is_found_on_opening_whatever_was_hit)
     assert_int_equal(mkdir(path, 0777), 0);
     expect(74, "hurt/run.sqlite: is no file", "status @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
-    expect(74, "has format 99, this program reads 9; a newer imtet wrote it", "status @/sound");
+    expect(74, "has format 99, this program reads 10; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
-    expect(74, "has format 1, this program reads 9; an older imtet wrote it", "status @/sound");
+    expect(74, "has format 1, this program reads 10; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
     char *list = output_of("status @");
     assert_non_null(strstr(list, "unreadable"));

@@ -1,7 +1,7 @@
 /* Objectives over a suite of records, fragility curves and yearly rates, by closed forms and known samples. */
 #include "runs.h"
 
-#include "analysis/fragility.h"
+#include "analysis/evaluations.h"
 #include "base/random.h"
 #include "base/stat.h"
 #include "evaluate/consequences.h"
@@ -193,6 +193,82 @@ TEST(the_yearly_rate_is_that_of_the_closed_form)
     assert_close(fragility_rate(&f, 30, hazard), k0 * pow(0.6, -k) * exp(k * k * 0.16 / 2), 1e-4);
 }
 
+/* -- annual loss --------------------------------------------------------------------------------------------------- */
+
+/* lambda = k0 x^-k from 0.02 to 5 at points of a table. */
+enum { POINTS = 7 };
+static void power_law(double k0, double k, double hazard[2 * POINTS])
+{
+    for (int i = 0; i < POINTS; i++) {
+        hazard[2 * i] = 0.02 * pow(250, i / (POINTS - 1.0));
+        hazard[2 * i + 1] = k0 * pow(hazard[2 * i], -k);
+    }
+}
+
+/* Of L = s x to x = 1 and constant above, by parts s (x0 lambda(x0) + integral of lambda from x0 to 1), however many
+ * levels show it; a logarithm where lambda is 1 / x. Below the first level: s times the integral of x k lambda / x. */
+TEST(the_annual_loss_of_a_loss_straight_in_intensity_is_that_of_the_closed_form)
+{
+    static const double EXPONENT[] = {0.7, 1, 2.5}, X[] = {0.1, 0.35, 1}, LOSS[] = {0.04, 0.14, 0.4};
+    const double k0 = 1e-4, s = 0.4, x0 = 0.02;
+    for (int i = 0; i < 3; i++) {
+        const double k = EXPONENT[i];
+        double hazard[2 * POINTS];
+        power_law(k0, k, hazard);
+        const double area = k == 1 ? log(1 / x0) : (1 - pow(x0, 1 - k)) / (1 - k);
+        const double low = k == 1 ? log(0.1 / x0) : (pow(0.1, 1 - k) - pow(x0, 1 - k)) / (1 - k);
+        const AnnualLoss y = annual_loss(3, X, LOSS, POINTS, hazard),
+                         last = annual_loss(1, X + 2, LOSS + 2, POINTS, hazard);
+        assert_close(y.per_year, s * k0 * (pow(x0, 1 - k) + area), 1e-12);
+        assert_close(last.per_year, y.per_year, 1e-12);
+        assert_close(y.below, s * k0 * k * low, 1e-12);
+        assert_close(y.above, s * k0, 1e-12);
+        assert_close(y.at_begin, s * k0 * pow(x0, 1 - k), 1e-12);
+        assert_close(last.below + last.above, y.per_year, 1e-12);
+    }
+}
+
+TEST(a_constant_loss_comes_as_often_as_the_first_point_and_a_step_as_often_as_its_place)
+{
+    const double x[] = {0.01, 0.3, 0.3 * (1 + 1e-9), 2}, constant[] = {0.3, 0.3, 0.3, 0.3}, step[] = {0, 0, 1, 1};
+    double hazard[2 * POINTS];
+    power_law(2e-3, 1.7, hazard);
+    const AnnualLoss y = annual_loss(4, x, constant, POINTS, hazard), z = annual_loss(4, x, step, POINTS, hazard);
+    assert_close(y.per_year, 0.3 * hazard[1], 1e-12);
+    assert_close(y.at_begin, y.per_year, 1e-12);
+    assert_at_most(y.below, 0);
+    assert_close(y.above, 0.3 * 2e-3 * pow(2, -1.7), 1e-12);
+    assert_close(z.per_year, 2e-3 * pow(0.3, -1.7), 1e-8);
+}
+
+TEST(beyond_the_last_point_of_the_hazard_all_events_lose_what_they_lose_there)
+{
+    const double x[] = {1, 4}, loss[] = {0.2, 0.8}, hazard[] = {0.5, 0.1, 2, 0.025}; /* 0.05 / x, L = 0.2 x */
+    const AnnualLoss y = annual_loss(2, x, loss, 2, hazard);
+    assert_close(y.above, 0.4 * 0.025, 1e-12);
+    assert_close(y.per_year, 0.2 * 0.05 * (1 + log(4)), 1e-12);
+    assert_close(y.below, 0.2 * 0.05 * log(2), 1e-12);
+    const AnnualLoss low = annual_loss(1, (double[]){0.2}, (double[]){0.7}, 2, hazard);
+    assert_close(low.per_year, 0.7 * 0.1, 1e-12);
+    assert_close(low.at_begin, low.per_year, 1e-12);
+    assert_at_most(low.below, 0);
+}
+
+/* Of two records one loses nothing and one fails: the mean is the half of all, and so is its standard error. */
+TEST(a_simulation_that_failed_has_lost_the_whole_building)
+{
+    static EvaluatedRun run[3];
+    EvaluatedRecord record[3] = {{0}, {.readable = STATUS_BAD_DATA}, {0}};
+    const double level = 0.1, hazard[] = {0.1, 0.02, 1, 0.001};
+    const Evaluations e = {.n_records = 3, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = 2};
+    for (int i = 0; i < 3; i++)
+        run[i].result[EVALUATED_RIGID] = (SimResult){.n_floors = 1, .outcome = i == 2 ? RUN_NOT_FINITE : RUN_OK};
+    const AnnualLoss y = ida_annual_loss(&e, EVALUATED_RIGID, 2, hazard);
+    assert_close(y.per_year, 0.02 / 2, 1e-12);
+    assert_close(y.error, 0.02 / 2, 1e-12);
+    assert_int_equal(y.n_failed, 1);
+}
+
 /* -- consequences -------------------------------------------------------------------------------------------------- */
 
 TEST(a_state_begins_at_its_median_where_it_is_as_likely_as_not)
@@ -281,6 +357,42 @@ static void expect_key_above_the_panels(void)
     free(svg);
 }
 
+/* L of a record in the middle of many short pieces of the hazard curve of the test, 0.001 / x to 0.1 g, then 0.0001 /
+ * x^2 to 1 g. */
+static double lost_in_a_year(const double loss[6])
+{
+    enum { PIECES = 20000 };
+    double sum = loss[5] * 0.0001, before = 0.1;
+    for (int i = 1; i <= PIECES; i++) {
+        const double x = 0.01 * pow(100, (double)i / PIECES), at = 0.01 * pow(100, (i - 0.5) / PIECES);
+        const double rate = x < 0.1 ? 0.001 / x : 0.0001 / (x * x);
+        const int j = (int)fmin(at / 0.1, 6); /* levels below */
+        const double from = j > 0 ? loss[j - 1] : 0, to = loss[j < 6 ? j : 5];
+        sum += (from + (to - from) * (at / 0.1 - j)) * (before - rate);
+        before = rate;
+    }
+    return sum;
+}
+
+static void expect_annual_losses(const json_t *o, const char *const scenes[4])
+{
+    for (size_t c = 0; c < 4; c++) {
+        const json_t *row = json_array_get(json_object_get(o, "annual_loss"), c);
+        double year[3], mean, sd;
+        assert_string_equal(json_string_value(json_object_get(row, "scene")), scenes[c]);
+        for (size_t r = 0; r < 3; r++) {
+            double loss[6];
+            for (size_t l = 0; l < 6; l++)
+                loss[l] = number(json_object_get(json_array_get(json_object_get(o, "records"), 6 * r + l), scenes[c]),
+                                 "loss");
+            year[r] = lost_in_a_year(loss);
+        }
+        mean_and_sd_of(3, year, &mean, &sd);
+        assert_close(number(row, "annual_loss"), mean, 1e-5);
+        assert_close(number(row, "standard_error"), sd / sqrt(3), 1e-4);
+    }
+}
+
 /* What was counted is what the rows of the records have; the building alone answers in proportion to Sa. */
 TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere)
 {
@@ -312,9 +424,12 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
         if (json_is_number(rate)) /* of 0.01 g at most, and of the last intensity at least where all exceed it */
             assert_less(json_number_value(rate), 0.1);
     }
+    expect_annual_losses(o, SCENES);
     json_decref(o);
     char *table = output_of(CURVES "--csv @/rows.csv --hazard @/hazard.csv"), *rows = read_in_place("rows.csv");
     assert_non_null(strstr(table, "per_year"));
+    assert_non_null(strstr(table, "annual_loss"));
+    assert_non_null(strstr(table, "begin lower")); /* than 0.1 g, of a hazard from 0.01 g */
     assert_non_null(strstr(rows, "record,scene,outcome,sa_g,pga_g,scale,"));
     free(table);
     table = output_of(CURVES "--csv -");
@@ -383,12 +498,76 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     expect(2, "--fragility wants intensities", SUITE "--sa 0.2 --fragility j3_g=1");
     expect(2, "is no list of NAME=NUMBER", SUITE "--sa 0.1:0.1:0.2 --fragility j3_g");
     expect(2, "drift is no result", SUITE "--sa 0.1:0.1:0.2 --fragility drift=1");
-    expect(2, "a probability is no limit of one simulation", SUITE "--sa 0.1:0.1:0.2 --fragility limits");
+    expect(2, "neither a probability nor annual_loss is a limit of one simulation",
+           SUITE "--sa 0.1:0.1:0.2 --fragility limits");
     expect(65, "no storey yields", SUITE "--sa 0.1:0.1:0.2 --fragility ductility=2");
     write_in_place("pga.csv", "pga_g,rate_per_year\n0.01,0.1\n0.1,0.01\n");
     write_in_place("up.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.2\n");
     expect(65, "pga.csv: has no columns sa_g and rate_per_year of two rows", CURVES "--hazard @/pga.csv");
     expect(65, "up.csv:3: intensities must rise, and their rates fall", CURVES "--hazard @/up.csv");
+}
+
+/* -- annual loss as an objective ----------------------------------------------------------------------------------- */
+
+#define OF_YEARS                                                                                                       \
+    "--set search.objectives=annual_loss,j3_g --set sim.robust=mean --set motion.pga_g=0 "                             \
+    "--set 'motion.record=builtin:suite-01 factor=0.5 rate=0.02' "
+#define YEARS "@/tower.ini " OF_YEARS "--set motion.records=@/year_list.txt "
+
+TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
+{
+    static const char *const SOURCE[] = {"builtin:suite-01 factor=0.5", "builtin:suite-01 factor=1.5",
+                                         "builtin:suite-03"};
+    static const double RATE[] = {0.02, 0.003, 0.0007};
+    double sum = 0;
+    char command[400];
+    write_in_place("year_list.txt", "builtin:suite-01 factor=0.5 rate=0.02\n# rarer\n"
+                                    "builtin:suite-01 factor=1.5 rate=0.003\nbuiltin:suite-03 rate=7e-4\n");
+    free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
+                   "--out @/years"));
+    for (int i = 0; i < 3; i++) {
+        snprintf(command, sizeof command,
+                 "simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
+                 "--set 'motion.record=%s'",
+                 SOURCE[i]);
+        json_t *o = json_of(command);
+        assert_true(json_is_null(json_object_get(o, "annual_loss")));
+        sum += RATE[i] * number(o, "loss");
+        json_decref(o);
+    }
+    json_t *o = json_of("simulate " YEARS "--design @/years:knee --json"), *mean = json_object_get(o, "replicates");
+    assert_close(number(json_object_get(mean, "mean"), "annual_loss"), sum, 1e-12);
+    assert_less(0, number(json_object_get(mean, "standard_error"), "annual_loss"));
+    json_decref(o);
+    o = json_of("evaluate @/years --design knee --json"); /* every record by its part of the sum */
+    for (size_t i = 0; i < 3; i++)
+        sum -= number(json_object_get(json_array_get(json_object_get(o, "records"), i), "with_core"), "annual_loss");
+    assert_true(fabs(sum) < 1e-12);
+    json_decref(o);
+    free(output_of("evaluate @/years --design knee --record builtin:suite-02")); /* without a rate */
+}
+
+TEST(an_annual_loss_without_its_rates_is_refused_with_what_to_do)
+{
+    write_in_place("year_list.txt", "builtin:suite-02 rate=0.02\nbuiltin:suite-03 factor=2\n");
+    expect(65, "year_list.txt:2: motion.records: builtin:suite-03 factor=2: annual_loss wants the events of a year",
+           "optimize " YEARS "--out @/no");
+    expect(65,
+           "motion.records: builtin:suite-03: annual_loss wants the events of a year that every record stands for: "
+           "write rate=NUMBER behind it",
+           "check @/tower.ini " OF_YEARS "--set motion.records=builtin:suite-03");
+    expect(65, "motion.record: builtin:suite-01: annual_loss wants",
+           "check " YEARS "--set motion.record=builtin:suite-01");
+    write_in_place("year_list.txt", "builtin:suite-02 rate=0.02\n");
+    expect(65, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records",
+           "check " YEARS "--set sim.robust=worst");
+    expect(65, "set sim.robust = mean", "check " YEARS "--set sim.robust=0.9");
+    expect(65, "set sim.robust = mean",
+           "check @/tower.ini --set 'search.limits=annual_loss<=0.1' --set sim.robust=cvar");
+    expect(65, "p(annual_loss>0.01): annual_loss is a sum over records, no result of one simulation",
+           "check " YEARS "--set 'search.objectives=j3_g,p(annual_loss>0.01)'");
+    expect(2, "neither a probability nor annual_loss is a limit of one simulation",
+           SUITE "--sa 0.1:0.1:0.2 --fragility annual_loss=0.1");
 }
 
 /* -- records that speak for the rest ------------------------------------------------------------------------------- */

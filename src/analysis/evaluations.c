@@ -297,3 +297,27 @@ Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const 
     }
     return fragility_fit(e->n_levels, e->level, n_at, exceeded);
 }
+
+AnnualLoss ida_annual_loss(const Evaluations *e, EvaluatedCase which, size_t n_hazard, const double hazard[])
+{
+    double loss[IDA_LEVELS_MAX], squares = 0;
+    const double n = (double)e->n_read;
+    AnnualLoss mean = {0};
+    for (size_t r = 0; r < e->n_records; r++) {
+        if (e->record[r].readable != STATUS_OK)
+            continue;
+        for (size_t l = 0; l < e->n_levels; l++) {
+            loss[l] = ida_value(&e->run[r * e->n_levels + l], which, MEASURE_LOSS);
+            mean.n_failed += !isfinite(loss[l]);
+            loss[l] = fmin(loss[l], 1);
+        }
+        const AnnualLoss one = annual_loss(e->n_levels, e->level, loss, n_hazard, hazard);
+        mean.per_year += one.per_year / n;
+        mean.below += one.below / n;
+        mean.above += one.above / n;
+        mean.at_begin += one.at_begin / n;
+        squares += one.per_year * one.per_year / n;
+    }
+    mean.error = n > 1 ? sqrt(fmax(squares - mean.per_year * mean.per_year, 0) / (n - 1)) : NAN;
+    return mean;
+}

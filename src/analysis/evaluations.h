@@ -110,4 +110,7 @@ double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, 
 Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const Limit *limit, size_t n_at[],
                         size_t exceeded[]);
 
+/* Mean over the records, in which it is linear; a simulation that failed has lost the whole building. */
+AnnualLoss ida_annual_loss(const Evaluations *e, EvaluatedCase which, size_t n_hazard, const double hazard[]);
+
 #endif

@@ -100,3 +100,43 @@ double fragility_rate(const Fragility *f, size_t n, const double hazard[])
     }
     return rate + hazard[2 * n - 1] * fragility_at(f, hazard[2 * n - 2]);
 }
+
+/* L, by levels. */
+static double loss_at(size_t n, const double x[], const double loss[], double at)
+{
+    size_t j = 0;
+    while (j < n && x[j] < at)
+        j++;
+    if (j == n)
+        return loss[n - 1];
+    const double from = j > 0 ? x[j - 1] : 0, begin = j > 0 ? loss[j - 1] : 0;
+    return begin + (loss[j] - begin) * (at - from) / (x[j] - from);
+}
+
+/* L from `begin` at a to `end` at b, straight, under lambda = rate (x / a)^k: by parts. */
+static double lost_between(double a, double b, double begin, double end, double rate, double k)
+{
+    const double e = k + 1, l = log(b / a), area = a * rate * (e != 0 ? expm1(e * l) / e : l);
+    return begin * rate - end * rate * exp(k * l) + (end - begin) / (b - a) * area;
+}
+
+AnnualLoss annual_loss(size_t n, const double x[], const double loss[], size_t n_hazard, const double hazard[])
+{
+    const double *last = hazard + 2 * n_hazard - 2;
+    AnnualLoss y = {.at_begin = hazard[1] * loss_at(n, x, loss, hazard[0]), .error = NAN};
+    y.per_year = y.above = last[1] * loss_at(n, x, loss, last[0]);
+    for (const double *row = hazard; row < last; row += 2) {
+        const double k = log(row[3] / row[1]) / log(row[2] / row[0]);
+        for (double a = row[0], b; a < row[2]; a = b) { /* to the next level or point */
+            b = row[2];
+            for (size_t j = n; j-- > 0;)
+                b = x[j] > a && x[j] < b ? x[j] : b;
+            const double lost =
+                lost_between(a, b, loss_at(n, x, loss, a), loss_at(n, x, loss, b), row[1] * pow(a / row[0], k), k);
+            y.per_year += lost;
+            y.below += b <= x[0] ? lost : 0;
+            y.above += a >= x[n - 1] ? lost : 0;
+        }
+    }
+    return y;
+}

@@ -14,7 +14,11 @@
  *   rate = integral P(exceeded | x) |d lambda(x)|     [1/year], lambda: the hazard curve, yearly rate of more than x
  *
  * lambda is a power of x between its points. Below the first point nothing is counted, above the last the rate there
- * times P there.
+ * times P there. Likewise what is lost in a year,
+ *
+ *   annual loss = integral L(x) |d lambda(x)|        [of a new building, 1/year]
+ *
+ * L: the mean loss of one event, straight between 0 at x = 0 and the levels, constant above the last one.
  *
  * Sources  Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra
  *          31 (2015) 579-599; the integral: Cornell, Jalayer, Hamburger and Foutch, J. Struct. Eng. 128 (2002) 526-533
@@ -36,3 +40,14 @@ double fragility_at(const Fragility *f, double x); /* NAN: not known */
 
 /* hazard (n, 2): x rising, lambda falling, all above 0. */
 double fragility_rate(const Fragility *f, size_t n, const double hazard[]);
+
+typedef struct {
+    double per_year;
+    double below, above; /* of it by events below the first level; above the last one, or above the last point */
+    double at_begin;     /* of it, were all events above the first point as small as that one */
+    double error;        /* standard error over the records; NAN: one of them, or not asked for */
+    size_t n_failed;     /* simulations */
+} AnnualLoss;
+
+/* x, loss (n) of the levels, x rising; hazard (n_hazard, 2). */
+AnnualLoss annual_loss(size_t n, const double x[], const double loss[], size_t n_hazard, const double hazard[]);

@@ -201,6 +201,8 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
         json_put(all, "ida=%p", ida_json(e));
     if (c->fragilities.limits.n > 0)
         json_put(all, "fragility=%p", fragilities_json(&c->fragilities, e));
+    if (c->fragilities.hazard)
+        json_put(all, "annual_loss=%p", annual_losses(&c->fragilities, e, 0));
     return show_json(all, err);
 }
 
@@ -319,6 +321,10 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
         ida_print(e, order);
     else
         print_records(e, order);
+    if (c->fragilities.hazard) {
+        putchar('\n');
+        figures_print(annual_losses(&c->fragilities, e, 1));
+    }
     print_refused(stdout, e);
 }
 
@@ -555,7 +561,8 @@ static const ArgOption OPTIONS[] = {
           "FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
           "of such a range, probability by intensity of drift_ratio=0.02,j3_g=5 (limits: the run's) being exceeded"),
-    VALUE("--hazard", "FILE", "CSV of sa_g (or pga_g) and rate_per_year: how often they then are"),
+    VALUE("--hazard", "FILE",
+          "CSV of sa_g (or pga_g) and rate_per_year: how often they then are, and what is lost in a year"),
     OPTION_UNIT,
     OPTION_SET,
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
@@ -584,7 +591,8 @@ const Command CMD_EVALUATE = {
         "building without a core beside it. Files of a folder that cannot be read are listed with the reason. Peak,\n"
         "stretch, replicates and all else are the run's unless an option says otherwise; each record stands alone.\n"
         "--pga 0.05:0.05:0.6 or --sa makes it an incremental dynamic analysis, without replicates; --fragility\n"
-        "fits lognormal curves to it by maximum likelihood, with viscous links beside (docs/risk.md).\n"
+        "fits lognormal curves to it by maximum likelihood, with viscous links beside (docs/risk.md); with --hazard\n"
+        "the expected annual loss of every scene, as a share of a new building, stands below.\n"
         "--full-model simulates designs on the building as the settings reduce it (building.modes, by default the "
         "floors\n"
         "alone) and on all degrees of freedom of its frame, with the contacts at the floors and all modes: 106 of the\n"

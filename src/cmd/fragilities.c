@@ -9,6 +9,7 @@ static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_RIGID, EVALUAT
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
 static const double YEARS = 50;
 static const double CUT_OFF_NOTICEABLE = 0.01; /* of the probability where a hazard curve begins */
+static const double OUTSIDE_NOTICEABLE = 0.05; /* share of an annual loss that lies outside of what was simulated */
 
 /* ---- what is asked for ------------------------------------------------------------------------------------------- */
 
@@ -71,9 +72,11 @@ Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, 
             return misused(err, "--fragility %s: no limit, or more than %d", list, LIMITS_MAX);
         f->limits.limit[f->limits.n++] = one.limit[0];
     }
-    for (size_t i = 0; i < f->limits.n; i++)
-        if (schema->order.of[f->limits.limit[i].result] >= MEASURES_LISTED)
-            return misused(err, "--fragility: a probability is no limit of one simulation");
+    for (size_t i = 0; i < f->limits.n; i++) {
+        const int k = schema->order.of[f->limits.limit[i].result];
+        if (k >= MEASURES_LISTED || k == MEASURE_ANNUAL_LOSS)
+            return misused(err, "--fragility: neither a probability nor annual_loss is a limit of one simulation");
+    }
     Status status = hazard ? table_read(&t, hazard, TABLE_HEADED, err) : STATUS_OK;
     if (status == STATUS_OK && hazard)
         status = take_hazard(f, &t, intensity, err);
@@ -215,6 +218,36 @@ json_t *fragilities_json(const Fragilities *f, const Evaluations *e)
 {
     json_t *list = json_array();
     each_curve(f, e, add_object, list);
+    return list;
+}
+
+/* ---- annual loss ------------------------------------------------------------------------------------------------- */
+
+/* How much of it is not of the levels, and what helps. */
+static json_t *describe_loss(const Fragilities *f, const Evaluations *e, const char *scene, const AnnualLoss *y)
+{
+    const double below = y->below / y->per_year, above = y->above / y->per_year;
+    const int is_low = below > OUTSIDE_NOTICEABLE, is_high = above > OUTSIDE_NOTICEABLE;
+    const int is_cut = f->hazard[0] >= e->level[0] && y->at_begin > OUTSIDE_NOTICEABLE * y->per_year;
+    char note[NOTE_MAX];
+    snprintf(note, sizeof note, "%s%s%s",
+             is_low   ? "begin lower"
+             : is_cut ? "more: the hazard curve begins too high"
+                      : "",
+             (is_low || is_cut) && is_high ? ", " : "", is_high ? "end higher" : "");
+    return json_of("scene=%s annual_loss=%g standard_error=%g share_below_first=%g share_above_last=%g failed=%zu "
+                   "note=%s",
+                   scene, y->per_year, y->error, below, above, y->n_failed, note);
+}
+
+json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people)
+{
+    json_t *list = json_array();
+    for (size_t k = 0; k < N_OF(CASES); k++) {
+        const AnnualLoss y = ida_annual_loss(e, CASES[k], f->n_hazard, f->hazard);
+        const struct EvaluationCase *scene = &EVALUATION_CASES[CASES[k]];
+        json_array_append_new(list, describe_loss(f, e, for_people ? scene->word : scene->key, &y));
+    }
     return list;
 }
 

@@ -1,5 +1,6 @@
 /* cmd/fragilities.h -- `imtet evaluate --fragility`: how probable it is, by intensity, that limits are exceeded, and
- * with a hazard curve how often (analysis/fragility.h), of a design and of what stands beside it.
+ * with a hazard curve how often, and what is lost in a year (analysis/fragility.h), of a design and of what stands
+ * beside it.
  *
  * Life cycle  fragilities_read -> fragilities_table, _json, _draw ... -> fragilities_free (an empty one is fine) */
 #pragma once
@@ -25,5 +26,9 @@ Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, 
 
 json_t *fragilities_table(const Fragilities *f, const Evaluations *e); /* rows for people */
 json_t *fragilities_json(const Fragilities *f, const Evaluations *e);
+
+/* Of every scene, where there is a hazard curve: rows, for people or for JSON. */
+json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people);
+
 Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err);
 void fragilities_free(Fragilities *f);

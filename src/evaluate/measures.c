@@ -162,6 +162,8 @@ static Status no_result(const char *key, const char *name, Err *err)
 static Status check_chance(const Chance *c, const char *key, Err *err)
 {
     const Measure *of = &MEASURES[c->of];
+    if (c->of == MEASURE_ANNUAL_LOSS)
+        return bad_data(err, "%s: %s: annual_loss is a sum over records, no result of one simulation", key, c->name);
     const char exceeds = of->sense > 0 ? '>' : '<';
     if (c->bound < 0 || (c->bound == 0 && c->sign < 0))
         return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c->name);
@@ -269,6 +271,8 @@ Status measures_order(MeasureOrder *out, const char *objectives, const char *lim
         TRY(take_list(out, objectives, err));
     TRY(take_limits(out, limits, err));
     out->judged |= out->objectives | out->limited;
+    if (out->judged >> MEASURE_ANNUAL_LOSS & 1) /* one record alone need not have a rate */
+        out->judged = (out->judged & ~((MeasureSet)1 << MEASURE_ANNUAL_LOSS)) | (MeasureSet)1 << MEASURE_LOSS;
     out->n = out->n_obj;
     for (int k = 0; k < N_MEASURES; k++)
         if (!(out->objectives >> k & 1) && (k < MEASURES_LISTED || (out->limited >> k & 1)))

@@ -87,7 +87,10 @@ enum {
       "share of the input dissipated by links and the tuned mass")                                                     \
     X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "of devices and core by design.prices")                            \
     X(LOSS, "loss", "-", 1, NEEDS_NOTHING, damage_loss(r),                                                             \
-      "expected cost of repair over that of replacing the building (evaluate/consequences.h)")
+      "expected cost of repair over that of replacing the building (evaluate/consequences.h)")                         \
+    X(ANNUAL_LOSS, "annual_loss", "1/year", 1, NEEDS_NOTHING,                                                          \
+      r->rate_per_year > 0 ? r->rate_per_year * damage_loss(r) : NAN,                                                  \
+      "loss of a year: sum over the records of loss times rate=NUMBER of each (motion/suite.h)")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,
@@ -129,7 +132,7 @@ typedef struct {
     RunOutcome outcome;
     char reason[REASON_MAX];
 } Measured;
-_Static_assert(sizeof(Measured) <= 512, "a part stays small: searches of thousands of replicates hold many");
+_Static_assert(sizeof(Measured) <= 520, "a part stays small: searches of thousands of replicates hold many");
 
 Measured measured(const SimResult *r);
 
@@ -147,7 +150,7 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
 typedef struct {
     int n, n_obj, of[N_MEASURES];
     MeasureSet objectives, limited;
-    MeasureSet judged; /* both, with what their chances are of */
+    MeasureSet judged; /* both, with what their chances are of; loss in the place of annual_loss */
     Chance chance[CHANCES_MAX];
 } MeasureOrder;
 

@@ -1,11 +1,13 @@
 #include "evaluate/tower.h"
 
 #include <pthread.h>
+#include <unistd.h>
 
 #include "base/hash.h"
 #include "evaluate/device.h"
 #include "evaluate/isolated.h"
 #include "evaluate/tasks.h"
+#include "motion/builtin.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "settings/settings.h"
@@ -22,7 +24,8 @@ typedef struct {
     int is_read;
     Status status;
     Err why;
-    Motion motion; /* as read, not scaled */
+    Motion motion;        /* as read, not scaled */
+    double rate_per_year; /* of SimResult */
 } Record;
 
 /* A scene, opened by the first worker that comes and closed by the last one that leaves. */
@@ -213,7 +216,8 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     SimWorker *w;
     if (task->variant.kind >= FIND)
         return find_device(t, worker, task, err);
-    TRY(go_to(t, task->variant.scene + task->part % n, worker, &w, err));
+    const size_t place = task->variant.scene + task->part % n;
+    TRY(go_to(t, place, worker, &w, err));
     if (kind != SCENE_NO_CORE)
         design_of(&t->design, task->x, &design);
     if (kind == SCENE_IMPACT)
@@ -224,6 +228,7 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     }
     sim_worker_device(w, &device);
     TRY(sim_run_built(w, kind, &design, result, err));
+    result->rate_per_year = t->record[t->recipe->scene[place % t->recipe->n_scenes].record].rate_per_year;
     measures_chances(&t->order, result);
     if (kind == SCENE_IMPACT)
         measures_settle(result, t->judged);
@@ -303,21 +308,42 @@ static const Simulator TOWER = {.simulate = simulate, .combine = combine, .close
 /* The records of a search. */
 typedef struct {
     size_t n;
+    int needs_rates; /* each has to say how often it comes */
     char path[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
 } RecordList;
 
 static Status list_record(const char *source, void *user, Err *err)
 {
     RecordList *list = user;
+    const char *key = list->n > 0 ? "motion.records" : "motion.record";
+    Source s;
+    Err why;
     if (list->n == TOWER_RECORDS_MAX)
         return bad_data(err, "motion.records: more than %d records", TOWER_RECORDS_MAX);
+    TRY(source_read(source, &s, err));
+    if (list->n > 0 && !builtin_name(s.path) && access(s.path, F_OK) != 0) {
+        fail_missing(&why, s.path);
+        return fail(err, why.code, "%s: %s", key, why.text);
+    }
+    if (list->needs_rates && !(s.rate > 0))
+        return bad_data(err,
+                        "%s: %s: annual_loss wants the events of a year that every record stands for: write "
+                        "rate=NUMBER behind it",
+                        key, source);
     return option_put_path(list->path[list->n++], source, err);
 }
 
 /* All of the study, or motion.record alone. */
 static Status list_records(const Settings *s, TowerUse use, RecordList **out, Err *err)
 {
+    MeasureOrder order;
+    TRY(measures_order(&order, s->search.objectives, s->search.limits, 0, err));
+    const int is_sum = use == TOWER_AS_SET && (order.objectives | order.limited) >> MEASURE_ANNUAL_LOSS & 1;
+    if (is_sum && (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0))
+        return bad_data(err, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records, "
+                             "as many times their mean: set sim.robust = mean");
     TRY_ROOM(*out, 1, "a list of records", err);
+    (*out)->needs_rates = is_sum;
     const Status status = use == TOWER_SINGLE ? list_record(s->motion.record, *out, err)
                                               : suite_of_study(&s->motion, list_record, *out, err);
     if (status != STATUS_OK)
@@ -358,8 +384,13 @@ static Status make_room(Tower *t, Err *err)
     t->at = calloc(t->n_workers, sizeof *t->at);
     if (!t->record || !t->place || !t->worker || !t->at)
         return fail_memory(err, r->n_scenes, "scenes");
-    for (size_t i = 0; i < r->n_records; i++)
+    const size_t n = t->plan.n_records;
+    for (size_t i = 0; i < r->n_records; i++) {
+        Source s;
         pthread_mutex_init(&t->record[i].lock, NULL);
+        if ((n == 1 || t->plan.rule == ROBUST_MEAN) && source_read(recipe_record(r, i), &s, NULL) == STATUS_OK)
+            t->record[i].rate_per_year = s.rate * (double)n;
+    }
     for (size_t i = 0; i < t->n_places; i++)
         pthread_mutex_init(&t->place[i].lock, NULL);
     return STATUS_OK;

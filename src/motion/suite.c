@@ -11,8 +11,9 @@
 
 /* -- a source ------------------------------------------------------------------------------------------------------ */
 
-enum { CHANNEL, FACTOR, N_WORDS };
-static const char *const WORDS[N_WORDS] = {[CHANNEL] = " channel=", [FACTOR] = " factor="};
+enum { CHANNEL, FACTOR, RATE, N_WORDS };
+static const char *const WORDS[N_WORDS] = {[CHANNEL] = " channel=", [FACTOR] = " factor=", [RATE] = " rate="};
+#define NO_WORD "%.*s: '%s' is neither channel=NAME, factor=NUMBER nor rate=NUMBER"
 
 size_t source_path_length(const char *text)
 {
@@ -35,8 +36,7 @@ Status source_read(const char *text, Source *out, Err *err)
     snprintf(out->path, sizeof out->path, "%.*s", (int)length, text);
     const char *last = strrchr(out->path, ' '); /* of a path that is there, or of a misspelt word behind one */
     if (last && strchr(last, '=') && access(out->path, F_OK) != 0)
-        return bad_data(err, "%.*s: '%s' is neither channel=NAME nor factor=NUMBER", (int)(last - out->path), out->path,
-                        last + 1);
+        return bad_data(err, NO_WORD, (int)(last - out->path), out->path, last + 1);
     snprintf(words, sizeof words, "%s", text + length);
     for (char *word; (word = strsep(&rest, " \t"));) {
         int k = 0;
@@ -46,16 +46,18 @@ Status source_read(const char *text, Source *out, Err *err)
         if (!*word)
             continue;
         if (k == N_WORDS || !value[1])
-            return bad_data(err, "%s: '%s' is neither channel=NAME nor factor=NUMBER", out->path, word);
+            return bad_data(err, NO_WORD, (int)length, text, word);
         if (seen >> k & 1)
             return bad_data(err, "%s: '%s': give it once", out->path, word);
         seen |= 1U << k;
-        if (k == CHANNEL)
+        if (k == CHANNEL) {
             snprintf(out->channel, sizeof out->channel, "%s", value + 1);
-        else
-            out->factor = strtod(value + 1, &end);
-        if (k == FACTOR && (*end || !(out->factor > 0 && isfinite(out->factor))))
-            return bad_data(err, "%s: '%s': a factor is a number above 0", out->path, word);
+            continue;
+        }
+        const double number = *(k == FACTOR ? &out->factor : &out->rate) = strtod(value + 1, &end);
+        if (*end || !(number > 0 && isfinite(number)))
+            return bad_data(err, "%s: '%s': a %s is a number above 0", out->path, word,
+                            k == FACTOR ? "factor" : "rate of events in a year");
     }
     return STATUS_OK;
 }
@@ -135,10 +137,9 @@ static Status each_of_list(const char *path, SourceFn take, void *user, Err *err
             continue;
         n++;
         status = put_inside(source, path, slash ? (size_t)(slash - path) : 0, begin, err);
-        if (status == STATUS_OK && (status = source_read(source, &s, &why)) != STATUS_OK)
+        if (status == STATUS_OK &&
+            ((status = source_read(source, &s, &why)) != STATUS_OK || (status = take(source, user, &why)) != STATUS_OK))
             fail(err, status, "%s:%d: %.300s", path, at, why.text);
-        if (status == STATUS_OK)
-            status = take(source, user, err);
     }
     fclose(f);
     return status == STATUS_OK && n == 0 ? bad_data(err, "%s: names no record", path) : status;

@@ -1,14 +1,16 @@
 /* motion/suite.h -- the records of a study: motion.record, then those of motion.records.
  *
- *   source   PATH | builtin:NAME, then [channel=NAME] [factor=NUMBER]: the component of a file that has several, and
- *            what its acceleration is multiplied by (beside motion.factor; with no other scaling)
+ *   source   PATH | builtin:NAME, then [channel=NAME] [factor=NUMBER] [rate=NUMBER]: the component of a file that has
+ *            several, what its acceleration is multiplied by (beside motion.factor; with no other scaling), and for
+ *            how many events of a year it stands (measure annual_loss)
  *   suite    a folder (every file of it by name; folders inside and hidden files are left out), a file whose name ends
  *            in list.txt (a source on each line, paths from its folder; # begins a comment), or builtin:suite
  *            (motion/synthetic.h)
  *
  * An item of motion.records is a source or a suite; what a suite has of motion.record itself does not count again.
  *
- * Errors   STATUS_BAD_DATA names file and line; STATUS_MISSING: no such folder or list
+ * Errors   STATUS_BAD_DATA, and what `take` says of a line of a list, name file and line; STATUS_MISSING: no such
+ *          folder or list
  * Threads  no state */
 #pragma once
 
@@ -18,6 +20,7 @@ typedef struct {
     char path[OPTION_TEXT_MAX]; /* or builtin:NAME */
     char channel[64];           /* empty: not said */
     double factor;              /* 1: not said */
+    double rate;                /* [1/year] 0: not said */
 } Source;
 Status source_read(const char *text, Source *out, Err *err);
 

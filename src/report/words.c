@@ -39,6 +39,7 @@ static const Words WORDS[N_MEASURES] = {
     [MEASURE_DEVICE_STROKE] = {"stroke of a link or tuned mass", "m", 1},
     [MEASURE_DEVICE_SHARE] = {"share of links and tuned mass", "%", 1},
     [MEASURE_LOSS] = {"repair cost", "%", 100},
+    [MEASURE_ANNUAL_LOSS] = {"repair cost of a year", "%", 100},
 };
 
 Words words_of_measure(int k)

@@ -109,6 +109,8 @@ typedef struct {
     double peak_filtered_g[FLOORS_MAX],
         j3_filtered_g;          /* as peak_acceleration_g behind a low-pass (sim/floor_filter.h) */
     RepairOptions repair;       /* SimOptions.repair */
+    double rate_per_year;       /* of such events, times the records of which a mean is taken, set by who asks; 0: not
+                                   known */
     double chance[CHANCES_MAX]; /* 1 where a limit of the search is exceeded, set by who asks (evaluate/measures.h) */
     int forces_known;           /* they were asked for: SimOptions.forces */
     SimForces forces;

@@ -25,7 +25,7 @@
 
 enum {
     DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
-    DATABASE_FORMAT = 9 /* raised with every change of the tables */
+    DATABASE_FORMAT = 10 /* raised with every change of the tables */
 };
 
 typedef struct Database Database;
