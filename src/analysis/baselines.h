@@ -9,8 +9,7 @@
  * by evaluate/device.h.
  *
  * Threads  tasks of the queue; the numbers do not depend on how many workers there are */
-#ifndef IMTET_ANALYSIS_BASELINES_H
-#define IMTET_ANALYSIS_BASELINES_H
+#pragma once
 
 #include "evaluate/device.h"
 #include "evaluate/tower.h"
@@ -33,5 +32,3 @@ void baseline_device_text(BaselineKind kind, const LinearDevice *device, char te
 
 /* x (n_var): the design, for its core. p: of a tower. Those up to `last`; what is behind it has failed. */
 Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err);
-
-#endif

@@ -10,8 +10,7 @@
  * prints the share and the ratio of the true to the likely error). Of the engine `fast` alone.
  *
  * Threads  estimate_errors is pure; estimate_designs has the workers of the problem */
-#ifndef IMTET_ANALYSIS_ESTIMATE_H
-#define IMTET_ANALYSIS_ESTIMATE_H
+#pragma once
 
 #include "evaluate/tower.h"
 
@@ -26,5 +25,3 @@ void estimate_errors(const Measured *result, const Measured *finer, double error
  * 1 + ESTIMATE_PATTERNS times. The engine is fast. */
 Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
                         double sd[], Err *err);
-
-#endif

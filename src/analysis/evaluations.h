@@ -12,8 +12,7 @@
  *             value
  * Source      Vamvatsikos and Cornell, Earthquake Eng. Struct. Dyn. 31 (2002) 491-514; Hyndman and Fan, Am.
  *             Statistician 50 (1996) 361-365, type 7 */
-#ifndef IMTET_ANALYSIS_EVALUATIONS_H
-#define IMTET_ANALYSIS_EVALUATIONS_H
+#pragma once
 
 #include "analysis/fragility.h"
 #include "evaluate/limits.h"
@@ -112,5 +111,3 @@ Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const 
 
 /* Mean over the records, in which it is linear; a simulation that failed has lost the whole building. */
 AnnualLoss ida_annual_loss(const Evaluations *e, EvaluatedCase which, size_t n_hazard, const double hazard[]);
-
-#endif

@@ -3,8 +3,7 @@
  *
  * Ownership  full_model_find allocates, full_model_free releases ({0} is fine)
  * Threads    tasks of the queue */
-#ifndef IMTET_ANALYSIS_FULL_MODEL_H
-#define IMTET_ANALYSIS_FULL_MODEL_H
+#pragma once
 
 #include "evaluate/tower.h"
 
@@ -22,5 +21,3 @@ typedef struct {
 Status full_model_find(const Settings *s, SceneKind kind, size_t n, const double X[], int estimates, FullModel *out,
                        Err *err);
 void full_model_free(FullModel *m);
-
-#endif

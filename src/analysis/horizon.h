@@ -4,8 +4,7 @@
  *   d(t)^2 = sum_i (dq_i'^2 + w_i^2 dq_i^2) / max_{s <= t} sum_i (q_i'^2 + w_i^2 q_i^2)
  * over all modes of building and core, at every sample of the motion. The predictability horizon is the first time at
  * which d exceeds a level. */
-#ifndef IMTET_ANALYSIS_HORIZON_H
-#define IMTET_ANALYSIS_HORIZON_H
+#pragma once
 
 #include "evaluate/scenario.h"
 
@@ -19,5 +18,3 @@ typedef struct {
 } Horizon;
 
 Status horizon_find(const Scenario *scenario, const double x[], double change, Horizon *out, Err *err);
-
-#endif

@@ -18,8 +18,7 @@
  * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.
  *
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
-#ifndef IMTET_ANALYSIS_LADDER_H
-#define IMTET_ANALYSIS_LADDER_H
+#pragma once
 
 #include "evaluate/tower.h"
 
@@ -61,5 +60,3 @@ typedef struct {
 /* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect
  * is left out once, so that no costs are known (NAN). */
 Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err);
-
-#endif

@@ -13,8 +13,7 @@
  *
  * Ownership  sensitivity_find allocates *out for free
  * Threads    as search.threads says, or ranks; the numbers do not depend on it */
-#ifndef IMTET_ANALYSIS_SENSITIVITY_H
-#define IMTET_ANALYSIS_SENSITIVITY_H
+#pragma once
 
 #include "base/csv.h"
 #include "evaluate/tower.h"
@@ -27,5 +26,3 @@ typedef struct {
 
 Status sensitivity_find(const Settings *s, const double x[], size_t n_replicates, Sensitivity **out, size_t *n,
                         Err *err);
-
-#endif

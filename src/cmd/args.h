@@ -4,8 +4,7 @@
  *
  * Life cycle  args_parse -> args_value ... -> args_free
  * Ownership   names and values point into argv and the tables */
-#ifndef IMTET_CMD_ARGS_H
-#define IMTET_CMD_ARGS_H
+#pragma once
 
 #include "cmd/command.h"
 #include "study/record_paths.h"
@@ -71,5 +70,3 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_CSV VALUE("--csv", "FILE", "the table as CSV into FILE; -: standard output")
 #define OPTION_END {.name = NULL}
 /* clang-format on */
-
-#endif

@@ -1,8 +1,7 @@
 /* cmd/asked.h -- designs that are asked of a problem's own simulator, an external worker say, beside any search.
  *
  * Ownership  nothing is kept.   Threads  the problem's own */
-#ifndef IMTET_CMD_ASKED_H
-#define IMTET_CMD_ASKED_H
+#pragma once
 
 #include "base/json.h"
 #include "cmd/args.h"
@@ -18,5 +17,3 @@ Status asked_simulate(const Args *args, const Settings *s, Err *err);
  * so that the start of the worker is no part of the time [s] of an evaluation, *each_s. The answer is put into `worker`
  * of out; *outcome is that of the design, whose reason is in `why`. */
 Status asked_check(Adapter *a, json_t *out, double *each_s, Outcome *outcome, Err *why, Err *err);
-
-#endif

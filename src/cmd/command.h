@@ -1,6 +1,5 @@
 /* cmd/command.h -- a command, its options, and what of them was given. */
-#ifndef IMTET_CMD_COMMAND_H
-#define IMTET_CMD_COMMAND_H
+#pragma once
 
 #include "base/status.h"
 
@@ -49,5 +48,3 @@ struct Args {
     int n_given;
     Given *given; /* (n_given) in the order of the command line */
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* cmd/commands.h -- every subcommand, one file each, in the order of `imtet --help`. */
-#ifndef IMTET_CMD_COMMANDS_H
-#define IMTET_CMD_COMMANDS_H
+#pragma once
 
 #include "cmd/args.h"
 
@@ -25,5 +24,3 @@
 #define X(name) extern const Command CMD_##name;
 COMMAND_LIST(X)
 #undef X
-
-#endif

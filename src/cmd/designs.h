@@ -8,8 +8,7 @@
  *
  * Of a command on a run also ID, knee, best_NAME alone: a design of that run.
  * Errors  what is neither is named with the nearest that is there; STATUS_UNMET where a front is empty by its limits */
-#ifndef IMTET_CMD_DESIGNS_H
-#define IMTET_CMD_DESIGNS_H
+#pragma once
 
 #include "base/json.h"
 #include "scene/design.h"
@@ -73,5 +72,3 @@ Status weights_check(const Schema *schema, const char *option, const double weig
 /* A design of a run in a table for people, with its likely errors, or its standard deviations where it cannot be
  * predicted or has replicates. */
 void figures_of_run(json_t *table, const Run *run, const char *label, size_t row);
-
-#endif

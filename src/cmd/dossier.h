@@ -8,8 +8,7 @@
  * A part that cannot be had (a building without a full model, a simulation that failed) says why in its place.
  *
  * Errors  those of the file; neither program for a PDF: STATUS_MISSING, before anything is simulated */
-#ifndef IMTET_CMD_DOSSIER_H
-#define IMTET_CMD_DOSSIER_H
+#pragma once
 
 #include "report/report.h"
 
@@ -19,5 +18,3 @@ Status dossier_check(const char *path, Err *err);
 /* s: settings of the run, its records where they are now; records (n): those of the study first. */
 Status dossier_write(const Report *r, const Settings *s, size_t n, const char *const records[], const char *path,
                      Err *err);
-
-#endif

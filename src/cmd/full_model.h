@@ -1,11 +1,8 @@
 /* cmd/full_model.h -- evaluate --full-model: designs on all degrees of freedom of the building, beside the reduced
  * model. */
-#ifndef IMTET_CMD_FULL_MODEL_H
-#define IMTET_CMD_FULL_MODEL_H
+#pragma once
 
 #include "cmd/args.h"
 
 /* s: of the command; run: that they are of, NULL: of none. */
 Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err);
-
-#endif

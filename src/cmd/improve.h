@@ -3,8 +3,7 @@
  *
  * Life cycle  improve_open -> improve_store where there is something to be stored -> improve_close (a zeroed one is
  *             fine) */
-#ifndef IMTET_CMD_IMPROVE_H
-#define IMTET_CMD_IMPROVE_H
+#pragma once
 
 #include "cmd/args.h"
 #include "store/store.h"
@@ -26,5 +25,3 @@ Status improve_store(Improve *m, const Evaluation *design, Err *err);
 void improve_say(const Improve *m);
 
 void improve_close(Improve *m);
-
-#endif

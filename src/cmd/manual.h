@@ -2,8 +2,7 @@
  * codes: nothing here is to be kept in step by hand.
  *
  * Threads  no state */
-#ifndef IMTET_CMD_MANUAL_H
-#define IMTET_CMD_MANUAL_H
+#pragma once
 
 #include "cmd/args.h"
 
@@ -16,5 +15,3 @@ Status manual_write(const Command *command, FILE *out, Err *err);
 /* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option
  * that it stands for, or NULL. */
 Status command_find(const char *word, const Command **found, const char **option, Err *err);
-
-#endif

@@ -2,8 +2,7 @@
  * settings, nor one that a run keeps (folder_keeps).
  *
  * Errors  STATUS_USAGE, with the option and the file */
-#ifndef IMTET_CMD_OUTPUTS_H
-#define IMTET_CMD_OUTPUTS_H
+#pragma once
 
 #include "cmd/command.h"
 
@@ -15,5 +14,3 @@ Status outputs_check(const Args *args, Err *err);
 
 /* By the files that the settings name: before anything is simulated. */
 Status outputs_spare(const Args *args, const Settings *s, Err *err);
-
-#endif

@@ -5,8 +5,7 @@
  *   shown   aligned under the names on standard output or in HTML, numbers with four digits; as CSV and JSON with all
  *
  * Ownership  figures_print, _csv, _html and show_json take the reference; rows are borrowed from their table */
-#ifndef IMTET_CMD_SHOW_H
-#define IMTET_CMD_SHOW_H
+#pragma once
 
 #include "analysis/baselines.h"
 #include "analysis/evaluations.h"
@@ -101,5 +100,3 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user);
 
 /* Designs of --design: the first gap that does not close. */
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user);
-
-#endif

@@ -6,10 +6,7 @@
  * the allowed size, is from then on a failed write instead of the end.
  *
  * Threads  signals_asked may be called from any. */
-#ifndef IMTET_CMD_SIGNALS_H
-#define IMTET_CMD_SIGNALS_H
+#pragma once
 
 void signals_catch(void);
 int signals_asked(void *unused); /* the signal's number, 0: none came */
-
-#endif

@@ -5,8 +5,7 @@
  * columns. Files are written whole or not at all, - is standard output.
  *
  * Threads  one */
-#ifndef IMTET_CMD_TIME_FILES_H
-#define IMTET_CMD_TIME_FILES_H
+#pragma once
 
 #include "evaluate/tower.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 Status write_histories(const TimeJob *job, const char *path, Err *err);
 Status write_contacts(const TimeJob *job, const char *path, Err *err);
 Status write_floor_spectra(const TimeJob *job, const char *path, Err *err);
-
-#endif

@@ -2,8 +2,7 @@
  * (analysis/baselines.h), then on other earthquakes.
  *
  * Ownership  detail_make allocates, detail_free releases (a zeroed Detail is fine) */
-#ifndef IMTET_REPORT_DETAIL_H
-#define IMTET_REPORT_DETAIL_H
+#pragma once
 
 #include "report/history.h"
 #include "analysis/baselines.h"
@@ -78,5 +77,3 @@ static const double WAVELET_CYCLES = 6;
 /* u (n) every dt [s]; f (n_f) [Hz] below 1/(2 dt); t (n_t) [s]; amplitude (n_f, n_t) in the unit of u. */
 void wavelet(size_t n, double dt, const double u[], size_t n_f, const double f[], size_t n_t, const double t[],
              double amplitude[]);
-
-#endif

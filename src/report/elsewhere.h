@@ -3,8 +3,7 @@
  *
  * Ownership  the sources are copied into the list, which stays where it is while they are used
  * Errors     a folder or list that cannot be read; more than ELSEWHERE_MAX: STATUS_USAGE */
-#ifndef IMTET_REPORT_ELSEWHERE_H
-#define IMTET_REPORT_ELSEWHERE_H
+#pragma once
 
 #include "settings/options.h"
 
@@ -23,5 +22,3 @@ typedef struct {
 Status elsewhere_of_study(OtherRecords *r, const MotionOptions *study, Err *err);
 Status elsewhere_add(OtherRecords *r, const char *source, Err *err);
 Status elsewhere_otherwise(OtherRecords *r, const MotionOptions *study, Err *err);
-
-#endif

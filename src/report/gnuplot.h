@@ -2,8 +2,7 @@
  *
  * The script goes to its standard input, the picture comes from its standard output into `path`, which is replaced only
  * by a whole picture (store/output.h). No gnuplot: STATUS_MISSING, and nothing is written. */
-#ifndef IMTET_REPORT_GNUPLOT_H
-#define IMTET_REPORT_GNUPLOT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -16,5 +15,3 @@ void gnuplot_number(FILE *script, double value);
 
 /* 'text' in the quotes of a gnuplot script, control characters left out. */
 void gnuplot_quote(FILE *script, const char *text);
-
-#endif

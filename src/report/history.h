@@ -4,8 +4,7 @@
  * sim/samples.h says which energies.
  * Instants   every sample of the motion, from t = 0
  * Ownership  history_run allocates, history_free releases (an empty History is fine) */
-#ifndef IMTET_REPORT_HISTORY_H
-#define IMTET_REPORT_HISTORY_H
+#pragma once
 
 #include "evaluate/scenario.h"
 #include "sim/samples.h"
@@ -20,5 +19,3 @@ typedef struct {
 /* floor: from 0. x as for sim_run. A run that does not finish gives an empty History. */
 Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err);
 void history_free(History *h);
-
-#endif

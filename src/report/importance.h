@@ -12,8 +12,7 @@
  * Ownership  importance_of allocates, importance_free releases (an empty Importance is fine)
  * Source     Jansen, Comput. Phys. Commun. 117 (1999) 35-43; Saltelli et al., Comput. Phys. Commun. 181 (2010)
  *            259-270 */
-#ifndef IMTET_REPORT_IMPORTANCE_H
-#define IMTET_REPORT_IMPORTANCE_H
+#pragma once
 
 #include "store/run.h"
 
@@ -25,5 +24,3 @@ typedef struct {
 
 Status importance_of(const Run *run, Importance *out, Err *err);
 void importance_free(Importance *m);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Life cycle  report_open -> report_page, report_pictures -> report_close      (a zeroed Report may be closed)
  * Ownership   the run is borrowed and only read; its chosen design is simulated again */
-#ifndef IMTET_REPORT_REPORT_H
-#define IMTET_REPORT_REPORT_H
+#pragma once
 
 #include "report/detail.h"
 #include "report/importance.h"
@@ -51,5 +50,3 @@ void report_close(Report *r);
 /* Rows of the run, ascending, into rows (n_front); returns how many: `most`, and what has to be kept beyond that.
  * kept: rows of the run, on its front or not. */
 size_t thin_front(const Run *run, size_t most, size_t n_kept, const size_t kept[], size_t rows[]);
-
-#endif

@@ -3,8 +3,7 @@
  * The designs of the front are not in it: the page has them as rows of front.csv (report/page.c).
  *
  * Ownership  the caller's reference. Errors  no memory, or a name that is no UTF-8: NULL */
-#ifndef IMTET_REPORT_REPORT_JSON_H
-#define IMTET_REPORT_REPORT_JSON_H
+#pragma once
 
 #include <jansson.h>
 
@@ -28,5 +27,3 @@ json_t *importance_json(const Importance *m, const Schema *schema);
 
 /* Of the tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
 json_t *detail_json(const Detail *d, const MeasureOrder *order);
-
-#endif

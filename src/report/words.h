@@ -4,8 +4,7 @@
  *   shown = factor * natural value                    files keep their own names and units (evaluate/measures.h)
  *
  * Threads  pure functions; texts live as long as the program, or as the schema */
-#ifndef IMTET_REPORT_WORDS_H
-#define IMTET_REPORT_WORDS_H
+#pragma once
 
 #include "evaluate/schema.h"
 
@@ -22,5 +21,3 @@ Words words_of_objective(const Schema *schema, size_t k);
 /* What an objective is where it stands for several simulations: "worst of 2 records x 4 replicates"; else empty. */
 enum { RULE_WORDS_MAX = 120 };
 void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX]);
-
-#endif

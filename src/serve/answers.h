@@ -12,8 +12,7 @@
  *
  * Ownership  the caller's reference; NULL: no memory, or a name that is no UTF-8
  * Threads    pure functions */
-#ifndef IMTET_SERVE_ANSWERS_H
-#define IMTET_SERVE_ANSWERS_H
+#pragma once
 
 #include <jansson.h>
 
@@ -24,5 +23,3 @@ json_t *answer_front(const Look *look);
 
 /* Other objectives: STATUS_BAD_DATA. A front that is empty: STATUS_MISSING. */
 Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err);
-
-#endif

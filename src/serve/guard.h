@@ -10,8 +10,7 @@
  *
  * Threads  pure functions
  * Source   OWASP, Cross-Site Request Forgery Prevention; RFC 6454 (Origin), RFC 9110 (Host) */
-#ifndef IMTET_SERVE_GUARD_H
-#define IMTET_SERVE_GUARD_H
+#pragma once
 
 #include "base/status.h"
 
@@ -33,5 +32,3 @@ typedef struct {
 /* NONE: the token is wrong; UNENDED: /TOKEN or /TOKEN/RUN, whose pages end with a slash. */
 typedef enum { PATH_NONE, PATH_UNKNOWN, PATH_UNENDED, PATH_OK } PathVerdict;
 PathVerdict guard_path(const char *token, const char *url, ServePath *out);
-
-#endif

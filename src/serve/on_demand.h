@@ -21,8 +21,7 @@
  * Threads     any; one design and one what-if are simulated at a time, on one thread each
  * Errors      no such design, or a run without a tower: STATUS_MISSING; a question that is none, or out of bounds:
  *             STATUS_BAD_DATA. A simulation that fails is an answer */
-#ifndef IMTET_SERVE_ON_DEMAND_H
-#define IMTET_SERVE_ON_DEMAND_H
+#pragma once
 
 #include <jansson.h>
 
@@ -49,5 +48,3 @@ Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *
  * the peak is changed} */
 Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err);
 Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size_t n, json_t **answer, Err *err);
-
-#endif

@@ -21,8 +21,7 @@
  * Library   libmicrohttpd, a thread for each connection
  * Life cycle  serve_open -> serve_url ... -> serve_close
  * Errors    no such run: STATUS_MISSING; the port is taken: STATUS_IO */
-#ifndef IMTET_SERVE_SERVE_H
-#define IMTET_SERVE_SERVE_H
+#pragma once
 
 #include "study/record_paths.h"
 
@@ -40,5 +39,3 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err);
 const char *serve_url(const Server *s);
 int serve_port(const Server *s);
 void serve_close(Server *s); /* NULL is fine; answers under way are finished */
-
-#endif

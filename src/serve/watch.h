@@ -8,8 +8,7 @@
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
  * Ownership   a Look is shared and read-only; it is released by the last watch_give
  * Threads     any */
-#ifndef IMTET_SERVE_WATCH_H
-#define IMTET_SERVE_WATCH_H
+#pragma once
 
 #include <stdatomic.h>
 
@@ -49,5 +48,3 @@ void watch_give(View *view); /* one without a look is fine */
 /* A view later than version `seen`, within so many seconds, for which the run is kept too; else without a look. */
 View watch_next(Watch *w, size_t i, long seen, double seconds);
 int watch_is_stopped(Watch *w);
-
-#endif

@@ -3,8 +3,7 @@
  * Settings;`.
  *
  * Ownership  a plain value without pointers: copy it freely */
-#ifndef IMTET_SETTINGS_OPTIONS_H
-#define IMTET_SETTINGS_OPTIONS_H
+#pragma once
 
 #include "base/linalg.h"
 #include "settings/search_options.h"
@@ -80,5 +79,3 @@ static inline SceneOptions settings_scene(const Settings *s)
 {
     return (SceneOptions){s->building, s->core, s->contact, s->sim, s->design};
 }
-
-#endif

@@ -3,13 +3,10 @@
  *
  * Each rule that is broken is handed to `broken` as one sentence, "key: what is wrong", which names the keys that it
  * ties, the one to change first.   Threads  no state. */
-#ifndef IMTET_SETTINGS_RULES_H
-#define IMTET_SETTINGS_RULES_H
+#pragma once
 
 #include "settings/options.h"
 
 typedef void (*BrokenRuleFn)(const char *text, void *user);
 
 void rules_check(const Settings *s, BrokenRuleFn broken, void *user);
-
-#endif

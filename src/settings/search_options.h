@@ -1,6 +1,5 @@
 /* settings/search_options.h -- choices of the search (moga/search.h, moga/selection.h). */
-#ifndef IMTET_SETTINGS_SEARCH_OPTIONS_H
-#define IMTET_SETTINGS_SEARCH_OPTIONS_H
+#pragma once
 
 #include "base/option.h"
 
@@ -11,5 +10,3 @@ typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 /* What of most designs is evaluated alone (moga/screening.c): the first replicate of every record. */
 #define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates") X(FIDELITY_RECORDS, "records")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;
-
-#endif

@@ -9,8 +9,7 @@
  * together). Rules that tie settings together: rules.h.
  *
  * Ownership  Settings is a plain value: copy it freely.   Threads  no state. */
-#ifndef IMTET_SETTINGS_SETTINGS_H
-#define IMTET_SETTINGS_SETTINGS_H
+#pragma once
 
 #include "base/status.h"
 #include "settings/options.h"
@@ -77,5 +76,3 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form);
 
 /* The plain form as text, to be freed; NULL: no memory. */
 char *settings_text(const Settings *s);
-
-#endif

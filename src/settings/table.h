@@ -1,8 +1,7 @@
 /* settings/table.h -- the table of the settings, to those that fill it by its lines.
  *
  * Threads  no state */
-#ifndef IMTET_SETTINGS_TABLE_H
-#define IMTET_SETTINGS_TABLE_H
+#pragma once
 
 #include "base/list.h"
 #include "settings/options.h"
@@ -17,5 +16,3 @@ Status table_assign(Settings *s, int i, const char *value, Err *err);
 
 /* The files that line i reads, handed to `change` one by one. */
 void table_change_files(Settings *s, int i, ListItemFn change, void *user);
-
-#endif

@@ -8,8 +8,7 @@
  * Ownership  store: memory of the building's copy, allocated at the first call and used again; the caller frees it.
  *            What is not changed is borrowed from the building
  * Threads    no state */
-#ifndef IMTET_SIM_AS_BUILT_H
-#define IMTET_SIM_AS_BUILT_H
+#pragma once
 
 #include "scene/building.h"
 #include "sim/options.h"
@@ -21,5 +20,3 @@ int is_uncertain(const UncertainOptions *u);
 
 void as_built_options(const AsBuilt *built, const SceneOptions *o, SceneOptions *out);
 Status as_built_building(const AsBuilt *built, const Building *b, Building *out, double **store, Err *err);
-
-#endif

@@ -27,8 +27,7 @@
  * Source   Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445; Marhefka and Orin, IEEE Trans. SMC-A 29 (1999) 566-572
  *          (rebound equation); S. A. Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988) 443-456 (e of zeta_b)
  * Threads  no state */
-#ifndef IMTET_SIM_CONTACT_H
-#define IMTET_SIM_CONTACT_H
+#pragma once
 
 #include "base/status.h"
 #include "sim/options.h"
@@ -114,5 +113,3 @@ static inline double contact_stored(const Contact *c, double p)
         return contact_bumper_stored(c, p);
     return p > 0 ? 0.4 * c->k * p * p * sqrt(p) : 0.0;
 }
-
-#endif

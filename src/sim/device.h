@@ -10,8 +10,7 @@
  * Threads  pure functions
  * Source   power law: T. T. Soong, M. C. Constantinou (eds), Passive and Active Structural Vibration Control in Civil
  *          Engineering (1994) */
-#ifndef IMTET_SIM_DEVICE_H
-#define IMTET_SIM_DEVICE_H
+#pragma once
 
 #include <math.h>
 
@@ -29,5 +28,3 @@ static inline double device_viscous(const Device *e, double v, double *slope)
     *slope = e->damping * power * (e->exponent * v * v + turn) / square;
     return e->damping * power * v;
 }
-
-#endif

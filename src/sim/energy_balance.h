@@ -4,8 +4,7 @@
  *           + devices
  *
  * Threads  no state */
-#ifndef IMTET_SIM_ENERGY_BALANCE_H
-#define IMTET_SIM_ENERGY_BALANCE_H
+#pragma once
 
 #include "sim/result.h"
 
@@ -57,5 +56,3 @@ static inline void energy_balance_close(SimResult *result, int nb, const int lik
         snprintf(result->reason, sizeof result->reason, "the energies are not finite at the end of the run");
     }
 }
-
-#endif

@@ -7,8 +7,7 @@
  * (a = 0 from there on, also where the last sample is not zero). What an engine cannot do is an outcome with a reason.
  *
  * Threads  an engine may allocate in its own run; it shares nothing. */
-#ifndef IMTET_SIM_ENGINE_H
-#define IMTET_SIM_ENGINE_H
+#pragma once
 
 #include "motion/motion.h"
 #include "sim/force_monitor.h"
@@ -89,5 +88,3 @@ ENGINE_LIST(X)
 /* The work space of engine_fast. */
 Status engine_fast_create(void **work, int n_floors, int nb, int yields, int devices, Err *err);
 void engine_fast_free(void *work);
-
-#endif

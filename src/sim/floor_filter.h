@@ -21,8 +21,7 @@
  * Life cycle  floor_filter_create -> (floor_filter_start -> floor_filter_add ... -> floor_filter_peaks) ... -> free
  * Memory      of one block, made by the first start; again where h changes
  * Threads     one filter per simulation under way */
-#ifndef IMTET_SIM_FLOOR_FILTER_H
-#define IMTET_SIM_FLOOR_FILTER_H
+#pragma once
 
 #include "base/status.h"
 
@@ -52,5 +51,3 @@ double *floor_filter_add(FloorFilter *f, double ground);
 
 /* Peak of every floor (n_floors) [m/s2]; the run is over then. Fails where there was no memory. */
 Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err);
-
-#endif

@@ -7,8 +7,7 @@
  *             -> free
  * Memory      grows with the longest run
  * Threads     one record per simulation under way */
-#ifndef IMTET_SIM_FLOOR_RECORD_H
-#define IMTET_SIM_FLOOR_RECORD_H
+#pragma once
 
 #include "base/status.h"
 
@@ -29,5 +28,3 @@ double floor_record_step(const FloorRecord *f); /* [s] h */
 /* a_k of every floor, row by row (n, width) [m/s2]; at both ends that of the ground. They hold until the next start.
  * Fails where there was no memory for the samples. */
 Status floor_record_accelerations(FloorRecord *f, const double **rows, size_t *n, size_t *width, Err *err);
-
-#endif

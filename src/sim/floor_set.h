@@ -1,6 +1,5 @@
 /* sim/floor_set.h -- sets of up to FLOORS_MAX floors: bit j is floor j. Threads  pure functions */
-#ifndef IMTET_SIM_FLOOR_SET_H
-#define IMTET_SIM_FLOOR_SET_H
+#pragma once
 
 #include "scene/options.h"
 
@@ -13,5 +12,3 @@ static inline int floor_set_first(FloorSet set)
     const uint64_t low = (uint64_t)set;
     return low ? __builtin_ctzll(low) : 64 + __builtin_ctzll((uint64_t)(set >> 64));
 }
-
-#endif

@@ -7,8 +7,7 @@
  * Holds for every damping ratio (0, below, at and above 1) and for w = 0. Where w h is small the recursion would lose
  * its digits and a power series stands in.
  * Threads  no state */
-#ifndef IMTET_SIM_FLOW_H
-#define IMTET_SIM_FLOW_H
+#pragma once
 
 #include <stddef.h>
 
@@ -28,5 +27,3 @@ void flow_integrals(double omega, double zeta, double h, double y[FLOW_INTEGRALS
 
 /* Coefficients of n modes for the step h: coef (FLOW_ROWS, stride). */
 void flow_coefficients(size_t n, const double omega[], const double zeta[], double h, double coef[], size_t stride);
-
-#endif

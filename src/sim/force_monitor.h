@@ -25,8 +25,7 @@
  * Threads     one monitor per simulation under way
  * Source      R. W. Clough, J. Penzien, Dynamics of Structures (1993), ch. 12; S. Timoshenko, J. Gere, Theory of
  *             Elastic Stability (1961), section 9.2 */
-#ifndef IMTET_SIM_FORCE_MONITOR_H
-#define IMTET_SIM_FORCE_MONITOR_H
+#pragma once
 
 #include "scene/core_beam.h"
 #include "sim/floor_set.h"
@@ -101,5 +100,3 @@ void force_monitor_end(ForceMonitor *m, int floor, double t, double speed);
 
 /* After a run that ended at time t. */
 void force_monitor_report(ForceMonitor *m, double t, SimForces *out);
-
-#endif

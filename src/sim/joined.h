@@ -11,8 +11,7 @@
  *
  * Life  joined_make -> runs of `building` without a core, each then booked -> joined_free.
  * Threads  read-only between */
-#ifndef IMTET_SIM_JOINED_H
-#define IMTET_SIM_JOINED_H
+#pragma once
 
 #include "scene/building.h"
 #include "sim/result.h"
@@ -30,5 +29,3 @@ void joined_free(Joined *j); /* a zeroed one is fine */
 
 /* Of a run of its building, whose shares are those of the first modes of both. */
 void joined_book(const Joined *j, SimResult *r);
-
-#endif

@@ -20,8 +20,7 @@
  * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
  * Padding  a padded floor has an unreachable gap, a padded mode has omega = 1 and no coupling.
  * Life     model_create for the largest case, model_set per design, model_free. Threads  one owner at a time. */
-#ifndef IMTET_SIM_MODEL_H
-#define IMTET_SIM_MODEL_H
+#pragma once
 
 #include "scene/building.h"
 #include "scene/core_beam.h"
@@ -88,5 +87,3 @@ void model_report_plastic(const SimModel *model, const double p[], SimResult *re
 
 /* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
 void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);
-
-#endif

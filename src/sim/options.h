@@ -1,8 +1,7 @@
 /* sim/options.h -- how a design is simulated: sections [contact] and [sim], and all that a scene is made of.
  *
  * Plain values, SI units. */
-#ifndef IMTET_SIM_OPTIONS_H
-#define IMTET_SIM_OPTIONS_H
+#pragma once
 
 #include "scene/options.h"
 
@@ -96,5 +95,3 @@ typedef struct {
     SimOptions sim;
     DesignOptions design; /* which variables a design x has (scene/design.h) */
 } SceneOptions;
-
-#endif

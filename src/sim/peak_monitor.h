@@ -5,8 +5,7 @@
  * motion has a kink no parabola goes through it: peak_monitor_break.
  *
  * Threads  no state */
-#ifndef IMTET_SIM_PEAK_MONITOR_H
-#define IMTET_SIM_PEAK_MONITOR_H
+#pragma once
 
 #include "base/units.h"
 #include "sim/result.h"
@@ -92,5 +91,3 @@ static inline void peak_monitor_report(const PeakMonitor *p, SimResult *result)
         result->j3_g = fmax(result->j3_g, result->peak_acceleration_g[j]);
     }
 }
-
-#endif

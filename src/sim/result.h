@@ -1,8 +1,7 @@
 /* sim/result.h -- result of a simulation: the response to one ground motion, and the state sample by sample.
  *
  * Energies in joules. Threads  no state */
-#ifndef IMTET_SIM_RESULT_H
-#define IMTET_SIM_RESULT_H
+#pragma once
 
 #include "scene/building.h"
 #include "sim/options.h"
@@ -153,5 +152,3 @@ typedef void (*SimSampleFn)(const SimSample *sample, void *user);
 /* Is a stretch of no interest in which the floors accelerate by no more than this (n_floors) [m/s2], absolute? Then its
  * samples may be left out. */
 typedef int (*SimSkipFn)(const double acceleration[], void *user);
-
-#endif

@@ -11,8 +11,7 @@
  * Threads     a Scene is read-only after scene_create and shared; a SimWorker belongs to one thread
  * Errors      a simulation that does not finish is information about a design, not an error: sim_run returns
  *             STATUS_OK with outcome != RUN_OK and a reason. Status is for designs that are no designs, no memory */
-#ifndef IMTET_SIM_SIM_H
-#define IMTET_SIM_SIM_H
+#pragma once
 
 #include "scene/design.h"
 #include "motion/motion.h"
@@ -89,5 +88,3 @@ Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *r
 
 /* The same of a design as it is built. */
 Status sim_run_built(SimWorker *worker, SceneKind kind, const Design *design, SimResult *result, Err *err);
-
-#endif

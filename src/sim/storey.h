@@ -14,8 +14,7 @@
  * Threads  pure functions
  * Source   Y. K. Wen, J. Eng. Mech. Div. 102 (1976) 249-263; T. T. Baber, Y. K. Wen, J. Eng. Mech. Div. 107 (1981)
  *          1069-1087 (degradation); A. Visintin, Differential Models of Hysteresis (1994) (play) */
-#ifndef IMTET_SIM_STOREY_H
-#define IMTET_SIM_STOREY_H
+#pragma once
 
 #include "scene/options.h"
 
@@ -32,5 +31,3 @@ static inline double storey_slope(const StoreyLaw *law, double z_over_y, double 
     const double bends = sign * z_over_y > 0 ? (1 + law->strength * e) * power : 0;
     return (1 - bends) / (1 + law->stiffness * e);
 }
-
-#endif

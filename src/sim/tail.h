@@ -9,13 +9,10 @@
  * the free and the forced one.
  *
  * Threads  pure function */
-#ifndef IMTET_SIM_TAIL_H
-#define IMTET_SIM_TAIL_H
+#pragma once
 
 #include "scene/building.h"
 #include "motion/motion.h"
 
 /* input (motion->n) [J]: the largest W(s), s from sample k on. */
 Status tail_input(const BuildingModel *b, const Motion *motion, double input[], Err *err);
-
-#endif

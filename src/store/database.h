@@ -16,8 +16,7 @@
  * Errors      disk full, read-only, busy, damaged, of a newer version: STATUS_IO with file and cause; of another
  *             program: STATUS_BAD_DATA; no such file: STATUS_MISSING
  * Source      https://sqlite.org/wal.html, https://sqlite.org/pragma.html#pragma_synchronous */
-#ifndef IMTET_STORE_DATABASE_H
-#define IMTET_STORE_DATABASE_H
+#pragma once
 
 #include <sqlite3.h>
 
@@ -75,5 +74,3 @@ Status database_number(Database *d, const char *sql, double otherwise, double *v
 const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */
 double column_number(sqlite3_stmt *row, int column);              /* NULL: NAN */
 long column_whole(sqlite3_stmt *row, int column, long otherwise); /* NULL: otherwise */
-
-#endif

@@ -5,8 +5,7 @@
  * the stream are seen by whoever closes it (store/output.h).
  *
  * Errors  STATUS_NO_MEMORY */
-#ifndef IMTET_STORE_EXPORT_H
-#define IMTET_STORE_EXPORT_H
+#pragma once
 
 #include "store/run.h"
 
@@ -27,5 +26,3 @@ Status export_json(FILE *f, const Run *run, Err *err);
  * now. */
 Status export_front(const Run *run, Err *err);
 Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err);
-
-#endif

@@ -8,8 +8,7 @@
  * Life cycle  folder_take -> ... -> folder_release ({.lock = -1} is fine)
  * Links       in it are not followed when writing: the folder may come from elsewhere
  * Errors      STATUS_IO with path and cause */
-#ifndef IMTET_STORE_FOLDER_H
-#define IMTET_STORE_FOLDER_H
+#pragma once
 
 #include <limits.h>
 
@@ -55,5 +54,3 @@ Status folder_append(const Folder *folder, const char *name, const char *text, E
 
 /* 2026-01-31T23:59:59Z, now */
 void utc_now(char text[24]);
-
-#endif

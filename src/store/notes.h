@@ -4,8 +4,7 @@
  * Ownership  the caller's reference
  * Threads    one writer at a time; a reader finds the notes of before or after
  * Errors     a file that is none: STATUS_BAD_DATA; not to be written: STATUS_IO */
-#ifndef IMTET_STORE_NOTES_H
-#define IMTET_STORE_NOTES_H
+#pragma once
 
 #include <jansson.h>
 
@@ -21,5 +20,3 @@ Status notes_of_run(const Run *run, json_t **notes, Err *err);
 
 /* text: at most NOTE_MAX bytes; empty takes the note away. */
 Status notes_put(const char *folder, long id, const char *text, Err *err);
-
-#endif

@@ -4,8 +4,7 @@
  * A regular file (or one that is not there yet) is written without a name and put into its place after fsync; a device
  * or a pipe is written in place; the path "-" is standard output. Errors of every write are seen by output_close:
  * STATUS_IO with file and cause. */
-#ifndef IMTET_STORE_OUTPUT_H
-#define IMTET_STORE_OUTPUT_H
+#pragma once
 
 #include <limits.h>
 
@@ -38,5 +37,3 @@ void output_sync_folder(const char *path);
 void print_number(FILE *stream, double value);
 void print_cells(FILE *stream, size_t n, const double values[]); /* each behind a comma */
 void print_list(FILE *stream, size_t n, const double values[]);  /* JSON: [1,2.5,null] */
-
-#endif

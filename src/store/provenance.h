@@ -1,7 +1,6 @@
 /* store/provenance.h -- what a run was made of: program, compiler, libraries, machine, inputs.
  * Threads  call it from one thread. */
-#ifndef IMTET_STORE_PROVENANCE_H
-#define IMTET_STORE_PROVENANCE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -33,5 +32,3 @@ uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash);
 uint64_t provenance_hash(const char *provenance, const char *input); /* in that JSON; 0: none */
 void provenance_blas(const char *provenance, char name[32]);         /* linalg_kernel_name then; empty: unknown */
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err);
-
-#endif

@@ -15,8 +15,7 @@
  * Knee        the design of the front nearest to the ideal point, all objectives scaled (Euclid)
  * Ownership   run_free releases all of it (an empty Run is fine)
  * Threads     no state: any number may read one Run */
-#ifndef IMTET_STORE_RUN_H
-#define IMTET_STORE_RUN_H
+#pragma once
 
 #include <limits.h>
 
@@ -160,5 +159,3 @@ int run_has_limits(const Run *run); /* search.limits, or constraint values of ex
 
 /* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */
 Status run_why_empty(const Run *run, Err *err);
-
-#endif

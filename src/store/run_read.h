@@ -2,8 +2,7 @@
  *
  * Ownership  run_read, run_load and run_load_head allocate, run_free releases
  * Errors     no database there: STATUS_MISSING; damaged: STATUS_IO; the Run is empty then */
-#ifndef IMTET_STORE_RUN_READ_H
-#define IMTET_STORE_RUN_READ_H
+#pragma once
 
 #include "store/database.h"
 #include "store/run.h"
@@ -16,5 +15,3 @@ Status run_load(Run *run, Database *d, const char *folder, Err *err);
 
 /* All but the rows: no table, no front, but the marks of it. */
 Status run_load_head(Run *run, Database *d, const char *folder, Err *err);
-
-#endif

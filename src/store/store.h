@@ -23,8 +23,7 @@
  *             store_open -> store_polished -> store_write_front -> store_free
  * Threads     one at a time
  * Errors      STATUS_IO with file and cause */
-#ifndef IMTET_STORE_STORE_H
-#define IMTET_STORE_STORE_H
+#pragma once
 
 #include <jansson.h>
 
@@ -94,5 +93,3 @@ Status store_write_front(RunStore *store, Run *run, Err *err);
  * for run_free; front.csv is written. The store is released in any case. */
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
-
-#endif

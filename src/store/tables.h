@@ -18,8 +18,7 @@
  *          keeps no -0, and NULL for what is not finite. Not for adversaries
  * Threads  as Database
  * Errors   a row that is not what was written: STATUS_IO with its number */
-#ifndef IMTET_STORE_TABLES_H
-#define IMTET_STORE_TABLES_H
+#pragma once
 
 #include "evaluate/evaluation.h"
 #include "store/database.h"
@@ -70,5 +69,3 @@ Status rows_each(Database *db, RowTable table, const Schema *schema, const char 
 /* Of a member of a set, joined in any order by exclusive or. */
 uint64_t digest_member(long id);
 long state_digest(long generation, const void *bytes, size_t n);
-
-#endif

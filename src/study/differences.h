@@ -6,8 +6,7 @@
  *
  * Errors  STATUS_BAD_DATA: the differences as far as they fit, all of them in `lines` (NULL: not wanted), a line each
  *         */
-#ifndef IMTET_STUDY_DIFFERENCES_H
-#define IMTET_STUDY_DIFFERENCES_H
+#pragma once
 
 #include "evaluate/adapter.h"
 #include "store/run.h"
@@ -22,5 +21,3 @@ typedef struct {
 
 /* n_there: evaluations of the search that the run holds. has_new_limits: a limit is another one than in the run. */
 Status differences_check(const Comparison *c, size_t n_there, int *has_new_limits, Err *err);
-
-#endif

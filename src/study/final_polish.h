@@ -7,8 +7,7 @@
  * tried: a run that is interrupted is resumed behind it.
  *
  * Threads  one */
-#ifndef IMTET_STUDY_FINAL_POLISH_H
-#define IMTET_STUDY_FINAL_POLISH_H
+#pragma once
 
 #include "store/store.h"
 
@@ -21,5 +20,3 @@ typedef struct {
 
 /* Adds to n_tried and n_better. STATUS_STOPPED: go_on said so, it can be resumed. */
 Status final_polish(RunStore *store, const FinalPolish *p, size_t *n_tried, size_t *n_better, Err *err);
-
-#endif

@@ -3,8 +3,7 @@
  *
  * Errors   none but those of simulations
  * Threads  no state */
-#ifndef IMTET_STUDY_FRONT_REVIEW_H
-#define IMTET_STUDY_FRONT_REVIEW_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "sim/result.h"
@@ -28,5 +27,3 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
 
 /* ... of a run of the tower alone, whose records are where they were. */
 Status front_review_of_run(const Run *run, FrontReview *out, Err *err);
-
-#endif

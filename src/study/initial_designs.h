@@ -6,8 +6,7 @@
  *
  * Ownership  initial_designs_read allocates X (n, n_var), the caller frees it; none: NULL and 0
  * Errors     a column that is missing, a file that is not there: named */
-#ifndef IMTET_STUDY_INITIAL_DESIGNS_H
-#define IMTET_STUDY_INITIAL_DESIGNS_H
+#pragma once
 
 #include "evaluate/problem.h"
 #include "store/run.h"
@@ -23,5 +22,3 @@ Status initial_designs_of_devices(const Problem *p, const DesignOptions *o, doub
 
 /* Whether designs of the run have the variables of this schema. */
 Status initial_designs_fit(const Run *run, const char *where, const Schema *schema, Err *err);
-
-#endif

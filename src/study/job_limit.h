@@ -7,8 +7,7 @@
  * Threads  call it from one thread
  * Errors   STATUS_BAD_DATA: no job, or less than the margin is left
  * Source   https://slurm.schedmd.com/sbatch.html, https://slurm.schedmd.com/scontrol.html */
-#ifndef IMTET_STUDY_JOB_LIMIT_H
-#define IMTET_STUDY_JOB_LIMIT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -16,5 +15,3 @@
 static const double JOB_MARGIN_S = 120.0;
 
 Status job_seconds(double *seconds, Err *err);
-
-#endif

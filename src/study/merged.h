@@ -11,11 +11,8 @@
  *
  * Ownership  run_free releases the run
  * Errors     STATUS_BAD_DATA: two problems, and what differs */
-#ifndef IMTET_STUDY_MERGED_H
-#define IMTET_STUDY_MERGED_H
+#pragma once
 
 #include "store/run.h"
 
 Status merged_read(Run *run, size_t n, const char *const folders[], Err *err);
-
-#endif

@@ -20,8 +20,7 @@
  * Deterministic  at any number of threads and stops; nothing of it reaches the search, and it ends with the next
  *                generation
  * Errors         STATUS_STOPPED: go_on said so, but not before the first few are stored */
-#ifndef IMTET_STUDY_NAMED_H
-#define IMTET_STUDY_NAMED_H
+#pragma once
 
 #include "settings/options.h"
 #include "store/store.h"
@@ -32,5 +31,3 @@ enum { NAMED_SPREAD = 4 };
 int named_are_known(const Settings *s);
 
 Status named_simulate(RunStore *store, const Settings *used, int (*go_on)(void *user), void *user, Err *err);
-
-#endif

@@ -3,11 +3,8 @@
  * given on the command line is the user's own word and is not asked about.
  *
  * Threads  no state.   Errors  STATUS_BAD_DATA with the place and what to do; a link that leads out is refused too */
-#ifndef IMTET_STUDY_OUTPUT_PLACE_H
-#define IMTET_STUDY_OUTPUT_PLACE_H
+#pragma once
 
 #include "base/status.h"
 
 Status output_place_check(const char *out, const char *settings_file, Err *err);
-
-#endif

@@ -10,8 +10,7 @@
  *           whatever NLopt returns, the start at worst; simulations are counted here
  * Repeats   both methods are deterministic
  * Threads   asks the queue for one design at a time */
-#ifndef IMTET_STUDY_POLISH_H
-#define IMTET_STUDY_POLISH_H
+#pragma once
 
 #include "evaluate/queue.h"
 
@@ -28,5 +27,3 @@ typedef struct {
 } Polished;
 
 Status polish_run(Queue *queue, const PolishGoal *goal, Polished *p, Err *err);
-
-#endif

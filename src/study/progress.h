@@ -1,6 +1,5 @@
 /* study/progress.h -- progress of a run: its rate, the time left, and which process works on it. */
-#ifndef IMTET_STUDY_PROGRESS_H
-#define IMTET_STUDY_PROGRESS_H
+#pragma once
 
 #include "store/folder.h"
 #include "store/run.h"
@@ -56,5 +55,3 @@ NamedCost named_cost(const Run *run);
 
 const char *state_words(RunState state);
 void standing_of(Standing *out, const char *folder, const Run *run);
-
-#endif

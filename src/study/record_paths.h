@@ -5,8 +5,7 @@
  *
  * Threads  no state
  * Errors   a file that is not there: STATUS_MISSING with what to say; other content: STATUS_BAD_DATA */
-#ifndef IMTET_STUDY_RECORD_PATHS_H
-#define IMTET_STUDY_RECORD_PATHS_H
+#pragma once
 
 #include "store/run.h"
 
@@ -25,5 +24,3 @@ Status record_paths_find(Settings *s, const char *provenance, const RecordPaths 
 /* Every file that the settings name can be read; where they name those of the run (NULL: of none), these hold what they
  * did there. */
 Status record_paths_check(const Settings *s, const Run *run, Err *err);
-
-#endif

@@ -17,8 +17,7 @@
  * Ownership  refine_design fills the caller's Refined; refined_free releases what it allocated
  * Threads    call it from one thread; replicates share the simulator's workers, the numbers do not depend on how many
  *            */
-#ifndef IMTET_STUDY_REFINE_H
-#define IMTET_STUDY_REFINE_H
+#pragma once
 
 #include "store/run.h"
 
@@ -57,5 +56,3 @@ size_t refine_evals_min(const Settings *s, long replicates);
 
 /* A gain that is significant, or of which no standard deviation is known; and all else kept. */
 int refined_counts(const Refined *r);
-
-#endif

@@ -3,8 +3,7 @@
  * Life cycle  run_simulator_open -> queue_ask, queue_evaluate ... -> run_simulator_close; opened again it closes what
  *             was open. A zeroed one is closed
  * Threads     one; the simulations are shared out over its workers */
-#ifndef IMTET_STUDY_RUN_SIMULATOR_H
-#define IMTET_STUDY_RUN_SIMULATOR_H
+#pragma once
 
 #include "evaluate/adapter.h"
 
@@ -17,5 +16,3 @@ typedef struct {
 Status run_simulator_open(RunSimulator *r, const Settings *s, const SimOptions *sim, int (*go_on)(void *user),
                           void *user, Err *err);
 void run_simulator_close(RunSimulator *r);
-
-#endif

@@ -22,8 +22,7 @@
  *
  * Ownership  simplify_design fills the caller's Simplified; simplified_free releases what it allocated
  * Threads    call it from one thread; the designs of a round share the simulator's workers */
-#ifndef IMTET_STUDY_SIMPLIFY_H
-#define IMTET_STUDY_SIMPLIFY_H
+#pragma once
 
 #include "store/run.h"
 
@@ -62,5 +61,3 @@ typedef struct {
 /* The design in row `row` of a tower's run, with the settings that it was made with. */
 Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config, Simplified *out, Err *err);
 void simplified_free(Simplified *s);
-
-#endif

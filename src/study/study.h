@@ -20,8 +20,7 @@
  * Polishes      search.polish spread-out designs of a finished run (study/final_polish.h), with a tenth of its
  *               simulations; not where that is too little to be of use
  * Reproducible  front.csv and the exports are the same bytes at any thread count; times stand elsewhere. */
-#ifndef IMTET_STUDY_STUDY_H
-#define IMTET_STUDY_STUDY_H
+#pragma once
 
 #include "moga/search.h"
 #include "evaluate/scenario.h"
@@ -58,5 +57,3 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
 /* Whether there is nothing more to do within the limits of the run; then it passes over to `run`, and the summary is
  * filled, without the baselines. */
 int study_finished(RunStore *store, StudySummary *summary, Run *run);
-
-#endif

@@ -2,8 +2,7 @@
  * with what it cost, why it ends.
  *
  * Threads  as the store */
-#ifndef IMTET_STUDY_STUDY_LOG_H
-#define IMTET_STUDY_STUDY_LOG_H
+#pragma once
 
 #include "store/store.h"
 #include "settings/options.h"
@@ -15,5 +14,3 @@ Status study_log_start(RunStore *store, int threads, const SearchOptions *used, 
 /* seconds: of work on the run so far, all sessions. */
 Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err);
 Status study_log_end(RunStore *store, const StudySummary *sum, int is_final, Err *err);
-
-#endif

@@ -1,6 +1,5 @@
 /* study/summary.h -- what a session of a study comes to. */
-#ifndef IMTET_STUDY_SUMMARY_H
-#define IMTET_STUDY_SUMMARY_H
+#pragma once
 
 #include <limits.h>
 
@@ -25,5 +24,3 @@ typedef struct {
     Baseline baseline[N_BASELINES];
     FrontReview review; /* of the same */
 } StudySummary;
-
-#endif

@@ -8,8 +8,7 @@
  *                keeps it
  *
  * f_j = -s F, as in sim/model.h. Threads  no state but the struct */
-#ifndef IMTET_SIM_CVODE_CONTACTS_H
-#define IMTET_SIM_CVODE_CONTACTS_H
+#pragma once
 
 #include "sim/engine.h"
 
@@ -70,5 +69,3 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
 
 int contacts_any(const Contacts *c);
 double contacts_stored(const Contacts *c, const double q[]);
-
-#endif

@@ -3,8 +3,7 @@
  * A. C. Hindmarsh et al., SUNDIALS, ACM Trans. Math. Softw. 31 (2005) 363-396.
  *
  * Threads  none: cvode_run owns what it allocates */
-#ifndef IMTET_SIM_CVODE_CVODE_H
-#define IMTET_SIM_CVODE_CVODE_H
+#pragma once
 
 #include "sim/cvode/ode.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 /* solver: zeroed, of the type that the method's callbacks know. Errors  out of memory; all else is an outcome. */
 Status cvode_run(const CvodeMethod *method, void *solver, const SimModel *model, const Motion *motion,
                  const EngineOptions *options, SimResult *result, Err *err);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Life cycle  energy_account_start -> (energy_account_peaks, energy_account_add ...) -> energy_account_report
  * Threads     no state but the struct */
-#ifndef IMTET_SIM_CVODE_ENERGY_ACCOUNT_H
-#define IMTET_SIM_CVODE_ENERGY_ACCOUNT_H
+#pragma once
 
 #include "sim/cvode/contacts.h"
 #include "sim/energy_balance.h"
@@ -28,5 +27,3 @@ void energy_account_add(EnergyAccount *l, double seconds, const double v[], doub
 /* At the end of a completed run: fills result, and options->end_state where it is not NULL. */
 void energy_account_report(const EnergyAccount *l, const Contacts *c, const EngineOptions *options, const double q[],
                            const double v[], SimResult *result);
-
-#endif

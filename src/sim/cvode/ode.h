@@ -12,8 +12,7 @@
  * Life cycle  ode_prepare -> (the caller sets up its integrator in Ode.memory) -> ode_run -> ode_release
  * Threads     no state but the struct
  * Errors      a run that does not finish is an outcome with a reason in SimResult */
-#ifndef IMTET_SIM_CVODE_ODE_H
-#define IMTET_SIM_CVODE_ODE_H
+#pragma once
 
 #include <nvector/nvector_serial.h>
 
@@ -81,5 +80,3 @@ void ode_keep_message(int code, const char *module, const char *function, char *
  * ground acceleration and contacts at t. Returns 0 where the sum is finite, else -1. */
 void ode_structure(const SimModel *model, const double q[], const double v[], double dv[]);
 int ode_add_loads(Ode *o, double t, const double y[], double dv[], double *a, ContactPower *power);
-
-#endif

@@ -5,8 +5,7 @@
  * reaches the yield drift and falls where d' changes its sign, and between the two its rates are smooth.
  *
  * Threads  no state but the struct */
-#ifndef IMTET_SIM_CVODE_STOREYS_H
-#define IMTET_SIM_CVODE_STOREYS_H
+#pragma once
 
 #include "sim/model.h"
 #include "sim/result.h"
@@ -32,5 +31,3 @@ int storeys_switch(Storeys *s, const double z[], const double d_dot[], const int
 /* Adds hysteresis_j of a run that ended with p, W and the drifts d, and to kinetic_strain_j by how much the energy of
  * the modes, K u'u / 2, is more than is there. */
 void storeys_energies(const SimModel *model, const double d[], const double p[], const double W[], SimResult *result);
-
-#endif

@@ -1,11 +1,8 @@
 /* sim/cvode/vectors.h -- N_Vector operations that the compiler can vectorize; Debian's are not and take two thirds
  * of a run. Threads  no state */
-#ifndef IMTET_SIM_CVODE_VECTORS_H
-#define IMTET_SIM_CVODE_VECTORS_H
+#pragma once
 
 #include <nvector/nvector_serial.h>
 
 /* Its clones have them too. */
 void vectors_use_own_loops(N_Vector v);
-
-#endif

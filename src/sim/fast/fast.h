@@ -26,8 +26,7 @@
  * Files     kernel.c: step control, results, and the *.inc files in order: design, step_tables, contact_quadrature,
  *           peaks, free_flight, free_interval, contact_forces (with storey_step, device_step), contact_step.
  * Life      fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
-#ifndef IMTET_SIM_FAST_FAST_H
-#define IMTET_SIM_FAST_FAST_H
+#pragma once
 
 #include "sim/engine.h"
 #include "sim/fast/tolerances.h"
@@ -46,5 +45,3 @@ FastTolerances fast_tolerances(Accuracy accuracy);
 /* Of the options: duration, onsets and sample. */
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
               const FastTolerances *tolerances, SimResult *result);
-
-#endif

@@ -7,8 +7,7 @@
  *          its bound `gap` is the yield drift; its force the change of c k p within the step. `held` is the rest.
  * Padding  a padded mode has omega = 1 and no coupling; a padded floor has an unreachable gap and unreachable peaks
  * Threads  one FastWork per thread */
-#ifndef IMTET_SIM_FAST_KERNEL_H
-#define IMTET_SIM_FAST_KERNEL_H
+#pragma once
 
 #include "sim/engine.h"
 #include "sim/fast/tolerances.h"
@@ -217,5 +216,3 @@ typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion
 
 /* fast_plain_*: for models without storeys that yield and devices, and motions without forces on floors. */
 FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512, fast_plain_base, fast_plain_avx2, fast_plain_avx512;
-
-#endif

@@ -1,6 +1,5 @@
 /* sim/fast/tolerances.h -- what accuracy costs the engine fast. */
-#ifndef IMTET_SIM_FAST_TOLERANCES_H
-#define IMTET_SIM_FAST_TOLERANCES_H
+#pragma once
 
 typedef struct {
     double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */
@@ -16,5 +15,3 @@ typedef struct {
     int calms_down;              /* solver and energy tolerance of a step grow as what is left falls (calm_of) */
     int core_modes;              /* so many of the core's modes are kept; 0: as flexibility_left_out says */
 } FastTolerances;
-
-#endif

@@ -1,7 +1,6 @@
 /* sim/fast/vec.h -- FAST_LANES doubles at a time, in the compiler's own vector language: one source for SSE2 (2 lanes),
  * AVX2 (4) and AVX-512 (8). A vector type wider than the registers would be legal and slow. */
-#ifndef IMTET_SIM_FAST_VEC_H
-#define IMTET_SIM_FAST_VEC_H
+#pragma once
 
 #include <stdint.h>
 #if defined __AVX2__
@@ -253,5 +252,3 @@ INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, con
 {
     rows_times_first(n_rhs, A, blocks, blocks, count, X, Y);
 }
-
-#endif
