@@ -5,7 +5,6 @@
 #include "base/units.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
-#include "settings/settings.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
                                                                 {SCENE_RIGID, "rigidly connected", "rigid"},

@@ -2,7 +2,6 @@
 
 #include "base/stat.h"
 #include "scene/design.h"
-#include "settings/settings.h"
 
 enum { SIDES_OF_TWO_STEPS = 4 }; /* -h, h, -h/2, h/2 */
 static const double AT[SIDES_OF_TWO_STEPS] = {-1, 1, -0.5, 0.5};

@@ -2,7 +2,6 @@
 
 #include "api/named_values.h"
 #include "base/linalg.h"
-#include "base/units.h"
 #include "evaluate/tower.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"

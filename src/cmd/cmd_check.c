@@ -1,6 +1,5 @@
 #include "analysis/ladder.h"
 #include "base/json.h"
-#include "base/list.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "cmd/asked.h"

@@ -4,7 +4,6 @@
 #include "cmd/improve.h"
 #include "cmd/show.h"
 #include "study/refine.h"
-#include "settings/options.h"
 
 typedef struct {
     Improve from;

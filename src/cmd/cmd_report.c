@@ -5,7 +5,6 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/dossier.h"
-#include "motion/motion_scale.h"
 #include "report/elsewhere.h"
 #include "report/report.h"
 #include "settings/options.h"

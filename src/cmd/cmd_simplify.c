@@ -3,7 +3,6 @@
 #include "cmd/designs.h"
 #include "cmd/improve.h"
 #include "cmd/show.h"
-#include "settings/options.h"
 #include "study/simplify.h"
 
 static const double KEPT = 0.02, KEPT_OTHERS = 0.1;

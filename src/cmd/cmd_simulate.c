@@ -11,7 +11,6 @@
 #include "analysis/horizon.h"
 #include "analysis/sensitivity.h"
 #include "evaluate/tower.h"
-#include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "settings/options.h"
 

@@ -3,7 +3,6 @@
 #include "base/figure.h"
 #include "cmd/show.h"
 #include "report/gnuplot.h"
-#include "settings/settings.h"
 
 static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_RIGID, EVALUATED_NO_CORE, EVALUATED_LINKS};
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */

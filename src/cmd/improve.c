@@ -1,7 +1,6 @@
 #include "cmd/improve.h"
 
 #include "cmd/designs.h"
-#include "settings/options.h"
 #include "store/run_read.h"
 #include "study/named.h"
 

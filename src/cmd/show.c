@@ -5,13 +5,10 @@
 #include "base/figure.h"
 #include "base/hypervolume.h"
 #include "base/text.h"
-#include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "report/words.h"
-#include "settings/settings.h"
 #include "store/output.h"
 #include "study/progress.h"
-#include "study/simplify.h"
 
 /* ---- tables ------------------------------------------------------------------------------------------------------ */
 

@@ -8,7 +8,6 @@
 #include "report/gnuplot.h"
 #include "report/report.h"
 #include "report/words.h"
-#include "settings/options.h"
 
 enum { HISTORY_POINTS = 2000, MODES_SHOWN = 10 };
 

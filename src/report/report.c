@@ -1,6 +1,5 @@
 #include "report/report.h"
 
-#include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "settings/options.h"
 

@@ -7,7 +7,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "store/output.h"
 
 void utc_now(char text[24])
 {

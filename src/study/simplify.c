@@ -1,6 +1,5 @@
 #include "study/simplify.h"
 
-#include "analysis/estimate.h"
 #include "base/clock.h"
 #include "settings/options.h"
 #include "study/run_simulator.h"
