@@ -24,9 +24,7 @@ enum {
         BENCH_ENGINES
 };
 
-#define X(upper, lower, tolerance)                                                                                     \
-    Status engine_##lower(const SimModel *model, const Motion *motion, const EngineOptions *options,                   \
-                          SimResult *result, Err *err);
+#define X(upper, lower, tolerance) EngineFn engine_##lower;
 REFERENCE_ENGINES(X)
 #undef X
 

@@ -43,8 +43,8 @@ typedef char OptionText[OPTION_TEXT_MAX];
     OPTION(KIND_REAL, field, double, standard_, __VA_ARGS__, .unit = unit_, .min = min_, .max = max_)
 #define WHOLE(field, standard_, min_, max_, ...) \
     OPTION(KIND_WHOLE, field, long, standard_, __VA_ARGS__, .unit = "-", .min = min_, .max = max_)
-#define CHOICE(field, type, words_, standard_, ...) \
-    OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-")
+#define CHOICE(field, type, list_, standard_, ...) \
+    OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = CHOICE_WORDS(list_), .unit = "-")
 #define SHARES(field, type, words_, max_, standard_, ...) \
     OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = max_, \
            .count = sizeof(type) / sizeof(double))
@@ -57,12 +57,6 @@ typedef char OptionText[OPTION_TEXT_MAX];
 #define PATH_LIST(field, standard_, ...) OPTION(KIND_PATH_LIST, field, OptionText, standard_, __VA_ARGS__)
 #define TEXT(field, standard_, ...) OPTION(KIND_TEXT, field, OptionText, standard_, __VA_ARGS__)
 /* clang-format on */
-
-/* "fast|cvode|...": the first name brings no bar with it. */
-#define X(upper, lower) "|" #lower
-static const char ENGINE_BARS[] = ENGINE_LIST(X);
-#undef X
-#define ENGINE_WORDS (ENGINE_BARS + 1)
 
 /* In the order of PriceOptions, RepairOptions, UncertainOptions. */
 enum { SHARES_MAX = 7 };
@@ -77,11 +71,11 @@ static const Option OPTIONS[] = {
          "frame "
          "(docs/building.md)",
          .flags = SETTING_BASIC | SETTING_FREE),
-    CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
+    CHOICE(building.units, BuildingUnits, BUILDING_UNITS_LIST, "auto",
            "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
            "such floors",
            .flags = SETTING_BASIC),
-    CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
+    CHOICE(building.damping_model, DampingModel, DAMPING_MODEL_LIST, "modal",
            "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
     LIST(building.damping, "-", "0.03", 0, 10,
          "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
@@ -89,20 +83,20 @@ static const Option OPTIONS[] = {
     LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
          "heights of the storeys from the bottom where the files have none; the last for all further storeys",
          .flags = SETTING_BASIC),
-    CHOICE(building.rigid_floors, Switch, CHOICE_WORDS(SWITCH_LIST), "on",
+    CHOICE(building.rigid_floors, Switch, SWITCH_LIST, "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
     WHOLE(
         building.modes, "0", 0, 100000,
         "of a frame: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
         "condensed to the floors (Guyan)"),
-    CHOICE(building.p_delta, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+    CHOICE(building.p_delta, Switch, SWITCH_LIST, "off",
            "on: the weights of the storeys soften the building (P-delta)"),
     REAL(building.yield_drift, "-", "0", 0, 1,
          "interstorey drift over height at which a storey yields, where storeys.csv has none; 0: none yields"),
     REAL(building.hardening, "-", "0.05", 0, 0.999,
          "share of a storey's stiffness that is left where it has yielded; raised, with a warning, where the building "
          "would not stand"),
-    CHOICE(building.hysteresis, Hysteresis, CHOICE_WORDS(HYSTERESIS_LIST), "bilinear",
+    CHOICE(building.hysteresis, Hysteresis, HYSTERESIS_LIST, "bilinear",
            "of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
     REAL(building.bouc_wen_exponent, "-", "2", 0.1, 100, "bouc_wen: how sharply a storey yields; large: bilinear"),
     REAL(building.strength_degradation, "-", "0", 0, 10,
@@ -113,11 +107,11 @@ static const Option OPTIONS[] = {
         core.model, "none", "none|guyan|appendix",
         "another building in the place of the core, a neighbour that pounds: as building.model, with as many floors or "
         "fewer (docs/building.md); none: the cantilever of the settings below"),
-    CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
+    CHOICE(core.section, CoreSection, CORE_SECTION_LIST, "box",
            "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
            "area given",
            .flags = SETTING_BASIC),
-    CHOICE(core.theory, CoreTheory, CHOICE_WORDS(CORE_THEORY_LIST), "timoshenko",
+    CHOICE(core.theory, CoreTheory, CORE_THEORY_LIST, "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "outer side of the box, width of the plate", .flags = SETTING_BASIC),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
@@ -136,7 +130,7 @@ static const Option OPTIONS[] = {
     LIST(core.masses_kg, "kg", "none", 1e-9, 1e9,
          "effective: masses of the storeys, the same way; none: density times area"),
 
-    CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
+    CHOICE(contact.law, ContactLaw, CONTACT_LAW_LIST, "paper",
            "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
            "(docs/theory.md)"),
     REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law",
@@ -174,7 +168,7 @@ static const Option OPTIONS[] = {
          "each "
          "with [from=0.2 to=2], the periods between which it is fitted; [g, s], type 1"),
     REAL(motion.stretch, "-", "1", 1e-3, 1e3, "time is multiplied by this"),
-    CHOICE(motion.baseline, MotionBaseline, CHOICE_WORDS(MOTION_BASELINE_LIST), "none",
+    CHOICE(motion.baseline, MotionBaseline, MOTION_BASELINE_LIST, "none",
            "subtracted from the acceleration of the record: its mean, or the straight line or parabola nearest to it"),
     REAL(motion.highpass_hz, "Hz", "0", 0, 1e3,
          "cutoff of a zero-phase Butterworth filter of 4th order on the record, before motion.stretch; 0: none"),
@@ -193,9 +187,9 @@ static const Option OPTIONS[] = {
          "column floor_01_n, ... per floor, in N (docs/motions.md)",
          .flags = SETTING_FREE),
 
-    CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
+    CHOICE(sim.engine, Engine, ENGINE_LIST, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
-    CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
+    CHOICE(sim.accuracy, Accuracy, ACCURACY_LIST, "standard",
            "preset of step and tolerances, or the relative error of J3 and the shares that is allowed: time of a "
            "simulation against its error (docs/trust.md)",
            .number = AT_TYPED(sim.tolerance, double), .min = 1e-6, .max = 0.2, .flags = SETTING_BASIC),
@@ -203,11 +197,11 @@ static const Option OPTIONS[] = {
     WHOLE(sim.replicates, "1", 1, 1000,
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
-    CHOICE(sim.forces, Forces, CHOICE_WORDS(FORCES_LIST), "auto",
+    CHOICE(sim.forces, Forces, FORCES_LIST, "auto",
            "yes: forces, stresses, base shears and filtered accelerations of every design as columns; auto: only where "
            "an objective or a limit needs them"),
     REAL(sim.filter_hz, "Hz", "25", 0.01, 1000, "low-pass of j3_filtered_g, the acceleration that equipment feels"),
-    CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
+    CHOICE(sim.robust, Robust, ROBUST_LIST, "worst",
            "several records: worst or mean of their means over the replicates; of all replicates of all records "
            "mean_plus_sd, cvar (mean of the worst, sim.tail), or a number: the quantile on the bad side, 0.9: nine in "
            "ten are better. Chances p(NAME>NUMBER) of search.objectives are shares of all, whatever stands here",
@@ -230,7 +224,7 @@ static const Option OPTIONS[] = {
         "(dashpots between floors and core), friction (links of a constant force), tuned_mass (at the roof: mass, "
         "frequency, damping ratio)"),
     CHOICE(
-        design.gap_sides, GapSides, CHOICE_WORDS(GAP_SIDES_LIST), "both",
+        design.gap_sides, GapSides, GAP_SIDES_LIST, "both",
         "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
         "left, right: nothing to meet on the other side. A floor closes its right gap where it moves right (u > v)"),
     WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
@@ -264,7 +258,7 @@ static const Option OPTIONS[] = {
            "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core; "
            "the default is an example, in thousands of euros, no quotation"),
 
-    CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
+    CHOICE(problem.kind, ProblemKind, PROBLEM_KIND_LIST, "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
            "the literature"),
     TEXT(problem.command, "none",
@@ -279,13 +273,13 @@ static const Option OPTIONS[] = {
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
-    CHOICE(problem.noisy, Noisy, CHOICE_WORDS(NOISY_LIST), "auto",
+    CHOICE(problem.noisy, Noisy, NOISY_LIST, "auto",
            "whether evaluations of one design differ; auto: only with problem.noise"),
     REAL(problem.noise, "-", "0", 0, 1, "test problems: standard deviation of an objective, as a share of its value"),
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
-    CHOICE(search.blas, LinalgKernels, CHOICE_WORDS(LINALG_KERNELS_LIST), "pinned",
+    CHOICE(search.blas, LinalgKernels, LINALG_KERNELS_LIST, "pinned",
            "linear algebra: the same bytes on every processor with AVX2, or what is fastest on this one"),
     WHOLE(search.population, "92", 4, 100000, "designs per generation"),
     WHOLE(search.initial, "0", 0, 1000000,
@@ -306,11 +300,10 @@ static const Option OPTIONS[] = {
           .flags = SETTING_FREE),
     REAL(search.nondominated_share, "-", "1", 0, 1,
          "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
-    CHOICE(search.surrogate, SurrogateUse, CHOICE_WORDS(SURROGATE_USE_LIST), "on",
-           "off: evolutionary search without a surrogate"),
-    CHOICE(search.asynchronous, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+    CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
+    CHOICE(search.asynchronous, Switch, SWITCH_LIST, "off",
            "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
-    CHOICE(search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
+    CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
            "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
            "replicate, or a fifth of the records, four at most, is simulated, and the rest where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
@@ -329,7 +322,7 @@ static const Option OPTIONS[] = {
          "aspiration levels, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
          "to them, or is beyond them (docs/search.md); none"),
 
-    CHOICE(run.isolate, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+    CHOICE(run.isolate, Switch, SWITCH_LIST, "off",
            "on: the tower is simulated in processes of their own: one that crashes ends its design alone",
            .flags = SETTING_FREE),
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),

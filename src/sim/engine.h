@@ -45,8 +45,8 @@ typedef struct {
     void *work;            /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;
 
-typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
-                           Err *err);
+typedef Status EngineFn(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
+                        Err *err);
 
 /* What an engine controls its error by. */
 typedef enum {
@@ -58,7 +58,7 @@ typedef enum {
 typedef struct EngineEntry {
     const char *name, *words;
     ToleranceKind tolerance;
-    EngineFn run;
+    EngineFn *run;
     int refines; /* follows EngineOptions.refinement: a run whose energy balance does not close may be repeated */
     /* Work space for any number of runs of up to n_floors, nb building modes and so many devices, one at a time, where
      * storeys yield or none does; both NULL: the engine keeps none. */
@@ -79,11 +79,7 @@ static inline void result_add_approach(SimResult *r, const Contact *c, double ap
 /* By Engine, the setting sim.engine. */
 const EngineEntry *engine_entry(Engine engine);
 
-#define X(upper, lower)                                                                                                \
-    Status engine_##lower(const SimModel *model, const Motion *motion, const EngineOptions *options,                   \
-                          SimResult *result, Err *err);
-ENGINE_LIST(X)
-#undef X
+EngineFn engine_fast, engine_cvode;
 
 /* The work space of engine_fast. */
 Status engine_fast_create(void **work, int n_floors, int nb, int yields, int devices, Err *err);

@@ -22,15 +22,8 @@ typedef struct {
 } ContactOptions;
 
 /* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */
-#define ENGINE_LIST(X)                                                                                                 \
-    X(FAST, fast)                                                                                                      \
-    X(CVODE, cvode)
-typedef enum {
-#define X(upper, lower) ENGINE_##upper,
-    ENGINE_LIST(X)
-#undef X
-        ENGINE_COUNT
-} Engine;
+#define ENGINE_LIST(X) X(ENGINE_FAST, "fast") X(ENGINE_CVODE, "cvode")
+typedef enum { ENGINE_LIST(CHOICE_NAME) ENGINE_COUNT } Engine;
 
 #define ACCURACY_LIST(X) X(ACCURACY_COARSE, "coarse") X(ACCURACY_STANDARD, "standard") X(ACCURACY_FINE, "fine")
 typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
