@@ -17,7 +17,7 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
     char path[PATH_MAX];
     write_in_place("deaf.ini", DEAF);
     const pid_t pid = start("deaf.ini", "locked");
-    while (!lock_is_held(path_of("locked/lock", path), &holder) || holder.pid != pid)
+    while (!folder_is_held(path_of("locked", path), &holder) || holder.pid != pid)
         rest(0.02);
     while (access(path_of("locked/run.sqlite", path), F_OK) != 0)
         rest(0.02);
@@ -28,7 +28,7 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
     free(said);
     kill(pid, SIGKILL);
     wait_end(pid);
-    assert_false(lock_is_held(path_of("locked/lock", path), &holder));
+    assert_false(folder_is_held(path_of("locked", path), &holder));
     said = output_of("status @/locked");
     assert_non_null(strstr(said, "interrupted"));
     free(said);

@@ -299,18 +299,18 @@ TEST(a_lock_names_its_holder_and_who_cannot_have_one_is_told_why)
     Err err = {0};
     CHECK_OK(folder_take(&first, path_of("held", path), 0, &err), &err);
     folder_note(&first, 7);
-    assert_true(lock_is_held(path_of("held/lock", lock), &holder) && holder.pid == getpid());
+    assert_true(folder_is_held(path, &holder) && holder.pid == getpid());
     assert_int_equal(holder.n_stored, 7);
     assert_int_equal(folder_take(&second, path, 0, &err), STATUS_IO);
     assert_int_equal(second.lock, -1);
     assert_non_null(strstr(err.text, "held: is in use by process"));
     write_in_place("held/lock", ""); /* whoever emptied it: it is held all the same */
-    assert_true(lock_is_held(lock, &holder));
+    assert_true(folder_is_held(path, &holder));
     assert_string_equal(holder.host, "an unknown machine");
     write_in_place("held/run.sqlite", "a run"); /* without one the folder would go with its lock */
     folder_release(&first);
-    assert_false(lock_is_held(lock, &holder));
-    assert_int_equal(unlink(lock), 0);
+    assert_false(folder_is_held(path, &holder));
+    assert_int_equal(unlink(path_of("held/lock", lock)), 0);
     assert_int_equal(symlink("/dev/full", lock), 0);
     assert_int_equal(folder_take(&first, path, 0, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "lock: cannot be written"));

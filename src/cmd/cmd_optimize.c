@@ -38,7 +38,7 @@ static void tell(const StudyProgress *p, void *user)
         return;
     t->told_s = p->progress.session_s;
     duration_words(progress_left(&p->progress, &p->settings->search), left);
-    number_words(p->hypervolume, 4, hypervolume);
+    snprintf(hypervolume, sizeof hypervolume, isfinite(p->hypervolume) ? "%.4f" : "-", p->hypervolume);
     if (!v)
         snprintf(line, sizeof line, "%zu of %ld simulated, %s left", p->progress.simulated,
                  p->settings->search.max_evals, left);

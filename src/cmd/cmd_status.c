@@ -1,6 +1,4 @@
-#include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 
 #include "base/json.h"
 #include "cmd/commands.h"
@@ -125,8 +123,9 @@ static void describe_more(json_t *o, const Run *run, const Standing *s)
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
 
 /* A run that cannot be read says why, and the others follow. */
-static void add_run(json_t *list, const char *folder)
+static void add_run(const char *folder, const char *name, void *list)
 {
+    (void)name;
     Run run;
     Standing s;
     Err err = {0};
@@ -160,21 +159,13 @@ static void print_runs(json_t *list)
 
 static Status show_folder(const Args *args, const char *folder, Err *err)
 {
-    char path[PATH_MAX + 288];
-    struct dirent **entries;
-    const int n = scandir(folder, &entries, NULL, versionsort);
-    if (n < 0 && errno == ENOTDIR)
-        return bad_data(err, "%s: is a file, no run and no folder of runs", folder);
-    if (n < 0)
-        return fail_missing(err, folder);
     json_t *list = json_array();
-    for (int i = 0; i < n; i++) {
-        snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] != '.' && run_is_there(path))
-            add_run(list, path);
-        free(entries[i]);
+    if (runs_each(folder, add_run, list) < 0) {
+        const Status why = errno == ENOTDIR ? bad_data(err, "%s: is a file, no run and no folder of runs", folder)
+                                            : fail_missing(err, folder);
+        json_decref(list);
+        return why;
     }
-    free(entries);
     if (args_has(args, "--json"))
         return show_json(list, err);
     if (json_array_size(list) == 0)

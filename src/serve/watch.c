@@ -1,7 +1,5 @@
 #include "serve/watch.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <pthread.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -44,19 +42,18 @@ struct Watch {
 static void stamp_of(const Watched *r, Stamp *s)
 {
     static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal"};
-    char path[PATH_MAX + 16];
+    char path[PATH_MAX];
     struct stat file;
     LockHolder holder;
     memset(s, 0, sizeof *s);
     for (int i = 0; i < 2; i++) {
-        snprintf(path, sizeof path, "%s/%s", r->folder, FILES[i]);
+        folder_path(r->folder, FILES[i], path);
         if (stat(path, &file) == 0) {
             s->time[i] = file.st_mtim;
             s->size[i] = file.st_size;
         }
     }
-    snprintf(path, sizeof path, "%s/lock", r->folder);
-    s->held = lock_is_held(path, &holder);
+    s->held = folder_is_held(r->folder, &holder);
 }
 
 static void release(Look *look)
@@ -126,8 +123,9 @@ static void read_again(const Watch *w, Watched *r)
 
 /* -- which runs ---------------------------------------------------------------------------------------------------- */
 
-static void add(Watch *w, const char *folder, const char *name)
+static void add(const char *folder, const char *name, void *user)
 {
+    Watch *w = user;
     for (size_t i = 0; i < w->n; i++)
         if (strcmp(w->run[i]->name, name) == 0)
             return;
@@ -140,26 +138,11 @@ static void add(Watch *w, const char *folder, const char *name)
     w->run[w->n++] = r;
 }
 
-static void find_in(Watch *w)
-{
-    struct dirent **entries;
-    char path[PATH_MAX + NAME_MAX + 2];
-    const int n = scandir(w->folder, &entries, NULL, versionsort);
-    for (int i = 0; i < n; i++) {
-        snprintf(path, sizeof path, "%s/%s", w->folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] != '.' && strlen(path) < PATH_MAX && run_is_there(path))
-            add(w, path, entries[i]->d_name);
-        free(entries[i]);
-    }
-    if (n >= 0)
-        free(entries);
-}
-
 void watch_find(Watch *w)
 {
     pthread_mutex_lock(&w->mutex);
     if (!w->is_run)
-        find_in(w);
+        runs_each(w->folder, add, w);
     pthread_mutex_unlock(&w->mutex);
 }
 
@@ -181,9 +164,9 @@ static Status find_runs(Watch *w, const char *folder, Err *err)
     const char *slash = strrchr(w->folder, '/');
     w->is_run = run_is_there(w->folder);
     if (w->is_run)
-        add(w, w->folder, slash && slash[1] ? slash + 1 : w->folder);
+        add(w->folder, slash && slash[1] ? slash + 1 : w->folder, w);
     else
-        find_in(w);
+        runs_each(w->folder, add, w);
     return w->n > 0 ? STATUS_OK : fail(err, STATUS_MISSING, "%s: is no run, and holds none", folder);
 }
 
@@ -275,7 +258,7 @@ View watch_next(Watch *w, size_t i, long seen, double seconds)
         if (watch_take(w, i, seconds, &view, &(Err){0}) == STATUS_OK && view.version > seen)
             return view;
         watch_give(&view);
-        nanosleep(&(struct timespec){.tv_nsec = (1e9 * POLL_S)}, NULL);
+        nanosleep(&(struct timespec){.tv_nsec = 1e9 * POLL_S}, NULL);
     }
     return (View){.version = seen};
 }

@@ -195,9 +195,9 @@ static Status take_number(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err)
+Status database_number(Database *d, const char *sql, double *value, Err *err)
 {
-    *value = otherwise;
+    *value = 0;
     return database_each(d, sql, take_number, value, err);
 }
 
@@ -206,7 +206,7 @@ Status database_begin(Database *d, Err *err)
 {
     double version;
     TRY(database_do(d, err, "BEGIN IMMEDIATE", ""));
-    Status status = database_number(d, "PRAGMA data_version", 0, &version, err);
+    Status status = database_number(d, "PRAGMA data_version", &version, err);
     if (status == STATUS_OK && d->version > 0 && version != d->version)
         status = fail(err, STATUS_IO, "%s: another process has written to it, which works on the same run", d->path);
     d->version = version;
@@ -288,7 +288,7 @@ static Status check_tables(Database *d, Err *err)
     static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE type <> 'table' OR "
                                   "coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%'";
     double n;
-    TRY(database_number(d, FOREIGN, 0, &n, err));
+    TRY(database_number(d, FOREIGN, &n, err));
     return n == 0 ? STATUS_OK
                   : fail(err, STATUS_IO, "%s: is no database of a run: it holds views or triggers", d->path);
 }
@@ -298,8 +298,8 @@ static Status check(Database *d, Err *err)
 {
     double application, format;
     char word[200] = "";
-    TRY(database_number(d, "PRAGMA application_id", 0, &application, err));
-    TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
+    TRY(database_number(d, "PRAGMA application_id", &application, err));
+    TRY(database_number(d, "PRAGMA user_version", &format, err));
     if (application != DATABASE_APPLICATION)
         return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RUN, "%s: is no database of a run", d->path);
     if (format != DATABASE_FORMAT)
@@ -343,7 +343,7 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
         d->device = there.st_dev;
         d->file = there.st_ino;
     }
-    TRY(database_number(d, "PRAGMA data_version", 0, &d->version, err));
+    TRY(database_number(d, "PRAGMA data_version", &d->version, err));
     return check(d, err);
 }
 

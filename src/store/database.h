@@ -67,8 +67,8 @@ Status database_run(Database *d, sqlite3_stmt *s, Err *err);
 typedef Status (*DatabaseRowFn)(sqlite3_stmt *row, void *user, Err *err);
 Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err);
 
-/* The first column of the first row, or `otherwise` where there is none. */
-Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err);
+/* The first column of the first row, or 0 where there is none. */
+Status database_number(Database *d, const char *sql, double *value, Err *err);
 
 /* Columns of a row. */
 const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */

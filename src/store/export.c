@@ -5,6 +5,7 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "settings/settings.h"
+#include "store/folder.h"
 #include "store/output.h"
 
 /* -- one design ---------------------------------------------------------------------------------------------------- */
@@ -221,9 +222,9 @@ Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, cons
 static Status write_inside(const char *folder, const char *name, const Run *run, ExportTable table, size_t n,
                            const size_t rows[], Err *err)
 {
-    char path[PATH_MAX + 16];
+    char path[PATH_MAX];
     Output o;
-    snprintf(path, sizeof path, "%s/%s", folder, name);
+    folder_path(folder, name, path);
     TRY(output_open_inside(&o, path, err));
     return output_end(&o, export_designs(o.stream, run, table, n, rows, err), err);
 }
@@ -235,10 +236,10 @@ Status export_front(const Run *run, Err *err)
 
 Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
 {
-    char path[PATH_MAX + 16];
-    snprintf(path, sizeof path, "%s/nearest.csv", folder);
+    char path[PATH_MAX];
     if (n > 0)
         return write_inside(folder, "nearest.csv", run, EXPORT_NEAREST, n, rows, err);
+    folder_path(folder, "nearest.csv", path);
     unlink(path);
     return STATUS_OK;
 }

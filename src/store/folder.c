@@ -7,7 +7,6 @@
 #include <time.h>
 #include <unistd.h>
 
-
 void utc_now(char text[24])
 {
     struct tm parts;
@@ -16,23 +15,20 @@ void utc_now(char text[24])
     strftime(text, 24, "%FT%TZ", &parts);
 }
 
-void folder_path(const Folder *folder, const char *name, char path[PATH_MAX])
+void folder_path(const char *folder, const char *name, char path[PATH_MAX])
 {
-    snprintf(path, PATH_MAX, "%s/%s", folder->path, name);
+    snprintf(path, PATH_MAX, "%s/%s", folder, name);
 }
 
-int folder_has(const Folder *folder, const char *name)
+int folder_has(const char *folder, const char *name)
 {
     char path[PATH_MAX];
-    folder_path(folder, name, path);
-    return access(path, F_OK) == 0;
+    return snprintf(path, sizeof path, "%s/%s", folder, name) < PATH_MAX && access(path, F_OK) == 0;
 }
 
 int folder_is_run(const char *path)
 {
-    Folder f = {.lock = -1};
-    snprintf(f.path, sizeof f.path, "%s", path);
-    return folder_has(&f, "run.sqlite") || folder_has(&f, "lock");
+    return folder_has(path, "run.sqlite") || folder_has(path, "lock");
 }
 
 int folder_keeps(const char *path)
@@ -55,7 +51,7 @@ Status folder_advise(const char *path, Status status, Err *err)
     char front[PATH_MAX];
     if (status == STATUS_OK || (err->sub != SUB_DAMAGED && err->sub != SUB_NO_RUN && err->sub != SUB_EMPTY))
         return status;
-    snprintf(front, sizeof front, "%s/front.csv", path);
+    folder_path(path, "front.csv", front);
     if (access(front, R_OK) == 0) /* it was one */
         return fail_sub(err, STATUS_IO, err->sub,
                         "%.250s; --new --set search.start=%s begins another run with its last front", err->text, front);
@@ -152,8 +148,8 @@ void folder_note(const Folder *folder, size_t n_stored)
 void folder_release(Folder *folder)
 {
     char path[PATH_MAX];
-    if (folder->lock >= 0 && folder->is_new && !folder_has(folder, "run.sqlite")) {
-        folder_path(folder, "lock", path);
+    if (folder->lock >= 0 && folder->is_new && !folder_has(folder->path, "run.sqlite")) {
+        folder_path(folder->path, "lock", path);
         unlink(path);
         rmdir(folder->path);
     }
@@ -162,9 +158,11 @@ void folder_release(Folder *folder)
     folder->lock = -1;
 }
 
-int lock_is_held(const char *path, LockHolder *holder)
+int folder_is_held(const char *folder, LockHolder *holder)
 {
+    char path[PATH_MAX];
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    folder_path(folder, "lock", path);
     const int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0)
         return 0;
@@ -181,18 +179,16 @@ static Status take_lock(Folder *folder, Err *err)
     char path[PATH_MAX];
     folder->is_new = access(folder->path, F_OK) != 0;
     TRY(make_folders(folder->path, err));
-    folder_path(folder, "lock", path);
+    folder_path(folder->path, "lock", path);
     return lock_take(folder, path, err);
 }
 
 /* Free: no run, nothing that one has left, and no process. */
 static int is_free(const Folder *folder, int is_own)
 {
-    char lock[PATH_MAX];
     LockHolder holder = {0};
-    folder_path(folder, "lock", lock);
-    const int is_held = lock_is_held(lock, &holder) && !is_own;
-    return !is_held && holder.n_stored == 0 && !folder_has(folder, "run.sqlite");
+    const int is_held = folder_is_held(folder->path, &holder) && !is_own;
+    return !is_held && holder.n_stored == 0 && !folder_has(folder->path, "run.sqlite");
 }
 
 /* It is looked at again once the lock is held: another process may have had a whole run meanwhile. */
@@ -223,11 +219,11 @@ Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
 /* -- files --------------------------------------------------------------------------------------------------------- */
 
 /* O_NONBLOCK: a pipe without a reader is refused, not waited for. */
-Status folder_append(const Folder *folder, const char *name, const char *text, Err *err)
+Status folder_log(const char *folder, const char *text, Err *err)
 {
     char path[PATH_MAX];
     struct stat about = {0};
-    folder_path(folder, name, path);
+    folder_path(folder, "log.jsonl", path);
     if (lstat(path, &about) == 0 && !S_ISREG(about.st_mode))
         return fail(err, STATUS_IO, "%s: is a link or no file, which is not written to; remove it", path);
     const size_t n = strlen(text);

@@ -1,5 +1,4 @@
-/* store/folder.h -- the folder of a run: which process works on it, and files in it that are replaced whole or appended
- * to.
+/* store/folder.h -- the folder of a run: which process works on it, the files in it, and the log that is appended to.
  *
  * The file `lock` holds "PID HOST N": the process, and how many evaluations the database has; the lock itself is the
  * system's (an open file description lock) and ends with its process, so that a file left behind by one that was killed
@@ -35,22 +34,24 @@ typedef struct {
     size_t n_stored;
 } LockHolder;
 
-/* Whether a process holds that lock, and which. */
-int lock_is_held(const char *path, LockHolder *holder);
+/* Whether a process holds the folder's lock, and which. */
+int folder_is_held(const char *folder, LockHolder *holder);
 
-void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
-int folder_has(const Folder *folder, const char *name);
+/* FOLDER/NAME, cut where it is longer. */
+void folder_path(const char *folder, const char *name, char path[PATH_MAX]);
+int folder_has(const char *folder, const char *name);
 
 /* Has it held a run? */
 int folder_is_run(const char *path);
+
 /* Is it a file that a run keeps in its folder? What leads there by a link is. */
 int folder_keeps(const char *path);
 
 /* Behind the message of a run.sqlite that is damaged or empty: what to do. Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);
 
-/* Behind what a file of the folder holds. */
-Status folder_append(const Folder *folder, const char *name, const char *text, Err *err);
+/* Behind what its log.jsonl holds. */
+Status folder_log(const char *folder, const char *text, Err *err);
 
 /* 2026-01-31T23:59:59Z, now */
 void utc_now(char text[24]);

@@ -1,9 +1,9 @@
 #include "store/notes.h"
 
-#include <string.h>
-#include <unistd.h>
-
+#include "store/folder.h"
 #include "store/output.h"
+
+static const char NOTES[] = "notes.json";
 
 static int are_notes(json_t *all)
 {
@@ -16,10 +16,10 @@ static int are_notes(json_t *all)
 
 Status notes_read(const char *folder, json_t **notes, Err *err)
 {
-    char path[PATH_MAX + 16];
+    char path[PATH_MAX];
     json_error_t error = {0};
-    snprintf(path, sizeof path, "%s/notes.json", folder);
-    if (access(path, F_OK) != 0) {
+    folder_path(folder, NOTES, path);
+    if (!folder_has(folder, NOTES)) {
         *notes = json_object();
         return STATUS_OK;
     }
@@ -65,12 +65,12 @@ static Status write_notes(const char *path, const json_t *notes, Err *err)
 
 Status notes_put(const char *folder, long id, const char *text, Err *err)
 {
-    char path[PATH_MAX + 16], key[24];
+    char path[PATH_MAX], key[24];
     json_t *notes;
     snprintf(key, sizeof key, "%ld", id);
     if (strlen(text) > NOTE_MAX)
         return bad_data(err, "a note has at most %d bytes", NOTE_MAX);
-    snprintf(path, sizeof path, "%s/notes.json", folder);
+    folder_path(folder, NOTES, path);
     TRY(notes_read(folder, &notes, err));
     if (text[0])
         json_object_set_new(notes, key, json_string(text));

@@ -1,7 +1,6 @@
 #include "store/run.h"
 
 #include <float.h>
-#include <unistd.h>
 
 #include "evaluate/problem.h"
 #include "evaluate/race.h"
@@ -10,6 +9,7 @@
 #include "motion/suite.h"
 #include "settings/settings.h"
 #include "settings/options.h"
+#include "store/folder.h"
 
 void run_free(Run *run)
 {
@@ -351,11 +351,12 @@ int run_has_limits(const Run *run)
 
 Status run_why_empty(const Run *run, Err *err)
 {
-    char nearest[PATH_MAX + 16], limits[160];
+    char nearest[PATH_MAX], limits[160];
     const size_t n_ok = run->table.n - run->n_failed;
     const Settings *s = run->settings;
+    const int has_nearest = folder_has(run->folder, "nearest.csv");
     Err why;
-    snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
+    folder_path(run->folder, "nearest.csv", nearest);
     if (evaluation_table_check(&run->table, &why) != STATUS_OK)
         return fail(err, STATUS_INTERNAL, "%s: %s; `imtet export %s --all --csv FILE` has all", run->folder, why.text,
                     run->folder);
@@ -367,8 +368,7 @@ Status run_why_empty(const Run *run, Err *err)
              has_g ? "g<=0" : "");
     if (run_has_limits(run))
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %s%s%s", run->folder, n_ok, limits,
-                    access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
-                    access(nearest, F_OK) == 0 ? nearest : "");
+                    has_nearest ? "; those that come nearest: " : "", has_nearest ? nearest : "");
     return fail(err, STATUS_INTERNAL,
                 "%s: every design failed at least once; `imtet export %s --all --csv FILE` says why", run->folder,
                 run->folder);

@@ -1,5 +1,6 @@
 #include "store/run_read.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <jansson.h>
 #include <unistd.h>
@@ -284,8 +285,24 @@ Status run_load(Run *run, Database *d, const char *folder, Err *err)
 
 int run_is_there(const char *folder)
 {
+    return folder_has(folder, "run.sqlite");
+}
+
+int runs_each(const char *folder, RunFolderFn take, void *user)
+{
     char path[PATH_MAX];
-    return snprintf(path, sizeof path, "%s/run.sqlite", folder) < PATH_MAX && access(path, F_OK) == 0;
+    struct dirent **entries;
+    const int n = scandir(folder, &entries, NULL, versionsort);
+    for (int i = 0; i < n; i++) {
+        const char *name = entries[i]->d_name;
+        const int has_room = snprintf(path, sizeof path, "%s/%s", folder, name) < PATH_MAX;
+        if (name[0] != '.' && has_room && run_is_there(path))
+            take(path, name, user);
+        free(entries[i]);
+    }
+    if (n >= 0)
+        free(entries);
+    return n;
 }
 
 Status run_wanted(const char *folder, Err *err)
@@ -302,7 +319,7 @@ Status run_read(Run *run, const char *folder, Err *err)
     Database *d;
     memset(run, 0, sizeof *run);
     TRY(run_wanted(folder, err));
-    snprintf(path, sizeof path, "%s/run.sqlite", folder);
+    folder_path(folder, "run.sqlite", path);
     Status status = database_open(&d, path, DATABASE_READ, err);
     if (status == STATUS_OK)
         status = run_load(run, d, folder, err);

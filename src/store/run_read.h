@@ -10,6 +10,10 @@
 int run_is_there(const char *folder);
 Status run_wanted(const char *folder, Err *err); /* else STATUS_MISSING */
 
+/* Calls take for every run in a folder of runs, by version order of the names; -1, with errno: it cannot be read. */
+typedef void (*RunFolderFn)(const char *folder, const char *name, void *user);
+int runs_each(const char *folder, RunFolderFn take, void *user);
+
 Status run_read(Run *run, const char *folder, Err *err);
 Status run_load(Run *run, Database *d, const char *folder, Err *err);
 

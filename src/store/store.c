@@ -85,7 +85,7 @@ static long number_of(const RunStore *store, long id)
 static Status open_database(RunStore *store, Err *err)
 {
     char path[PATH_MAX];
-    folder_path(&store->folder, "run.sqlite", path);
+    folder_path(store_folder(store), "run.sqlite", path);
     return database_open(&store->db, path, DATABASE_WRITE, err);
 }
 
@@ -169,7 +169,7 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     RunStore *store;
     TRY_ROOM(store, 1, "a run", err);
     Status status = folder_take(&store->folder, folder, fresh, err);
-    if (status == STATUS_OK && folder_has(&store->folder, "run.sqlite"))
+    if (status == STATUS_OK && folder_has(store_folder(store), "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);
     if (status == STATUS_OK)
         status = check_nothing_lost(store, err);
@@ -190,7 +190,7 @@ Status store_forget_empty(RunStore *store, Err *err)
     run_free(&store->run);
     store->db = NULL;
     store->has_run = 0;
-    folder_path(&store->folder, "run.sqlite", path);
+    folder_path(store_folder(store), "run.sqlite", path);
     database_remove_journal(path);
     return unlink(path) == 0 || errno == ENOENT ? STATUS_OK : fail_errno(err, path, "cannot be removed");
 }
@@ -199,11 +199,11 @@ static Status write_origin(const RunStore *store, const Settings *used, const ch
 {
     char path[PATH_MAX];
     Output o;
-    folder_path(&store->folder, "settings.ini", path);
+    folder_path(store_folder(store), "settings.ini", path);
     TRY(output_open_inside(&o, path, err));
     settings_write(used, o.stream, SETTINGS_PLAIN);
     TRY(output_close(&o, err));
-    folder_path(&store->folder, "provenance.json", path);
+    folder_path(store_folder(store), "provenance.json", path);
     TRY(output_open_inside(&o, path, err));
     fprintf(o.stream, "%s\n", provenance);
     return output_close(&o, err);
@@ -214,7 +214,7 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
 {
     folder_note(&store->folder, store->n_stored);
     TRY(write_origin(store, used, provenance, err));
-    TRY(folder_append(&store->folder, "log.jsonl", "", err));
+    TRY(folder_log(store_folder(store), "", err));
     store->is_ready = 1;
     return STATUS_OK;
 }
@@ -223,7 +223,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
 {
     char path[PATH_MAX];
     store->schema = schema;
-    folder_path(&store->folder, "run.sqlite", path);
+    folder_path(store_folder(store), "run.sqlite", path);
     TRY(tables_create(path, schema, used, provenance, err));
     TRY(open_database(store, err));
     database_grow(store->db);
@@ -541,7 +541,7 @@ Status store_event(RunStore *store, json_t *event, Err *err)
     free(words);
     if (n < 0)
         return fail_memory(err, 1, "a line of log.jsonl");
-    const Status status = store->is_ready ? folder_append(&store->folder, "log.jsonl", line, err) : STATUS_OK;
+    const Status status = store->is_ready ? folder_log(store_folder(store), line, err) : STATUS_OK;
     free(line);
     return status;
 }
@@ -612,8 +612,8 @@ static Status insert_polished(RunStore *store, const Evaluation *design, long *i
 {
     double last, generation;
     Evaluation e = *design;
-    TRY(database_number(store->db, "SELECT max(id) FROM evaluation", 0, &last, err));
-    TRY(database_number(store->db, "SELECT max(number) FROM generation", 0, &generation, err));
+    TRY(database_number(store->db, "SELECT max(id) FROM evaluation", &last, err));
+    TRY(database_number(store->db, "SELECT max(number) FROM generation", &generation, err));
     *id = e.id = (long)last + 1;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;

@@ -1,9 +1,6 @@
 #include "study/progress.h"
 
-#include <limits.h>
 #include <time.h>
-
-#include "settings/options.h"
 
 double progress_rate(const Progress *p)
 {
@@ -34,14 +31,6 @@ void duration_words(double seconds, char text[32])
         snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
     else
         snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
-}
-
-void number_words(double value, int decimals, char text[32])
-{
-    if (isfinite(value))
-        snprintf(text, 32, "%.*f", decimals, value);
-    else
-        snprintf(text, 32, "-");
 }
 
 const char *state_words(RunState state)
@@ -132,14 +121,12 @@ static void take_session(Standing *out, const Run *run, const RunSession *last)
 
 void standing_of(Standing *out, const char *folder, const Run *run)
 {
-    char lock[PATH_MAX];
     *out = (Standing){.hypervolume = NAN, .max_evals = run->settings->search.max_evals};
-    snprintf(lock, sizeof lock, "%s/lock", folder);
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
-    out->state = lock_is_held(lock, &out->holder) ? RUN_RUNNING
-                 : last && last->is_final         ? RUN_FINISHED
-                 : last && last->ended[0]         ? RUN_PAUSED
-                                                  : RUN_INTERRUPTED;
+    out->state = folder_is_held(folder, &out->holder) ? RUN_RUNNING
+                 : last && last->is_final             ? RUN_FINISHED
+                 : last && last->ended[0]             ? RUN_PAUSED
+                                                      : RUN_INTERRUPTED;
     count(out, run);
     out->progress.generations = run->n_generations;
     const size_t n = run_first_polished(run);

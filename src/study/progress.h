@@ -17,9 +17,8 @@ double progress_rate(const Progress *p); /* simulations of this start, else of a
 /* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
 double progress_left(const Progress *p, const SearchOptions *o);
 
-/* "1:05 min", "3:20 h"; a number with so many decimals; "-" where it is not finite. */
+/* "1:05 min", "3:20 h"; "-" where it is not finite. */
 void duration_words(double seconds, char text[32]);
-void number_words(double value, int decimals, char text[32]);
 
 typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_INTERRUPTED } RunState;
 
