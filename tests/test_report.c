@@ -417,9 +417,9 @@ TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
     const size_t kept[] = {run_knee(&run), run.front[1]};
     size_t *rows = calloc(run.n_front, sizeof *rows);
     assert_true(rows && run.n_front > most + 4);
-    assert_int_equal(thin_front(&run, run.n_front, 2, kept, rows), run.n_front);
+    assert_int_equal(thin_front(&run, run.n_front, kept, rows), run.n_front);
     assert_memory_equal(rows, run.front, run.n_front * sizeof *rows);
-    const size_t n = thin_front(&run, most, 2, kept, rows);
+    const size_t n = thin_front(&run, most, kept, rows);
     assert_true(n > most / 2 && n <= most);
     assert_true(is_among(kept[0], n, rows) && is_among(kept[1], n, rows));
     for (size_t i = 0; i < n; i++)

@@ -64,6 +64,12 @@ int text_close(FILE *stream)
     return fclose(stream) != 0 || failed;
 }
 
+int text_ends(const char *text, const char *end)
+{
+    const size_t n = strlen(text), own = strlen(end);
+    return n >= own && strcmp(text + n - own, end) == 0;
+}
+
 void text_html(FILE *out, const char *words)
 {
     for (; *words; words++)

@@ -10,5 +10,7 @@
 FILE *text_open(char **text, size_t *length);
 int text_close(FILE *stream);
 
+int text_ends(const char *text, const char *end); /* a path in ".csv", say */
+
 /* Words of users inside HTML or SVG. */
 void text_html(FILE *out, const char *words);

@@ -189,30 +189,31 @@ Status command_run(const Args *args, Err *err)
     return status;
 }
 
-const char *args_value(const Args *args, const char *name)
-{
-    for (int i = 0; i < args->n_given; i++)
-        if (strcmp(args->given[i].option->name, name) == 0)
-            return args->given[i].value;
-    return NULL;
-}
-
-int args_has(const Args *args, const char *name)
-{
-    for (int i = 0; i < args->n_given; i++)
-        if (strcmp(args->given[i].option->name, name) == 0)
-            return 1;
-    return 0;
-}
-
-const char *args_next(const Args *args, const char *name, int *i)
+/* The first from i on, which is then behind it; NULL: none. */
+static const Given *next_given(const Args *args, const char *name, int *i)
 {
     while (*i < args->n_given) {
         const Given *g = &args->given[(*i)++];
         if (strcmp(g->option->name, name) == 0)
-            return g->value;
+            return g;
     }
     return NULL;
+}
+
+const char *args_next(const Args *args, const char *name, int *i)
+{
+    const Given *g = next_given(args, name, i);
+    return g ? g->value : NULL;
+}
+
+const char *args_value(const Args *args, const char *name)
+{
+    return args_next(args, name, &(int){0});
+}
+
+int args_has(const Args *args, const char *name)
+{
+    return next_given(args, name, &(int){0}) != NULL;
 }
 
 Status args_number(const Args *args, const char *name, double least, double most, double otherwise, double *value,

@@ -1,6 +1,7 @@
 #include <errno.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -64,9 +65,9 @@ static Status make_core(const Args *args, Model *m, Err *err)
 static Status open_model(const Args *args, Model *m, Err *err)
 {
     struct stat st;
-    const char *name = args->operand, *end = name + (strlen(name) > 4 ? strlen(name) - 4 : 0);
+    const char *name = args->operand;
     const int is_there = stat(name, &st) == 0;
-    m->has_core = strcmp(end, ".ini") == 0 || (strcmp(end, ".tcl") != 0 && is_there && S_ISREG(st.st_mode));
+    m->has_core = text_ends(name, ".ini") || (!text_ends(name, ".tcl") && is_there && S_ISREG(st.st_mode));
     settings_defaults(&m->s);
     if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0) {
         errno = ENOENT;

@@ -2,6 +2,7 @@
 
 #include "base/visible.h"
 #include "base/json.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
@@ -182,12 +183,6 @@ static Status write_event(const Motion *m, const char *path, Err *err)
     return status;
 }
 
-static int is_json(const char *path)
-{
-    const char *end = strrchr(path, '.');
-    return end && strcmp(end, ".json") == 0;
-}
-
 static void print_curves(size_t n, const Curve c[])
 {
     json_t *table = json_array();
@@ -362,8 +357,8 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
     histories_of(s, history);
     TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
     if (times)
-        TRY(is_json(times) ? write_event(&s->motion, times, err)
-                           : write_curves(times, s->motion.n, N_HISTORIES, history, err));
+        TRY(text_ends(times, ".json") ? write_event(&s->motion, times, err)
+                                      : write_curves(times, s->motion.n, N_HISTORIES, history, err));
     TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_json(s, err);

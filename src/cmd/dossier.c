@@ -87,6 +87,14 @@ static void heading(const Dossier *o, const char *title)
     fprintf(o->out, "<h2>%s</h2>\n", title);
 }
 
+/* A table that may have no rows: nothing then. */
+static void show_any(const Dossier *o, json_t *table)
+{
+    if (json_array_size(table) > 0)
+        figures_html(o->out, json_incref(table));
+    json_decref(table);
+}
+
 static void say(const Dossier *o, const char *text)
 {
     fputs("<p>", o->out);
@@ -407,9 +415,7 @@ static void write_limits(const Dossier *o)
     }
     if (l.n == 0)
         say(o, "The study sets no limits.");
-    if (l.n > 0)
-        figures_html(o->out, json_incref(table));
-    json_decref(table);
+    show_any(o, table);
 }
 
 /* Row of a demand that it has: of the first record, and the largest. */
@@ -488,10 +494,7 @@ static void write_ladder(const Dossier *o)
         put_text(row, " in the study", e->is_set ? "yes" : "no");
         put_text(row, " verdict", e->is_needed ? "needed" : "not needed");
     }
-    if (json_array_size(table) > 0)
-        figures_html(o->out, table);
-    else
-        json_decref(table);
+    show_any(o, table);
     if (l)
         say_under(o, "All");
     say(o, l ? "What leaving out each effect changes of a model that has them all; needed: more than 2 % or the "
@@ -647,9 +650,7 @@ static void write_sensitivities(const Dossier *o)
             put_named(row, words_of_measure(SHOWN[k]), list[i].step * list[i].slope[SHOWN[k]],
                       list[i].step * list[i].error[SHOWN[k]], NAN);
     }
-    if (json_array_size(table) > 0)
-        figures_html(o->out, json_incref(table));
-    json_decref(table);
+    show_any(o, table);
     say_under(o, "Gaps that change nothing are left out. Change of each result for one step of a parameter, with its "
                  "error,");
     free(list);
@@ -692,20 +693,18 @@ static void put_setting(const char *key, unsigned flags, const char *was, const 
     add_line(user, key, is);
 }
 
-static void list_provenance(json_t *table, const char *before, json_t *o)
+static void list_provenance(json_t *table, json_t *o)
 {
     const char *key;
     json_t *value;
     json_object_foreach(o, key, value)
     {
-        char name[80];
-        snprintf(name, sizeof name, "%s%s", before, key);
         if (json_is_object(value))
-            list_provenance(table, "", value);
+            list_provenance(table, value);
         else if (json_is_integer(value))
-            put_lines(table, name, "%.0f", json_number_value(value));
+            put_lines(table, key, "%.0f", json_number_value(value));
         else if (json_is_string(value) && json_string_length(value) > 0 && strcmp(key, "flags") != 0)
-            add_line(table, name, json_string_value(value));
+            add_line(table, key, json_string_value(value));
     }
 }
 
@@ -714,7 +713,7 @@ static void write_provenance(const Dossier *o)
     json_t *table = json_array(), *settings = json_array(), *from = json_loads(o->r->run->provenance, 0, NULL);
     Settings none;
     heading(o, "Provenance");
-    list_provenance(table, "", from);
+    list_provenance(table, from);
     figures_html(o->out, table);
     settings_defaults(&none);
     settings_compare(&none, o->r->run->settings, put_setting, settings);
@@ -771,15 +770,9 @@ static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n
 
 enum { N_PRINTERS = 2 };
 
-static int ends_in(const char *path, const char *ending)
-{
-    const char *end = strrchr(path, '.');
-    return end && strcmp(end, ending) == 0;
-}
-
 static int is_pdf(const char *path)
 {
-    return ends_in(path, ".pdf");
+    return text_ends(path, ".pdf");
 }
 
 /* page, pdf: paths. */
@@ -805,7 +798,7 @@ static int first_printer(FILE *faults)
 
 Status dossier_check(const char *path, Err *err)
 {
-    if (!is_pdf(path) && !ends_in(path, ".html"))
+    if (!is_pdf(path) && !text_ends(path, ".html"))
         return misused(err, "--dossier %s: it is written as a page or a PDF; name the file .html or .pdf", path);
     FILE *faults = is_pdf(path) ? tmpfile() : NULL;
     const int is_there = !faults || first_printer(faults) < N_PRINTERS;

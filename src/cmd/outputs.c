@@ -1,10 +1,10 @@
 #include "cmd/outputs.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "scene/building_read.h"
 #include "settings/settings.h"
 #include "store/folder.h"
@@ -49,10 +49,9 @@ static int is_read_from(const char *out, const char *place)
 {
     struct stat is, other;
     char folder[PATH_MAX];
-    const char *end = strrchr(out, '.');
     if (stat(out, &is) != 0 || !S_ISREG(is.st_mode) || stat(place, &other) != 0)
         return 0;
-    if (S_ISDIR(other.st_mode) && !folder_is_run(place) && !(end && strcmp(end, ".svg") == 0)) {
+    if (S_ISDIR(other.st_mode) && !folder_is_run(place) && !text_ends(out, ".svg")) {
         folder_of(out, folder);
         if (stat(folder, &is) != 0)
             return 0;

@@ -15,12 +15,12 @@ static double total_height(const Detail *d)
     return z;
 }
 
-static void begin(FILE *out, double width, double height, const char *title)
+static void begin(FILE *out, double height, const char *title)
 {
     fprintf(out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" role=\"img\" "
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 700 %.0f\" width=\"700\" role=\"img\" "
             "aria-label=\"%s\" font-family=\"sans-serif\" font-size=\"12\">\n",
-            width, height, width, title);
+            height, title);
 }
 
 /* ---- devices --------------------------------------------------------------------------------------------------- */
@@ -81,7 +81,7 @@ void draw_devices(FILE *out, const Detail *d, const Design *design)
     const double wide = fmax(largest_of(d->n_floors, d->gap_side_m[0]), largest_of(d->n_floors, d->gap_side_m[1]));
     const double thick = largest_of(d->n_floors, d->thickness_m);
     double z = 0;
-    begin(out, 700, HEIGHT + TOP + FOOT, "section through tower and core");
+    begin(out, HEIGHT + TOP + FOOT, "section through tower and core");
     fputs("<text x=\"8\" y=\"14\">floor</text><text x=\"460\" y=\"14\">gap</text><text x=\"560\" y=\"14\">core "
           "wall</text>\n",
           out);
@@ -109,14 +109,14 @@ void draw_devices(FILE *out, const Detail *d, const Design *design)
 
 /* ---- curves ---------------------------------------------------------------------------------------------------- */
 
-static void draw_legend(FILE *out, const char *const names[CURVES_SHOWN], double y)
+static void draw_legend(FILE *out, const char *const names[CURVES_SHOWN])
 {
     double x = LEFT;
     for (int c = 0; c < CURVES_SHOWN && names[c]; c++) {
         fprintf(out,
-                "<path d=\"M%.0f %.0f h26\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"%s\"/><text x=\"%.0f\" "
-                "y=\"%.0f\">%s</text>\n",
-                x, y - 4, COLOURS[c], DASHES[c], x + 32, y, names[c]);
+                "<path d=\"M%.0f 10 h26\" stroke=\"%s\" stroke-width=\"2\" stroke-dasharray=\"%s\"/><text x=\"%.0f\" "
+                "y=\"14\">%s</text>\n",
+                x, COLOURS[c], DASHES[c], x + 32, names[c]);
         x += 165;
     }
 }
@@ -154,8 +154,8 @@ static void draw_panel(FILE *out, const Detail *d, const Panel *p, double x0)
 
 void draw_profiles(FILE *out, const Detail *d, const char *const names[CURVES_SHOWN], size_t n, const Panel panels[])
 {
-    begin(out, 700, 375, "peaks over the height");
-    draw_legend(out, names, 14);
+    begin(out, 375, "peaks over the height");
+    draw_legend(out, names);
     fprintf(out, "<text x=\"6\" y=\"%.0f\">floor</text>\n", TOP);
     for (int j = 0, step = 1 + d->n_floors / 12; j < d->n_floors; j += step) {
         double z = 0;
@@ -178,8 +178,8 @@ void draw_history(FILE *out, const Detail *d)
             most = fmax(most, fabs(d->history[i].u[k]));
             end = fmax(end, d->history[i].t[k]);
         }
-    begin(out, 700, 250, "displacement over time");
-    draw_legend(out, NAMES, 14);
+    begin(out, 250, "displacement over time");
+    draw_legend(out, NAMES);
     for (int i = 1; i >= 0 && most > 0 && end > 0; i--) {
         const History *h = &d->history[i];
         const char *move = "M";

@@ -15,14 +15,12 @@ static double value_of(const Run *run, size_t row, size_t column)
 
 /* Into rows (n_front), which hold NOT_TAKEN for the other designs of the front: the lowest and the highest value of
  * every column, polished designs, and those that are to be kept. */
-static void take_wanted(const Run *run, size_t n_kept, const size_t kept[], size_t rows[])
+static void take_wanted(const Run *run, const size_t kept[2], size_t rows[])
 {
     const size_t n = run->n_front, *front = run->front;
     for (size_t i = 0; i < n; i++) {
-        int wanted = run->table.row[front[i]].kind == KIND_POLISHED;
-        for (size_t k = 0; k < n_kept; k++)
-            wanted = wanted || kept[k] == front[i];
-        rows[i] = wanted ? front[i] : NOT_TAKEN;
+        const int is_polished = run->table.row[front[i]].kind == KIND_POLISHED;
+        rows[i] = is_polished || front[i] == kept[0] || front[i] == kept[1] ? front[i] : NOT_TAKEN;
     }
     for (size_t column = 0; column < run->schema.n_obj + run->schema.n_var; column++) {
         size_t low = 0, high = 0;
@@ -36,7 +34,7 @@ static void take_wanted(const Run *run, size_t n_kept, const size_t kept[], size
     }
 }
 
-size_t thin_front(const Run *run, size_t most, size_t n_kept, const size_t kept[], size_t rows[])
+size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows[])
 {
     const size_t n = run->n_front;
     size_t wanted = 0, taken = 0;
@@ -44,7 +42,7 @@ size_t thin_front(const Run *run, size_t most, size_t n_kept, const size_t kept[
         memcpy(rows, run->front, n * sizeof *rows);
         return n;
     }
-    take_wanted(run, n_kept, kept, rows);
+    take_wanted(run, kept, rows);
     for (size_t i = 0; i < n; i++)
         wanted += rows[i] != NOT_TAKEN;
     for (size_t k = wanted; k < most; k++) {
@@ -77,17 +75,17 @@ static void write_json(json_t *all, FILE *out)
 
 static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
 {
-    const char *mark = memmem(start, (end - start), MARK, sizeof MARK - 1);
+    const char *mark = memmem(start, end - start, MARK, sizeof MARK - 1);
     if (!mark)
         return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
-    fwrite(start, 1, (mark - start), out); /* a failed write is seen on closing */
+    fwrite(start, 1, mark - start, out); /* a failed write is seen on closing */
     fputs("<script type=\"application/json\" id=\"run\">", out);
     write_json(report_json(r), out);
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
     TRY(export_designs(out, r->run, EXPORT_PAGE, r->n_shown, r->shown, err));
     fputs("</script>\n", out);
     mark += sizeof MARK - 1;
-    fwrite(mark, 1, (end - mark), out);
+    fwrite(mark, 1, end - mark, out);
     return STATUS_OK;
 }
 
@@ -104,7 +102,7 @@ Status report_page(const Report *r, const char *path, Err *err)
 {
     Report whole = *r;
     TRY_ROOM(whole.shown, r->run->n_front, "designs", err);
-    whole.n_shown = thin_front(r->run, REPORT_DESIGNS_MAX, 2, (size_t[]){r->knee, r->chosen}, whole.shown);
+    whole.n_shown = thin_front(r->run, REPORT_DESIGNS_MAX, (size_t[]){r->knee, r->chosen}, whole.shown);
     Status status = importance_of(r->run, &whole.importance, err);
     if (status == STATUS_OK)
         status = write_whole(&whole, path, err);

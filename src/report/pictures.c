@@ -202,9 +202,9 @@ static const char GAPS[] =
     "plot $D using 3:1 with linespoints lt 1 ps 0.7\n";
 
 /* Floor by floor: displacement, drift and acceleration of n results, one after the other. */
-static void write_floors(FILE *out, const char *block, int n_floors, int n, const SimResult *const results[])
+static void write_floors(FILE *out, int n_floors, int n, const SimResult *const results[])
 {
-    fprintf(out, "$%s << EOD\n", block);
+    fputs("$P << EOD\n", out);
     for (int j = 0; j < n_floors; j++) {
         gnuplot_number(out, j + 1);
         for (int s = 0; s < n; s++) {
@@ -218,10 +218,10 @@ static void write_floors(FILE *out, const char *block, int n_floors, int n, cons
 }
 
 /* Shares of the leading modes of n results, one after the other. */
-static void write_modes_of(FILE *out, const char *block, int n, const SimResult *const results[])
+static void write_modes_of(FILE *out, int n, const SimResult *const results[])
 {
     static const double LEAST_PCT = 0.01;
-    fprintf(out, "$%s << EOD\n", block);
+    fputs("$M << EOD\n", out);
     for (int i = 0; i < results[0]->n_modes && i < MODES_SHOWN; i++) {
         gnuplot_number(out, i + 1);
         for (int s = 0; s < n; s++)
@@ -237,8 +237,8 @@ static void write_scenes(FILE *out, const Report *r)
     const SimResult *all[N_SCENES];
     for (int s = 0; s < N_SCENES; s++)
         all[s] = &r->detail.result[ORDER[s]];
-    write_floors(out, "P", r->detail.n_floors, N_SCENES, all);
-    write_modes_of(out, "M", 3, all);
+    write_floors(out, r->detail.n_floors, N_SCENES, all);
+    write_modes_of(out, 3, all);
     if (all[0]->yields)
         fprintf(out, "set title 'storeys that yield dissipate %.2g %%: shares of modes say little'\n",
                 all[0]->ed_hysteresis_pct);
@@ -389,8 +389,8 @@ static void write_elsewhere(FILE *out, const Report *r)
     fputs("set multiplot\n", out);
     for (size_t e = 0; e < d->n_elsewhere; e++) {
         const SimResult *const pair[] = {&d->elsewhere[e].with_core, &d->elsewhere[e].no_core};
-        write_floors(out, "P", d->n_floors, 2, pair);
-        write_modes_of(out, "M", 2, pair);
+        write_floors(out, d->n_floors, 2, pair);
+        write_modes_of(out, 2, pair);
         fputs("NAME = ", out);
         write_motion_name(out, d->elsewhere[e].record);
         fprintf(out, "\nset tmargin at screen %g\nset bmargin at screen %g\n%s", 1 - ((double)e + 0.09) / rows,

@@ -49,4 +49,4 @@ void report_close(Report *r);
  * ranges stay as they are, and where the front is dense there is more of it. */
 /* Rows of the run, ascending, into rows (n_front); returns how many: `most`, and what has to be kept beyond that.
  * kept: rows of the run, on its front or not. */
-size_t thin_front(const Run *run, size_t most, size_t n_kept, const size_t kept[], size_t rows[]);
+size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows[]);

@@ -1,3 +1,4 @@
+#include "base/text.h"
 #include "scene/opensees.h"
 #include "scene/sheets.h"
 #include "scene/building_read.h"
@@ -133,15 +134,9 @@ int frame_reads(const char *name)
     return i < N_SHEETS;
 }
 
-static int is_tcl(const char *model)
-{
-    const size_t n = strlen(model);
-    return n > 4 && strcmp(model + n - 4, ".tcl") == 0;
-}
-
 int frame_is(const char *model)
 {
-    return is_tcl(model) || model_has(model, SHEETS[0].file);
+    return text_ends(model, ".tcl") || model_has(model, SHEETS[0].file);
 }
 
 static Status read_sheets(Frame *f, const char *model, Err *err)
@@ -167,7 +162,7 @@ static Status read_tcl(Frame *f, const BuildingOptions *o, Err *err)
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
 {
     memset(f, 0, sizeof *f);
-    Status status = is_tcl(o->model) ? read_tcl(f, o, err) : read_sheets(f, o->model, err);
+    Status status = text_ends(o->model, ".tcl") ? read_tcl(f, o, err) : read_sheets(f, o->model, err);
     if (status == STATUS_OK)
         status = frame_find_floors(f, o->model, o->rigid_floors, err);
     if (status != STATUS_OK)

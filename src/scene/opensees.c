@@ -97,11 +97,11 @@ static int look_up(Reader *r, Words w, int at, const char *what, const FrameSect
     return i >= 0 || refuse(r, "%s: there is no %s above", Tcl_GetString(w[0]), name);
 }
 
-/* Into the library, under the tag in word `at`. */
-static int define(Reader *r, Words w, int at, FrameSection s)
+/* Into the library, under the tag behind the two words of its kind. */
+static int define(Reader *r, Words w, FrameSection s)
 {
     Err err = {0};
-    return take_tag(r, w, at, Tcl_GetString(w[0]), s.name) &&
+    return take_tag(r, w, 2, Tcl_GetString(w[0]), s.name) &&
            is_taken(r, w, frame_add_section(&r->library, &s, &err), &err);
 }
 
@@ -187,7 +187,7 @@ static int take_equal(Reader *r, int n, Words w)
 static int take_transformation(Reader *r, int n, Words w)
 {
     return n == 3 && (is_word(w[1], "Linear") || is_word(w[1], "PDelta"))
-               ? define(r, w, 2, (FrameSection){.area = 1, .inertia = 1, .E = 1})
+               ? define(r, w, (FrameSection){.area = 1, .inertia = 1, .E = 1})
                : refuse(r, "geomTransf: only Linear and PDelta TAG are read; building.p_delta decides between them");
 }
 
@@ -200,7 +200,7 @@ static int take_elastic(Reader *r, int n, Words w)
         return refuse(r, "%s %.60s: only Elastic TAG E%s is read", Tcl_GetString(w[0]), Tcl_GetString(w[1]),
                       is_section ? " A I" : "");
     return take_numbers(r, w, 3, numbers, value) &&
-           define(r, w, 2, (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]});
+           define(r, w, (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]});
 }
 
 /* The elements that are read, and what stands behind their nodes: numbers A, E, I; tags of a Section, a Material, a
