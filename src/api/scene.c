@@ -55,10 +55,9 @@ static void give_back(imtet_scene *s, Problem *p)
 
 static Status read_settings(Settings *s, const char *path, const char *const list[], Err *err)
 {
-    int n_faults;
     settings_defaults(s);
     if (path)
-        TRY(settings_read(s, path, NULL, &n_faults, err));
+        TRY(settings_read(s, path, NULL, NULL, err));
     TRY(api_settings(s, list, err));
     return settings_check(s, err);
 }

@@ -263,7 +263,7 @@ static const char *failure_of(const Answers *t, size_t i)
 
 static size_t last_asked_for(const imtet_search *s)
 {
-    return s->next > s->known ? s->next : s->known;
+    return MAX_OF(s->next, s->known);
 }
 
 static int is_design(const imtet_search *s, long id)

@@ -4,11 +4,10 @@
 
 SearchConfig search_config_of(const Settings *s)
 {
-    const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
     return (SearchConfig){
         .seed = (uint32_t)s->search.seed,
         .population = s->search.population,
-        .initial = initial,
+        .initial = MIN_OF(s->search.initial, s->search.max_evals),
         .generations = s->search.generations,
         .max_evals = s->search.max_evals,
         .surrogate_max = SEARCH_CENTRES,

@@ -146,12 +146,12 @@ static int open_motion(Check *c, CheckedScene *p)
 static void spread_designs(CheckedScene *p)
 {
     const DesignSpace *s = &p->space;
-    const int walls_end = s->n_gaps + s->n_walls, side = walls_end + s->n_bumpers;
+    const int side = s->n_gaps + s->n_walls + s->n_bumpers;
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
     design_bounds(s, &p->s->design, lower, upper);
     p->n_tried = TRIED_MAX;
     for (int j = 0; j < s->n_var; j++) {
-        const int is_core = (j >= s->n_gaps && j < walls_end) || (j == side && s->has_side);
+        const int is_core = design_is_wall(s, j) || (j == side && s->has_side);
         for (int k = 0; k < TRIED_MAX; k++) {
             const double share = is_core ? 0.5 : fmod(GOLDEN_RATIO * (j + 1) + (double)k / TRIED_MAX, 1);
             double *x = &p->tried[k][j];

@@ -227,7 +227,7 @@ static void find_place(const char *word, Place *p)
     const char *colon = strrchr(word, ':');
     p->choice = NULL;
     if (!is_there(word, strlen(word), p) && colon && colon > word) {
-        is_there(word, (colon - word), p);
+        is_there(word, colon - word, p);
         p->choice = colon + 1;
     }
     p->is_run = run_drop_name(p->path) || run_is_there(p->path);

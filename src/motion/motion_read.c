@@ -1,7 +1,6 @@
 #include "motion/motion_read.h"
 
 #include <ctype.h>
-#include <strings.h>
 
 #include "base/hash.h"
 #include "base/csv.h"

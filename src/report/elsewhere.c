@@ -1,8 +1,5 @@
 #include "report/elsewhere.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/csv.h"
 #include "base/hash.h"
 #include "motion/builtin.h"

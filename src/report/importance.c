@@ -48,7 +48,7 @@ static size_t count_known(const Run *run)
 {
     size_t n = 0;
     for (size_t i = 0; i < run->table.n; i++)
-        n += is_known(run, i) != 0;
+        n += is_known(run, i);
     return n;
 }
 
@@ -141,9 +141,7 @@ Status importance_of(const Run *run, Importance *out, Err *err)
                .n = MIN_OF(known, CENTRES),
                .n_var = n_var,
                .n_obj = n_obj,
-               .n_samples = samples < SAMPLES_MIN   ? SAMPLES_MIN
-                            : samples < SAMPLES_MAX ? samples
-                                                    : SAMPLES_MAX};
+               .n_samples = MIN_OF(MAX_OF(samples, SAMPLES_MIN), SAMPLES_MAX)};
     *out = (Importance){0};
     if (known < n_var + 2 || n_var > RBF_DIM_MAX)
         return STATUS_OK;

@@ -1,6 +1,5 @@
 #include "scene/building.h"
 
-#include "base/carve.h"
 #include "base/hash.h"
 #include "base/linalg.h"
 #include "base/units.h"

@@ -215,6 +215,11 @@ int design_share_zone(const DesignSpace *s, int a, int b, int zones)
            a % per_side * zones / per_side == b % per_side * zones / per_side;
 }
 
+int design_is_wall(const DesignSpace *s, int j)
+{
+    return j >= s->n_gaps && j < s->n_gaps + s->n_walls;
+}
+
 int design_is_log(const DesignSpace *s, int j)
 {
     const Group group = group_of(s, &j);

@@ -72,6 +72,8 @@ const char *design_word(const DesignSpace *space, int j, double x);
 /* Are variables a and b of the same sort, of floors in the same one of so many zones? */
 int design_share_zone(const DesignSpace *space, int a, int b, int zones);
 
+int design_is_wall(const DesignSpace *space, int j); /* a thickness of the core */
+
 /* Is it searched on a logarithmic scale? */
 int design_is_log(const DesignSpace *space, int j);
 

@@ -213,14 +213,14 @@ static void report_broken(const char *text, void *user)
 static char *whole_line(char *line, char *stop, char *end, int *n_more)
 {
     const char *begin = skip_blanks(line);
-    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', (stop - line));
+    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', stop - line);
     char *value = equals ? skip_blanks(equals + 1) : stop;
     *n_more = 0;
     if (*value != '[' || !toml_end(value, end, 0))
         return stop;
     for (const char *c = value, *close = toml_end(value, end, 0); c < close; c++)
         *n_more += *c == '\n';
-    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', (end - close));
+    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', end - close);
     return last ? last : end;
 }
 
@@ -228,7 +228,7 @@ static char *whole_line(char *line, char *stop, char *end, int *n_more)
 static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 {
     for (char *next = text, *line = text, *end = text + length; next < end; line = next) {
-        char *stop = memchr(line, '\n', (end - line));
+        char *stop = memchr(line, '\n', end - line);
         int n_more;
         stop = whole_line(line, stop ? stop : end, end, &n_more);
         next = stop + 1;

@@ -3,7 +3,6 @@
 
 #include <cblas.h>
 #include <inttypes.h>
-#include <jansson.h>
 #include <nlopt.h>
 #include <sqlite3.h>
 #include <sundials/sundials_version.h>

@@ -10,13 +10,13 @@ enum { REPLICATES_MIN = 4, EVALS_MIN = 40, SHARE = 10, DESIGNS_MAX = 32 };
 
 static size_t n_designs(const Settings *s)
 {
-    return (s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
+    return MIN_OF(s->search.polish, DESIGNS_MAX);
 }
 
 /* Of a tower; other problems are simulated once. */
 static long replicates(const Settings *s)
 {
-    return s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN;
+    return MAX_OF(s->sim.replicates, REPLICATES_MIN);
 }
 
 /* Simulations for each design; 0: not worth it. */

@@ -114,10 +114,8 @@ Status initial_designs_read(const char *where, const char *start, const Schema *
 /* The middle of what is searched; `wall` of the way from the thinnest core to the thickest. */
 static void set_core(const Problem *p, const DesignSpace *space, double wall, double x[])
 {
-    for (size_t d = 0; d < p->n_var; d++) {
-        const int is_wall = (int)d >= space->n_gaps && (int)d < space->n_gaps + space->n_walls;
-        x[d] = problem_spread(p, d, is_wall ? wall : 0.5);
-    }
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] = problem_spread(p, d, design_is_wall(space, (int)d) ? wall : 0.5);
     problem_repair(p, x);
 }
 

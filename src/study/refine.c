@@ -96,7 +96,7 @@ static int has_finer(const Settings *s)
 size_t refine_evals_min(const Settings *s, long replicates)
 {
     const long each = s->problem.kind == PROBLEM_TOWER ? replicates : 1;
-    return (each * (has_finer(s) ? 6 : 4));
+    return each * (has_finer(s) ? 6 : 4);
 }
 
 /* From the design itself, whose minimised objectives are f; the best is left in r->x. */

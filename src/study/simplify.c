@@ -219,16 +219,11 @@ static size_t nearest_plate(const SimplifyConfig *c, double t)
     return best;
 }
 
-static int is_wall(const Simplify *s, size_t j)
-{
-    return (int)j >= s->space->n_gaps && (int)j < s->space->n_gaps + s->space->n_walls;
-}
-
 static Status put_on_steps(Simplify *s, Err *err)
 {
     const SimplifyConfig *c = s->config;
     for (size_t j = 0; j < s->n_var; j++)
-        if (is_wall(s, j) && c->n_plates > 0)
+        if (design_is_wall(s->space, (int)j) && c->n_plates > 0)
             s->x[j] = c->plate[nearest_plate(c, s->x[j])];
         else if (is_stop(s, j) && c->gap_step > 0.0)
             s->x[j] = fmax(round(s->x[j] / c->gap_step), 1.0) * c->gap_step;
@@ -242,7 +237,7 @@ static void add_neighbours(Simplify *s)
     for (size_t j = 0; j < s->n_var; j++) {
         if (!leads(s, j)) {
             continue;
-        } else if (is_wall(s, j) && c->n_plates > 0) {
+        } else if (design_is_wall(s->space, (int)j) && c->n_plates > 0) {
             const size_t at = nearest_plate(c, s->x[j]);
             for (size_t next = at - 1; next != at + 3; next += 2) /* before the first one it is too large */
                 if (next < c->n_plates)

@@ -435,9 +435,8 @@ static Status run_search(Study *study, Err *err)
     SearchConfig config;
     TRY(search_config(study, &config, err));
     if (run) {
-        const long initial = study->used.search.initial;
         config.planned_evals = run->planned_evals;
-        config.initial = (initial < run->planned_evals ? initial : run->planned_evals);
+        config.initial = MIN_OF(study->used.search.initial, run->planned_evals);
     }
     TRY(record_race(study->adapter, &study->used, err));
     omp_set_num_threads(search_threads(study));

@@ -11,7 +11,6 @@
  * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES
  * are in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
 #include <ctype.h>
-#include <strings.h>
 
 #include "base/units.h"
 #include "motion/formats/record.h"

@@ -2,7 +2,6 @@
 
 #include <archive.h>
 #include <archive_entry.h>
-#include <sys/stat.h>
 
 int archive_is(const unsigned char bytes[], size_t n)
 {

@@ -16,7 +16,6 @@
  *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
  *             digits, and where the names name one column and no number has a point */
 #include <ctype.h>
-#include <strings.h>
 
 #include "motion/formats/record.h"
 

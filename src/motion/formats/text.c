@@ -1,7 +1,6 @@
 #include "motion/formats/text.h"
 
 #include <ctype.h>
-#include <stdarg.h>
 #include <strings.h>
 #include <time.h>
 
