@@ -22,63 +22,63 @@ typedef struct {
     size_t at, size;
 } Field;
 
-#define FIELD(record, member, name, declared, type)                                                                    \
-    {                                                                                                                  \
-        name, declared, type, offsetof(record, member), sizeof((record){0}.member)                                     \
-    }
+/* clang-format off */
+#define NAMED(name, record, member, sql, type) {name, sql, type, offsetof(record, member), sizeof((record){0}.member)}
+#define FIELD(record, member, sql, type) NAMED(#member, record, member, sql, type)
 
 static const Field EVALUATION[] = {
-    FIELD(Evaluation, id, "id", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(Evaluation, generation, "generation", "INTEGER NOT NULL", MOVED),
-    FIELD(Evaluation, kind, "kind", "TEXT", KIND),
-    FIELD(Evaluation, outcome, "outcome", "TEXT NOT NULL", OUTCOME),
-    FIELD(Evaluation, reason, "reason", "TEXT NOT NULL", REASON),
-    FIELD(Evaluation, seconds, "seconds", "REAL", REAL),
-    FIELD(Evaluation, violation, "violation", "REAL", REAL),
+    FIELD(Evaluation, id, "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(Evaluation, generation, "INTEGER NOT NULL", MOVED),
+    FIELD(Evaluation, kind, "TEXT", KIND),
+    FIELD(Evaluation, outcome, "TEXT NOT NULL", OUTCOME),
+    FIELD(Evaluation, reason, "TEXT NOT NULL", REASON),
+    FIELD(Evaluation, seconds, "REAL", REAL),
+    FIELD(Evaluation, violation, "REAL", REAL),
 };
 
 static const Field FINER[] = {
-    FIELD(Evaluation, id, "id", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(Evaluation, level, "level", "INTEGER NOT NULL", WHOLE),
-    FIELD(Evaluation, reason, "reason", "TEXT NOT NULL", REASON),
-    FIELD(Evaluation, seconds, "seconds", "REAL", REAL),
-    FIELD(Evaluation, violation, "violation", "REAL", REAL),
+    FIELD(Evaluation, id, "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(Evaluation, level, "INTEGER NOT NULL", WHOLE),
+    FIELD(Evaluation, reason, "TEXT NOT NULL", REASON),
+    FIELD(Evaluation, seconds, "REAL", REAL),
+    FIELD(Evaluation, violation, "REAL", REAL),
 };
 
 static const Field GENERATION[] = {
-    FIELD(RunGeneration, number, "number", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(RunGeneration, simulated, "simulated", "INTEGER NOT NULL", WHOLE),
-    FIELD(RunGeneration, failed, "failed", "INTEGER NOT NULL", WHOLE),
-    FIELD(RunGeneration, front, "front", "INTEGER NOT NULL", WHOLE),
-    FIELD(RunGeneration, surrogate_error, "surrogate_error", "REAL", REAL),
-    FIELD(RunGeneration, hypervolume, "hypervolume", "REAL", REAL),
-    FIELD(RunGeneration, seconds, "seconds", "REAL NOT NULL", REAL),
-    FIELD(RunGeneration, finished, "finished", "TEXT NOT NULL", TEXT),
-    FIELD(RunGeneration, members, "members", "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, number, "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunGeneration, simulated, "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, failed, "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, front, "INTEGER NOT NULL", WHOLE),
+    FIELD(RunGeneration, surrogate_error, "REAL", REAL),
+    FIELD(RunGeneration, hypervolume, "REAL", REAL),
+    FIELD(RunGeneration, seconds, "REAL NOT NULL", REAL),
+    FIELD(RunGeneration, finished, "TEXT NOT NULL", TEXT),
+    FIELD(RunGeneration, members, "INTEGER NOT NULL", WHOLE),
 };
 
 static const Field FRONT[] = {
-    FIELD(RunMark, id, "evaluation", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(RunMark, entered, "entered", "INTEGER NOT NULL", MARK),
-    FIELD(RunMark, left, "left", "INTEGER", MARK),
+    NAMED("evaluation", RunMark, id, "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunMark, entered, "INTEGER NOT NULL", MARK),
+    FIELD(RunMark, left, "INTEGER", MARK),
 };
 
 static const Field SESSION[] = {
-    FIELD(RunSession, number, "number", "INTEGER PRIMARY KEY", WHOLE),
-    FIELD(RunSession, started, "started", "TEXT NOT NULL", TEXT),
-    FIELD(RunSession, ended, "ended", "TEXT", TEXT),
-    FIELD(RunSession, host, "host", "TEXT", TEXT),
-    FIELD(RunSession, pid, "pid", "INTEGER", WHOLE),
-    FIELD(RunSession, program, "program", "TEXT", TEXT),
-    FIELD(RunSession, threads, "threads", "INTEGER", WHOLE),
-    FIELD(RunSession, simulated_before, "simulated_before", "INTEGER", WHOLE),
-    FIELD(RunSession, seconds, "seconds", "REAL", REAL),
-    FIELD(RunSession, stopped, "stopped", "TEXT", TEXT),
-    FIELD(RunSession, is_final, "is_final", "INTEGER", MARK),
-    FIELD(RunSession, search_s, "search", "REAL", REAL),
-    FIELD(RunSession, waited_s, "waited", "REAL", REAL),
-    FIELD(RunSession, surrogate_s, "surrogate", "REAL", REAL),
+    FIELD(RunSession, number, "INTEGER PRIMARY KEY", WHOLE),
+    FIELD(RunSession, started, "TEXT NOT NULL", TEXT),
+    FIELD(RunSession, ended, "TEXT", TEXT),
+    FIELD(RunSession, host, "TEXT", TEXT),
+    FIELD(RunSession, pid, "INTEGER", WHOLE),
+    FIELD(RunSession, program, "TEXT", TEXT),
+    FIELD(RunSession, threads, "INTEGER", WHOLE),
+    FIELD(RunSession, simulated_before, "INTEGER", WHOLE),
+    FIELD(RunSession, seconds, "REAL", REAL),
+    FIELD(RunSession, stopped, "TEXT", TEXT),
+    FIELD(RunSession, is_final, "INTEGER", MARK),
+    NAMED("search", RunSession, search_s, "REAL", REAL),
+    NAMED("waited", RunSession, waited_s, "REAL", REAL),
+    NAMED("surrogate", RunSession, surrogate_s, "REAL", REAL),
 };
+/* clang-format on */
 
 typedef struct {
     const char *name;
