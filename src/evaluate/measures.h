@@ -90,7 +90,7 @@ enum {
       "expected cost of repair over that of replacing the building (evaluate/consequences.h)")                         \
     X(ANNUAL_LOSS, "annual_loss", "1/year", 1, NEEDS_NOTHING,                                                          \
       r->rate_per_year > 0 ? r->rate_per_year * damage_loss(r) : NAN,                                                  \
-      "loss of a year: sum over the records of loss times rate=NUMBER of each (motion/suite.h)")
+      "loss of a year: sum over the records of loss times rate=NUMBER of each (docs/risk.md)")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,
