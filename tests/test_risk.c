@@ -1,6 +1,8 @@
 /* Objectives over a suite of records, fragility curves and yearly rates, by closed forms and known samples. */
 #include "runs.h"
 
+#include <sys/stat.h>
+
 #include "analysis/evaluations.h"
 #include "base/random.h"
 #include "base/stat.h"
@@ -507,6 +509,23 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     expect(65, "up.csv:3: intensities must rise, and their rates fall", CURVES "--hazard @/up.csv");
 }
 
+#define FOLDER "evaluate @/tower.ini --design @/chance:knee --records @/some --sa 0.1:0.1:0.2 "
+
+TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_others)
+{
+    char path[PATH_MAX], motion[12000] = "time_s,acceleration_m_s2\n";
+    assert_int_equal(mkdir(path_of("some", path), 0777), 0);
+    for (int i = 0; i < 300; i++)
+        snprintf(motion + strlen(motion), sizeof motion - strlen(motion), "%.2f,%.6f\n", 0.02 * i, sin(0.3 * i));
+    write_in_place("some/a.txt", "no numbers here\n1 2 x\n");
+    write_in_place("some/b.csv", motion);
+    json_t *o = json_of(FOLDER "--json");
+    assert_int_equal(json_array_size(json_object_get(o, "unreadable")), 1);
+    assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
+    json_decref(o);
+    free(output_of(FOLDER "--csv -"));
+}
+
 /* -- annual loss as an objective ----------------------------------------------------------------------------------- */
 
 #define OF_YEARS                                                                                                       \
@@ -549,6 +568,12 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
 
 TEST(an_annual_loss_without_its_rates_is_refused_with_what_to_do)
 {
+    write_in_place("year_list.txt", "builtin:suite-02 rate=0.02\n");
+    expect(65, "motion.pga_g = 0.3: annual_loss (search.objectives or search.limits) wants every record as strong",
+           "check @/tower.ini " OF_YEARS "--set motion.records=@/year_list.txt --set motion.pga_g=0.3 "
+           "--set 'motion.record=builtin:suite-01 rate=0.02'");
+    write_in_place("year_list.txt", "builtin:suite-02 factor=0.4 rate=0\n");
+    expect(65, "year_list.txt:1", "simulate " YEARS "--design @/years:knee --json");
     write_in_place("year_list.txt", "builtin:suite-02 rate=0.02\nbuiltin:suite-03 factor=2\n");
     expect(65, "year_list.txt:2: motion.records: builtin:suite-03 factor=2: annual_loss wants the events of a year",
            "optimize " YEARS "--out @/no");

@@ -82,7 +82,6 @@ static Status describe_run(Evaluations *e, size_t i, Err *err)
 {
     EvaluatedRun *run = &e->run[i];
     Motion m;
-    run->record = &e->record[i / e->n_levels];
     TRY(tower_motion(&e->tower, i, &m, err));
     run->pga_g = motion_peak(&m) / GRAVITY;
     run->scale = m.scale;
@@ -98,6 +97,8 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
     TRY_ROOM(e->run, e->n_records * e->n_levels, "records", err);
     for (size_t i = 0; i < e->n_records; i++) {
         EvaluatedRecord *r = &e->record[i];
+        for (size_t l = 0; l < e->n_levels; l++)
+            e->run[i * e->n_levels + l].record = r;
         for (size_t l = 0; l < e->n_levels && r->readable == STATUS_OK; l++)
             r->readable = describe_run(e, i * e->n_levels + l, &r->why);
         e->n_read += r->readable == STATUS_OK;
@@ -148,7 +149,7 @@ static Status settle_links(Evaluations *e, Err *err)
         return STATUS_OK;
     TRY_ROOM(found, e->n_records, "links", err);
     for (size_t i = 0; i < n_runs; i++)
-        if (e->run[i].record && e->run[i].record->readable == STATUS_OK && finds_device(e, i, EVALUATED_LINKS))
+        if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, EVALUATED_LINKS))
             found[n++] = e->run[i].device[EVALUATED_LINKS].device.link_ns_m;
     sort_values(n, found);
     for (size_t i = 0; i < n_runs; i++)

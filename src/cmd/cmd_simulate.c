@@ -351,7 +351,9 @@ static Status show_responses(const Args *args, Settings *s, Job *job, Err *err)
     Problem p;
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s->sim.forces = FORCES_YES;
-    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || suite_count(&s->motion) > 1);
+    size_t n_records;
+    TRY(suite_size(&s->motion, &n_records, err));
+    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || n_records > 1);
     TRY(tower_open(&p, s, job->has_parts ? TOWER_AS_SET : TOWER_SINGLE, job->kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Status status = answer(args, s, &p, job, err);

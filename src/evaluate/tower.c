@@ -342,6 +342,14 @@ static Status list_records(const Settings *s, TowerUse use, RecordList **out, Er
     if (is_sum && (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0))
         return bad_data(err, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records, "
                              "as many times their mean: set sim.robust = mean");
+    MotionOptions scaled = s->motion;
+    char scaling[SCALINGS_TEXT_MAX];
+    scaled.factor = 1;
+    if (is_sum && motion_scalings(&scaled, scaling) > 0)
+        return bad_data(err,
+                        "%s: annual_loss (search.objectives or search.limits) wants every record as strong as the "
+                        "events that it stands for: write factor=NUMBER behind each, and leave this out",
+                        scaling);
     TRY_ROOM(*out, 1, "a list of records", err);
     (*out)->needs_rates = is_sum;
     const Status status = use == TOWER_SINGLE ? list_record(s->motion.record, *out, err)

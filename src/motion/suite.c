@@ -223,8 +223,14 @@ static Status count(const char *source, void *user, Err *err)
     return STATUS_OK;
 }
 
+Status suite_size(const MotionOptions *o, size_t *n, Err *err)
+{
+    *n = 0;
+    return suite_of_study(o, count, n, err);
+}
+
 size_t suite_count(const MotionOptions *o)
 {
-    size_t n = 0;
-    return suite_of_study(o, count, &n, NULL) == STATUS_OK ? n : 1;
+    size_t n;
+    return suite_size(o, &n, NULL) == STATUS_OK ? n : 1;
 }
