@@ -18,6 +18,15 @@
 
 #include <stddef.h>
 
+/* A NAN is worse than anything. */
+static inline int is_no_worse(size_t n_obj, const double a[], const double b[])
+{
+    for (size_t k = 0; k < n_obj; k++)
+        if (!(a[k] <= b[k]))
+            return 0;
+    return 1;
+}
+
 int dominates(size_t n_obj, const double a[], const double b[]);
 int dominates_surely(size_t n_obj, const double a[], const double error_a[], const double b[], const double error_b[]);
 

@@ -1,6 +1,7 @@
 #include "base/hypervolume.h"
 
 #include "base/clones.h"
+#include "base/dominance.h"
 #include "base/random.h"
 
 /* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which
@@ -124,14 +125,6 @@ Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[],
     return STATUS_OK;
 }
 
-static int reaches(size_t m, const double f[], const double s[])
-{
-    for (size_t k = 0; k < m; k++)
-        if (!(f[k] <= s[k]))
-            return 0;
-    return 1;
-}
-
 /* Of those samples the ones that are in another set. */
 CLONED_V3 static void keep_common(size_t n_words, uint64_t near[], const uint64_t above[])
 {
@@ -157,7 +150,7 @@ static size_t find_dominated(const Hypervolume *h, const double f[], uint64_t ne
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
             const size_t bit = __builtin_ctzll(rest);
-            const int is_dominated = reaches(m, f, h->sample + (w * WORD + bit) * m);
+            const int is_dominated = is_no_worse(m, f, h->sample + (w * WORD + bit) * m);
             near[w] ^= (uint64_t)!is_dominated << bit;
             n += is_dominated;
         }

@@ -333,23 +333,31 @@ static Status list_record(const char *source, void *user, Err *err)
     return option_put_path(list->path[list->n++], source, err);
 }
 
+/* What a sum over records wants of the settings. */
+static Status check_annual_loss(const Settings *s, Err *err)
+{
+    MotionOptions scaled = s->motion;
+    char scaling[SCALINGS_TEXT_MAX];
+    scaled.factor = 1;
+    if (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0)
+        return bad_data(err, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records, "
+                             "as many times their mean: set sim.robust = mean");
+    if (motion_scalings(&scaled, scaling) > 0)
+        return bad_data(err,
+                        "%s: annual_loss (search.objectives or search.limits) wants every record as strong as the "
+                        "events that it stands for: write factor=NUMBER behind each, and leave this out",
+                        scaling);
+    return STATUS_OK;
+}
+
 /* All of the study, or motion.record alone. */
 static Status list_records(const Settings *s, TowerUse use, RecordList **out, Err *err)
 {
     MeasureOrder order;
     TRY(measures_order(&order, s->search.objectives, s->search.limits, 0, err));
     const int is_sum = use == TOWER_AS_SET && (order.objectives | order.limited) >> MEASURE_ANNUAL_LOSS & 1;
-    if (is_sum && (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0))
-        return bad_data(err, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records, "
-                             "as many times their mean: set sim.robust = mean");
-    MotionOptions scaled = s->motion;
-    char scaling[SCALINGS_TEXT_MAX];
-    scaled.factor = 1;
-    if (is_sum && motion_scalings(&scaled, scaling) > 0)
-        return bad_data(err,
-                        "%s: annual_loss (search.objectives or search.limits) wants every record as strong as the "
-                        "events that it stands for: write factor=NUMBER behind each, and leave this out",
-                        scaling);
+    if (is_sum)
+        TRY(check_annual_loss(s, err));
     TRY_ROOM(*out, 1, "a list of records", err);
     (*out)->needs_rates = is_sum;
     const Status status = use == TOWER_SINGLE ? list_record(s->motion.record, *out, err)

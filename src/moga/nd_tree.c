@@ -84,14 +84,6 @@ void nd_tree_free(NdTree *t)
 
 /* -- dominance ----------------------------------------------------------------------------------------------------- */
 
-static int is_no_worse(size_t m, const double a[], const double b[])
-{
-    for (size_t k = 0; k < m; k++)
-        if (!(a[k] <= b[k]))
-            return 0;
-    return 1;
-}
-
 /* Most pairs differ in the first objective: it is looked at here. */
 static int is_dominating(size_t m, const double a[], const double b[])
 {

@@ -34,5 +34,5 @@ Status suite_each(const char *item, SourceFn take, void *user, Err *err);
 
 /* Of the study, motion.record first. */
 Status suite_of_study(const MotionOptions *o, SourceFn take, void *user, Err *err);
-Status suite_size(const MotionOptions *o, size_t *n, Err *err);
-size_t suite_count(const MotionOptions *o); /* the same; 1 where it cannot be read: opening it says why */
+Status suite_size(const MotionOptions *o, size_t *n, Err *err); /* how many */
+size_t suite_count(const MotionOptions *o); /* 1 where they cannot be read, of which opening them says why */
