@@ -72,13 +72,10 @@ SONAME   := libimtet.so.0
 SHARED   := $(BUILD)/libimtet.so.$(VERSION)
 EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(wildcard examples/*.c))
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
-TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
-TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
 # The program's engines in its tests; `make stability` has all.
-STABILITY.release := fast cvode
-STABILITY.asan    := fast
+STABILITY := fast cvode
 
-.PHONY: all help setup run test tests check format install install-library uninstall uninstall-library clean lib-alone .FORCE
+.PHONY: all help setup run test test-sanitized tests format install install-library uninstall uninstall-library clean lib-alone .FORCE
 .SECONDARY:
 all: $(PROGRAM) $(SHARED) $(CORE) ## builds ./imtet, and libimtet in build/release
 
@@ -187,62 +184,75 @@ include bench/bench.mk src/mpi/mpi.mk
 
 # ---- tests -----------------------------------------------------------------------------------------------------------
 
+# Every file of tests runs once, where it proves most: what reads foreign bytes, keeps runs, or talks to others under
+# AddressSanitizer and UBSan, on short runs; physics, search and numbers as users run them, where the sanitizers would find
+# little and take three times as long. Longest first.
+NAMES.asan    := store_faults cli serve disk suite async torture workers
+NAMES.release := check
+OTHERS        := $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
+NAMES.release += $(OTHERS)
+NAMES         := $(NAMES.release) $(NAMES.asan)
+# Other modes, as coverage, have all of them.
+IN_MODE       := $(or $(T),$(NAMES.$(MODE)),$(NAMES))
+
 # What a test computes itself is little.
 TEST_CFLAGS.release := -O1
 TEST_CFLAGS.asan    := -O0
 $(BUILD)/tests/%.o: FLAGS = $(TEST_CFLAGS.$(MODE))
-# 160 programs are linked: gold takes half the time of the usual linker, where it is installed.
+# gold takes half the time of the usual linker, where it is installed.
 GOLD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BENCH_LIB) $(LIB)
+WRAPPED.store_faults := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_open_v2 sqlite3_errcode sqlite3_extended_errcode \
+                        calloc malloc realloc fopencookie fopen fflush rename
+WRAPPED.shared       := statfs
+PARTS.fuzz_corpus    := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
+
+# $(call test_program,NAMES): links these files of tests.
+test_objects = $(BUILD)/tests/main.o $(foreach name,$(1),$(BUILD)/tests/test_$(name).o $(PARTS.$(name)))
+test_link    = $(Q)$(CC) $(LDFLAGS) $(GOLD) $(foreach name,$(1),$(WRAPPED.$(name):%=-Wl,--wrap=%)) -o $@ $(call test_objects,$(1)) \
+               $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
+TEST_PROGRAM := $(BUILD)/tests/$(if $(T),some,all)
+$(TEST_PROGRAM): $(call test_objects,$(IN_MODE)) $(BENCH_LIB) $(LIB) $(if $(T),.FORCE)
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) $(GOLD) -o $@ $(filter %.o,$^) $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
+	$(call test_link,$(IN_MODE))
 
-ifeq ($(MODE),release)
-$(BUILD)/tests/test_library: | $(SHARED) $(CORE) $(EXAMPLES)
-endif
-
-$(BUILD)/tests/test_faults: $(BUILD)/tests/fault/nomem.so
+$(BUILD)/tests/mpi: $(call test_objects,mpi) $(BENCH_LIB) $(LIB)
+	@echo '  LD  $@'
+	$(call test_link,mpi)
 
 $(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
 	@mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE -std=c17 -O1 $(WARNINGS) -shared -fPIC -o $@ $<
 
-$(BUILD)/tests/test_fuzz_corpus: $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
-
-WRAPPED := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_open_v2 sqlite3_errcode sqlite3_extended_errcode calloc malloc \
-           realloc fopencookie fopen fflush rename
-$(BUILD)/tests/test_store_faults: LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
-$(BUILD)/tests/test_shared: LDFLAGS += -Wl,--wrap=statfs
-
-# The tests that take more than some seconds, longest first; they are started first, and `make check` leaves them out.
-LONG := check devices store_faults cli risk simplify serve report objectives designs yielding kinds disk faults suite search histories \
-        building bumper forces damage variables torture async study store stability reference linear engines window tail \
-        moved sensitivity bench replicates ida estimate number resume workers start shared verify problem manual library \
-        asking
-NAMES := $(filter $(TEST_SRC:tests/test_%.c=%) stability,$(LONG)) $(filter-out $(LONG),$(TEST_SRC:tests/test_%.c=%))
+# What tests run beside the program.
+BESIDE.faults  := $(BUILD)/tests/fault/nomem.so
+BESIDE.library := $(if $(filter release,$(MODE)),$(SHARED) $(CORE) $(EXAMPLES))
 
 # One line per job: mode, name, command.
-job = $(if $(filter stability,$(2)),$(foreach e,$(STABILITY.$(1)),'$(1) stability_$(e) build/$(1)/imtet-bench stability --quick --seconds 3 --engine $(e)') \
-      '$(1) laws build/$(1)/imtet-bench laws','$(1) test_$(2) build/$(1)/tests/test_$(2)')
-jobs = $(foreach name,$(2),$(foreach mode,$(1),$(call job,$(mode),$(name))))
-
-tests: $(PROGRAM) $(TESTS) $(BENCH) ## builds every test without running one
-
-tests-release tests-asan: build/web/page.html build/web/live.html
-	@+$(MAKE) --no-print-directory MODE=$(@:tests-%=%) tests
-
-ifdef T
-test: $(PROGRAM) $(T:%=$(BUILD)/tests/test_%) ## every test, plain and under AddressSanitizer and UBSan; with T=moga that one
-	@printf '%s\n' $(call jobs,$(MODE),$(T)) | scripts/run-tests $(TEST_JOBS)
-else
-test: setup
-	@$(MAKE) --no-print-directory -j$(JOBS) tests-release tests-asan
-	@printf '%s\n' $(call jobs,asan release,$(NAMES)) | scripts/run-tests $(TEST_JOBS)
+JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) $(CASE)')
+ifeq ($(MODE)$(T),release)
+BESIDE.release := $(BENCH)
+JOBS_OF += $(STABILITY:%='release stability_% $(BENCH) stability --quick --seconds 3 --engine %') 'release laws $(BENCH) laws'
 endif
 
-check: ## the quick tests alone, below half a minute
+tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
+
+# A file of tests runs in the mode that it belongs to, or in that which the command gives.
+modes = $(if $(filter command line,$(origin MODE)),$(MODE),$(foreach mode,release asan,$(if $(filter $(T),$(NAMES.$(mode))),$(mode))))
+run_tests:
+	@printf '%s\n' $(JOBS_OF) | scripts/run-tests $(TEST_JOBS)
+
+ifdef T
+test: ## every test of physics, search and numbers; T="moga rbf": these files of any kind; CASE=front: their tests so named
+	@for mode in $(modes); do $(MAKE) --no-print-directory -j$(JOBS) MODE=$$mode tests && $(MAKE) --no-print-directory MODE=$$mode run_tests; done
+else
+test: setup
 	@$(MAKE) --no-print-directory -j$(JOBS) tests
-	@printf '%s\n' $(call jobs,$(MODE),$(filter-out $(LONG),$(NAMES))) | scripts/run-tests $(TEST_JOBS)
+	@$(MAKE) --no-print-directory run_tests
+endif
+
+test-sanitized: setup ## readers, runs, workers, server and command line under AddressSanitizer and UBSan
+	@$(MAKE) --no-print-directory -j$(JOBS) MODE=asan tests
+	@$(MAKE) --no-print-directory MODE=asan run_tests
 
 include mk/checks.mk mk/figures.mk
 

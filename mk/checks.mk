@@ -39,37 +39,36 @@ $(FUZZ_FILES): $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/tests/fuzz/target_%.o
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDLIBS)
 
-COVER ?= $(NAMES:%=test_%)
-coverage: ## branches that the tests take, by folder; COVER="test_moga" chooses tests (gcovr)
-	@$(MAKE) --no-print-directory MODE=coverage WARNINGS=-w coverage-here
-
-coverage-here: $(PROGRAM) $(TESTS)
-	@find $(BUILD) -name '*.gcda' -delete
-	@printf '%s\n' $(call jobs,coverage,$(filter-out stability,$(COVER:test_%=%))) | scripts/run-tests $(JOBS)
-	@scripts/coverage $(BUILD)
+coverage: ## branches that the tests take, by folder; T="moga rbf" chooses tests (gcovr)
+	@$(MAKE) --no-print-directory -j$(JOBS) MODE=coverage WARNINGS=-w tests
+	@find build/coverage -name '*.gcda' -delete
+	@$(MAKE) --no-print-directory MODE=coverage run_tests
+	@scripts/coverage build/coverage
 
 KILLS ?= 300
-torture: $(PROGRAM) $(BUILD)/tests/test_torture ## kill -9 at random moments, every run resumed to its end; KILLS=300
-	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/test_torture
+torture: ## kill -9 at random moments, every run resumed to its end; KILLS=300
+	@$(MAKE) --no-print-directory -j$(JOBS) T=torture tests
+	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/some torture
 
 FAULTS ?= 800
-faults: $(PROGRAM) $(BUILD)/tests/test_faults $(BUILD)/tests/test_store_faults ## memory and writes refused one after the other; FAULTS=800 of each kind
-	@IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/test_faults
-	@IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/test_store_faults
+faults: ## memory and writes refused one after the other; FAULTS=800 of each kind
+	@$(MAKE) --no-print-directory -j$(JOBS) T="faults store_faults" tests
+	@for t in faults store_faults; do IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/some $$t || exit 1; done
 
 # LLVM's OpenMP: its tool reports to ThreadSanitizer what a parallel region orders; with gcc's, ThreadSanitizer reports
 # races that are none. First a race that it must find.
-TSAN_TESTS := test_async test_queue test_replicates test_moga test_problem test_polish test_rbf
+TSAN_TESTS := async queue replicates moga problem polish rbf
 tsan: ## threads under ThreadSanitizer (clang, libomp)
+	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w T="$(TSAN_TESTS)" tests
 	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w tsan-here
 
 tsan-here: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=99
 tsan-here: export OMP_NUM_THREADS := 3
-tsan-here: $(PROGRAM) $(TSAN_TESTS:%=$(BUILD)/tests/%)
+tsan-here:
 	@$(CC) -fopenmp -O1 -g -fsanitize=thread tests/fault/race.c -o $(BUILD)/race
 	@if $(BUILD)/race >$(BUILD)/race.log 2>&1; then echo "a race was not found: ThreadSanitizer does not work here"; exit 1; fi
 	@scripts/short-run $(PROGRAM)
-	@set -e; for t in $(TSAN_TESTS); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) $(BUILD)/tests/$$t; done
+	@set -e; for t in $(TSAN_TESTS); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) $(BUILD)/tests/some $$t; done
 
 asan: ## a short round of the commands under AddressSanitizer and UBSan
 	@$(MAKE) --no-print-directory MODE=asan asan-here
@@ -98,8 +97,8 @@ fresh-packages: apt ## the packages in a Debian that has nothing, the same way
 
 CALLS ?= 100000
 api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
-	@$(MAKE) --no-print-directory MODE=asan build/asan/tests/test_asking build/asan/imtet
-	@IMTET=$(CURDIR)/build/asan/imtet API_CALLS=$(CALLS) build/asan/tests/test_asking
+	@$(MAKE) --no-print-directory -j$(JOBS) MODE=asan T=asking tests
+	@IMTET=$(CURDIR)/build/asan/imtet API_CALLS=$(CALLS) build/asan/tests/some asking
 
 deb: ## packages imtet, imtet-mpi, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt

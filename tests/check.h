@@ -20,7 +20,7 @@
 #define SANITIZED 0
 #endif
 
-/* A test puts itself on the list of its program, in the order in which they stand: TEST(what_is_so) { ... } */
+/* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
 enum { TESTS_MAX = 128 };
 static struct CMUnitTest all_tests[TESTS_MAX] __attribute__((unused));
 static size_t n_tests __attribute__((unused));
@@ -31,7 +31,27 @@ static size_t n_tests __attribute__((unused));
         all_tests[n_tests++] = (struct CMUnitTest){"test_" #name, test_##name, NULL, NULL, NULL};                      \
     }                                                                                                                  \
     static void test_##name(__attribute__((unused)) void **state)
-#define RUN_TESTS(setup, teardown) _cmocka_run_group_tests("tests", all_tests, n_tests, setup, teardown)
+
+/* The tests of one file, tests/test_NAME.c. Every file ends with SUITE(set up, tear down); tests/main.c, with which
+ * files are linked into one program, runs those that it is asked for. */
+typedef struct Suite Suite;
+struct Suite {
+    const char *file;
+    struct CMUnitTest *tests;
+    size_t *n;
+    CMFixtureFunction set_up, tear_down; /* once for all tests of the file; NULL: nothing to do */
+    CMFixtureFunction before_each;
+    Suite *next;
+};
+void suite_add(Suite *suite);
+#define SUITE_OF(...)                                                                                                  \
+    __attribute__((constructor)) static void add_suite(void)                                                           \
+    {                                                                                                                  \
+        static Suite suite = {__FILE__, all_tests, &n_tests, __VA_ARGS__, NULL};                                       \
+        suite_add(&suite);                                                                                             \
+    }
+#define SUITE(set_up, tear_down) SUITE_OF(set_up, tear_down, NULL)
+#define SUITE_EACH(before_each)  SUITE_OF(NULL, NULL, before_each)
 
 /* |actual - wanted| <= tolerance |wanted|; NaN fails. */
 static inline void check_close(double actual, double wanted, double tolerance, const char *what, const char *file,

@@ -90,7 +90,4 @@ TEST(simulate_takes_one_design_of_a_run_or_a_file_and_refuses_what_only_a_tower_
            "simulate @/kinds.ini --design @/mine.csv:1 --set problem.command=true");
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -425,7 +425,4 @@ TEST(a_killed_run_goes_on_with_every_result_it_had)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

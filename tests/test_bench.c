@@ -369,7 +369,4 @@ TEST(the_loop_simulates_what_fails_the_error_test_and_the_search_as_many_from_th
     assert_true(never[2] > 100 && never[2] <= 120 && never[3] == never[2]);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -886,7 +886,4 @@ TEST(modes_have_shapes_that_are_listed)
     json_decref(m);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -207,7 +207,4 @@ TEST(spectra_are_near_those_of_the_records)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

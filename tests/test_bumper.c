@@ -282,7 +282,4 @@ TEST(softer_bumpers_press_less_and_a_thin_one_bottoms_out)
     assert_true(r.bumper_bottoms_out);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -544,7 +544,4 @@ TEST(a_study_of_the_most_floors_ends_with_its_baselines)
     forget(&said);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -530,7 +530,4 @@ TEST(a_building_of_five_floors_goes_all_the_way)
     expect(65, "a design of 20 floors has gap_06_m there", "simulate configs/quick.ini --design @/five.csv");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

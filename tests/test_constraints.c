@@ -158,7 +158,4 @@ TEST(a_simulator_that_reads_a_template_is_searched)
     run_free(&run);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

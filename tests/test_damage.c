@@ -281,7 +281,4 @@ static int make_sound(void **state)
     return 0;
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_sound, clear_place);
-}
+SUITE(make_sound, clear_place)

@@ -157,20 +157,20 @@ TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
 
 TEST(chances_are_among_all_numbers_and_deviations_are_named_by_what_varies)
 {
-#define SUITE                                                                                                          \
+#define TWO_RECORDS                                                                                                    \
     "simulate configs/quick.ini --design @/run:knee --set motion.records=builtin:sylmar-like --set "                   \
     "'search.objectives=j1_m,p(drift_ratio>0.003)' --set sim.robust=mean_plus_sd " SHORT
-    json_t *o = json_of(SUITE "--json");
+    json_t *o = json_of(TWO_RECORDS "--json");
     const json_t *all = json_object_get(o, "replicates");
     assert_true(json_is_number(json_object_get(o, "p(drift_ratio>0.003)")));
     assert_true(json_is_number(json_object_get(json_object_get(all, "mean"), "p(drift_ratio>0.003)")));
     assert_true(json_is_null(json_object_get(json_object_get(all, "standard_error"), "ductility")));
     assert_string_equal(json_string_value(json_object_get(all, "spread")), "over records");
     json_decref(o);
-    char *said = output_of(SUITE "--csv -");
+    char *said = output_of(TWO_RECORDS "--csv -");
     assert_non_null(strstr(said, ",p(drift_ratio>0.003)_mean,"));
     free(said);
-    said = output_of(SUITE);
+    said = output_of(TWO_RECORDS);
     assert_non_null(strstr(said, " se "));
     assert_null(strstr(said, " sd "));
     free(said);
@@ -290,7 +290,4 @@ TEST(a_noisy_run_is_not_polished)
     expect(65, "the answers of this run are noisy", "polish @/noisy --design knee --improve f1 --evals 1");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

@@ -321,7 +321,4 @@ TEST(kinds_of_the_variables_of_devices)
     assert_true(!design_word(&s, 12, 3) && !design_word(&s, 13, 2));
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -367,7 +367,4 @@ TEST(readers_need_the_database_alone_and_the_files_come_back)
     free(exported_all);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

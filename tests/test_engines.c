@@ -134,7 +134,4 @@ TEST(every_engine_is_listed_under_its_name)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

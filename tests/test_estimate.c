@@ -162,7 +162,4 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
     motion_free(&m);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

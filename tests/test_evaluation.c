@@ -62,7 +62,4 @@ TEST(an_appended_row_is_a_copy_and_what_it_lacks_is_not_known)
     evaluation_table_free(&t);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

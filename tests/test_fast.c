@@ -336,7 +336,4 @@ TEST(a_negative_gap_is_no_design)
     tower_close(&t);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -238,7 +238,4 @@ static int make_run(void **state)
     return code;
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

@@ -114,7 +114,4 @@ TEST(the_page_writes_the_same_figures)
     unlink(path);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -128,7 +128,4 @@ TEST(a_cutoff_beyond_half_the_sampling_rate_is_refused)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

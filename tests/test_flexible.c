@@ -108,7 +108,4 @@ TEST(so_many_core_modes_are_kept_as_are_asked_for)
     motion_free(&m);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -500,7 +500,4 @@ TEST(the_rigid_pair_has_the_base_shear_of_its_parts)
     assert_true(isnan(f->contact_force_max_n));
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

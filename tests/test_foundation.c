@@ -360,7 +360,4 @@ TEST(what_is_no_foundation_is_refused_in_words)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

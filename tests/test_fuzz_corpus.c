@@ -50,20 +50,11 @@ static void replay(const char *name, void (*target)(const uint8_t *, size_t))
 }
 
 #define X(name)                                                                                                        \
-    static void test_the_corpus_of_##name##_does_no_harm(void **state)                                                 \
+    TEST(the_corpus_of_##name##_does_no_harm)                                                                          \
     {                                                                                                                  \
-        (void)state;                                                                                                   \
         replay(#name, fuzz_##name);                                                                                    \
     }
 FUZZ_LIST(X)
 #undef X
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#define X(name) cmocka_unit_test(test_the_corpus_of_##name##_does_no_harm),
-        FUZZ_LIST(X)
-#undef X
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SUITE(NULL, NULL)

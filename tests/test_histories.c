@@ -497,7 +497,4 @@ TEST(an_impact_that_begins_at_a_sample_counts_once)
     table_free((Table *)&h);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

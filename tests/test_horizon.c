@@ -54,7 +54,4 @@ TEST(larger_changes_part_sooner_and_levels_are_reached_in_order)
     scenario_close(&w);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

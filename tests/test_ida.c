@@ -208,7 +208,4 @@ TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
     expect(2, "without replicates", RANGE "--set sim.replicates=3");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

@@ -263,7 +263,4 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     expect(65, "is no tower: ", "building @/other.ini");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

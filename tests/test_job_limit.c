@@ -116,7 +116,4 @@ TEST(a_lost_node_is_75_until_three_attempts_have_brought_no_evaluation)
     assert_int_equal(status_of_wrapper(205), 70);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

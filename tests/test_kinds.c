@@ -324,7 +324,4 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -279,7 +279,4 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     expect(65, "--ladder: problem.kind is no tower", "check configs/quick.ini --ladder --set problem.kind=dtlz2");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_building, clear_place);
-}
+SUITE(make_building, clear_place)

@@ -354,7 +354,4 @@ static int begin(void **state)
     return prepare(state);
 }
 
-int main(void)
-{
-    return RUN_TESTS(begin, clear_place);
-}
+SUITE(begin, clear_place)

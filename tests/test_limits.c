@@ -199,7 +199,4 @@ TEST(a_run_without_a_front_says_why_there_is_none)
     expect(70, "none of 8 simulations succeeded", "report @/failed");
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

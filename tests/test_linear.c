@@ -553,7 +553,4 @@ TEST(gaps_that_vanish_are_tight_links_and_the_rigid_baseline_is_damped_more)
     problem_close(&p);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -208,7 +208,4 @@ static int make_studies(void **state)
     return 0;
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_studies, clear_place);
-}
+SUITE(make_studies, clear_place)

@@ -686,7 +686,4 @@ TEST(the_slope_of_pbi_equals_differences)
     directions_free(&d);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

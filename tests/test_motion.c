@@ -509,7 +509,4 @@ TEST(figures_see_peaks_between_samples)
     assert_close(f.cav_m_s, 0.25 * 1 / 2 + 0.35 * 1.4 / 2, 1e-14);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

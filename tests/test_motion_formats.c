@@ -1586,7 +1586,4 @@ TEST(a_record_that_its_agency_corrected_is_not_called_uncorrected)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -183,7 +183,4 @@ TEST(linear_algebra_rounds_as_on_haswell_and_a_resumed_run_says_where_it_does_no
     free(prescott);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

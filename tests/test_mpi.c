@@ -630,9 +630,4 @@ static int prepare(void **state)
     return make_place(state);
 }
 
-int main(void)
-{
-    if (getenv("MPI_TEST"))
-        cmocka_set_test_filter(getenv("MPI_TEST"));
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

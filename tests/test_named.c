@@ -254,7 +254,4 @@ TEST(what_an_interrupted_study_names_is_known_too)
     run_free(&run);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

@@ -180,7 +180,4 @@ TEST(the_example_of_neighbours_is_searched_by_its_gaps_alone)
     free(output_of("evaluate @/run --design knee"));
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -413,7 +413,4 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
     forget(&seen);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

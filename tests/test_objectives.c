@@ -326,7 +326,4 @@ TEST(gaps_on_their_bounds_are_counted_floor_by_floor)
     schema_free(&run.schema);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

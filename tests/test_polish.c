@@ -176,7 +176,4 @@ TEST(a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept)
             fail_msg("row %zu does not count as it should", i);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -550,7 +550,4 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
     assert_close(sqrt(square), 0.03, 0.06);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

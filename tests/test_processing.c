@@ -428,7 +428,4 @@ TEST(a_study_keeps_in_its_provenance_what_was_done_to_the_record)
     free(text);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -270,7 +270,4 @@ TEST(the_example_of_a_blast_runs_from_its_folder_and_ends_in_free_vibration)
     json_decref(o);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

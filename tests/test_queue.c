@@ -429,7 +429,4 @@ TEST(a_simulation_that_crashes_ends_its_own_task_alone)
     isolated_close(q);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

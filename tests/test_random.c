@@ -94,7 +94,4 @@ TEST(a_shuffle_keeps_every_item)
     assert_less(30, moved);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

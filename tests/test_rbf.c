@@ -365,7 +365,4 @@ TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_ther
     free(m);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -308,7 +308,4 @@ TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
     stage_free(&stage);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

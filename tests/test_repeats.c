@@ -110,7 +110,4 @@ TEST(without_noise_nothing_is_repeated_and_the_tables_are_as_ever)
     run_free(&h);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -404,7 +404,4 @@ TEST(replicates_and_records_follow_one_rule_however_they_are_asked_for)
     expect(2, "needs a design with gaps", "simulate configs/quick.ini --design @/design.csv --rigid --replicates 4");
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -766,7 +766,4 @@ TEST(the_bundle_of_charts_is_what_its_sources_give)
     assert_int_equal(system(command), 0);
 }
 
-int main(void)
-{
-    return RUN_TESTS(set_up, tear_down);
-}
+SUITE(set_up, tear_down)

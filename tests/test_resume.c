@@ -374,7 +374,4 @@ static int quiet(void **state)
     return 0;
 }
 
-int main(void)
-{
-    return RUN_TESTS(quiet, NULL);
-}
+SUITE(quiet, NULL)

@@ -317,8 +317,8 @@ TEST(the_loss_lies_between_nothing_and_the_whole_building)
 
 /* -- as a command -------------------------------------------------------------------------------------------------- */
 
-#define SUITE  "evaluate @/tower.ini --design @/chance:knee --records @/three_list.txt "
-#define CURVES SUITE "--sa 0.1:0.1:0.6 --fragility 'drift_ratio=0.012,drift_ratio<=0.02,j3_g=0.5' "
+#define SUITE_LIST "evaluate @/tower.ini --design @/chance:knee --records @/three_list.txt "
+#define CURVES     SUITE_LIST "--sa 0.1:0.1:0.6 --fragility 'drift_ratio=0.012,drift_ratio<=0.02,j3_g=0.5' "
 
 static const json_t *curve_of(const json_t *o, const char *of, const char *scene)
 {
@@ -484,7 +484,7 @@ TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 
 TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
 {
-    json_t *o = json_of(SUITE "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
+    json_t *o = json_of(SUITE_LIST "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
     const json_t *hz = json_object_get(b, "building_hz");
     const double T = 1 / json_number_value(json_array_get(hz, 0));
     Motion m;
@@ -496,13 +496,13 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     motion_free(&m);
     json_decref(o);
     json_decref(b);
-    expect(2, "--sa and --pga do not go together", SUITE "--sa 0.2 --pga 0.3");
-    expect(2, "--fragility wants intensities", SUITE "--sa 0.2 --fragility j3_g=1");
-    expect(2, "is no list of NAME=NUMBER", SUITE "--sa 0.1:0.1:0.2 --fragility j3_g");
-    expect(2, "drift is no result", SUITE "--sa 0.1:0.1:0.2 --fragility drift=1");
+    expect(2, "--sa and --pga do not go together", SUITE_LIST "--sa 0.2 --pga 0.3");
+    expect(2, "--fragility wants intensities", SUITE_LIST "--sa 0.2 --fragility j3_g=1");
+    expect(2, "is no list of NAME=NUMBER", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility j3_g");
+    expect(2, "drift is no result", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility drift=1");
     expect(2, "neither a probability nor annual_loss is a limit of one simulation",
-           SUITE "--sa 0.1:0.1:0.2 --fragility limits");
-    expect(65, "no storey yields", SUITE "--sa 0.1:0.1:0.2 --fragility ductility=2");
+           SUITE_LIST "--sa 0.1:0.1:0.2 --fragility limits");
+    expect(65, "no storey yields", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility ductility=2");
     write_in_place("pga.csv", "pga_g,rate_per_year\n0.01,0.1\n0.1,0.01\n");
     write_in_place("up.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.2\n");
     expect(65, "pga.csv: has no columns sa_g and rate_per_year of two rows", CURVES "--hazard @/pga.csv");
@@ -592,7 +592,7 @@ TEST(an_annual_loss_without_its_rates_is_refused_with_what_to_do)
     expect(65, "p(annual_loss>0.01): annual_loss is a sum over records, no result of one simulation",
            "check " YEARS "--set 'search.objectives=j3_g,p(annual_loss>0.01)'");
     expect(2, "neither a probability nor annual_loss is a limit of one simulation",
-           SUITE "--sa 0.1:0.1:0.2 --fragility annual_loss=0.1");
+           SUITE_LIST "--sa 0.1:0.1:0.2 --fragility annual_loss=0.1");
 }
 
 /* -- records that speak for the rest ------------------------------------------------------------------------------- */
@@ -669,7 +669,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     static const char HEAD[] = ",1-PFA-0-1,1-PFA-1-1,1-PFA-2-1,1-PFA-3-1,1-PFA-4-1,1-PFA-5-1,1-PFA-6-1,1-PID-1-1,"
                                "1-PID-2-1,1-PID-3-1,1-PID-4-1,1-PID-5-1,1-PID-6-1\n"
                                "Units,g,g,g,g,g,g,g,unitless,unitless,unitless,unitless,unitless,unitless\n0,";
-    json_t *o = json_of(SUITE "--pga 0.3 --pelicun @/pelicun.csv --json");
+    json_t *o = json_of(SUITE_LIST "--pga 0.3 --pelicun @/pelicun.csv --json");
     char *text = read_in_place("pelicun.csv"), *row = text + strlen(HEAD) - 2;
     assert_true(strncmp(text, HEAD, strlen(HEAD)) == 0);
     for (int i = 0; i < 3; i++) {
@@ -686,7 +686,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     }
     assert_int_equal(*row, 0);
     free(text);
-    free(output_of(SUITE "--pga 0.3 --pelicun @/response.csv"));
+    free(output_of(SUITE_LIST "--pga 0.3 --pelicun @/response.csv"));
     Table t;
     Err err = {0};
     char path[PATH_MAX];
@@ -702,7 +702,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     assert_close(column_of(&t, "1-PRD-1-1")[last], roof / (4 + 5 * 3.5), 1e-9);
     table_free(&t);
     json_decref(o);
-    expect(2, "--pelicun is a file of one intensity", SUITE "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
+    expect(2, "--pelicun is a file of one intensity", SUITE_LIST "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
 }
 
 TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
@@ -729,7 +729,4 @@ TEST(the_settings_of_the_page_on_risk_have_no_fault)
     free(said);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -189,7 +189,4 @@ TEST(a_file_half_written_has_no_name)
     free(path);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -494,7 +494,4 @@ TEST(two_half_steps_of_flow_make_a_whole_one)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -184,6 +184,7 @@ static void forget(World *w, Seen *s)
 
 static int set_up(void **state)
 {
+    linalg_use(KERNELS_PINNED);
     (void)state;
     open_world(&world, 1);
     run(&world, &seen, NULL);
@@ -405,8 +406,4 @@ TEST(without_a_cheap_level_nothing_is_screened)
     forget(&other_world, &other);
 }
 
-int main(void)
-{
-    linalg_use(KERNELS_PINNED);
-    return RUN_TESTS(set_up, tear_down);
-}
+SUITE(set_up, tear_down)

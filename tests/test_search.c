@@ -174,9 +174,8 @@ static int fresh(void **state)
     return 0;
 }
 
-static void test_three_objectives_beat_a_latin_hypercube_of_the_same_size(void **state)
+TEST(three_objectives_beat_a_latin_hypercube_of_the_same_size)
 {
-    (void)state;
     world(&here, 8, 3);
     const SearchConfig c = config(40, 120);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
@@ -204,9 +203,8 @@ static Status sums(size_t n, const double X[], const size_t draws[], double F[],
     return STATUS_OK;
 }
 
-static void test_answers_that_no_surrogate_fits_do_not_end_the_search(void **state)
+TEST(answers_that_no_surrogate_fits_do_not_end_the_search)
 {
-    (void)state;
     StopReason reason = STOP_NONE;
     Err err = {0};
     for (uint32_t seed = 1; seed <= 3; seed++) {
@@ -220,9 +218,8 @@ static void test_answers_that_no_surrogate_fits_do_not_end_the_search(void **sta
     }
 }
 
-static void test_a_first_sample_of_four_designs_is_enough(void **state)
+TEST(a_first_sample_of_four_designs_is_enough)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 3; seed++) {
         world(&here, 10, 3);
         SearchConfig c = search_config(seed, 4, 200);
@@ -233,9 +230,8 @@ static void test_a_first_sample_of_four_designs_is_enough(void **state)
     }
 }
 
-static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void **state)
+TEST(seven_objectives_beat_a_latin_hypercube_of_the_same_size)
 {
-    (void)state;
     world(&here, 22, 7);
     const SearchConfig c = config(120, 240);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
@@ -251,9 +247,8 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     assert_true(seen.error > 0.0 && seen.error < 0.05);
 }
 
-static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
+TEST(the_same_seed_gives_the_same_bytes_at_any_thread_count)
 {
-    (void)state;
     const int threads = omp_get_max_threads();
     const SearchConfig c = config(50, 120);
     omp_set_num_threads(1);
@@ -273,9 +268,8 @@ static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **s
     assert_memory_not_equal(seen.X, again.X, sizeof seen.X);
 }
 
-static void test_front_flags_equal_a_brute_force_filter(void **state)
+TEST(front_flags_equal_a_brute_force_filter)
 {
-    (void)state;
     world(&here, 10, 4);
     const SearchConfig c = config(50, 150);
     run(&here, &c, &seen);
@@ -287,9 +281,8 @@ static void test_front_flags_equal_a_brute_force_filter(void **state)
     }
 }
 
-static void test_failed_simulations_never_reach_the_front(void **state)
+TEST(failed_simulations_never_reach_the_front)
 {
-    (void)state;
     world(&here, 8, 3);
     here.fail_share_percent = 10;
     const SearchConfig c = config(40, 160);
@@ -304,9 +297,8 @@ static void test_failed_simulations_never_reach_the_front(void **state)
     assert_less(20, seen.n_front);
 }
 
-static void test_a_world_where_everything_fails_ends_with_an_empty_front(void **state)
+TEST(a_world_where_everything_fails_ends_with_an_empty_front)
 {
-    (void)state;
     world(&here, 8, 3);
     here.fail_share_percent = 100;
     const SearchConfig c = config(40, 130);
@@ -315,9 +307,8 @@ static void test_a_world_where_everything_fails_ends_with_an_empty_front(void **
     assert_int_equal(seen.n_front, 0);
 }
 
-static void test_constraints_hold_on_the_front(void **state)
+TEST(constraints_hold_on_the_front)
 {
-    (void)state;
     world_with_limits(&here, 8, 3, 1);
     const SearchConfig c = config(40, 120);
     run(&here, &c, &seen);
@@ -330,9 +321,8 @@ static void test_constraints_hold_on_the_front(void **state)
     assert_less(60, feasible); /* of 80: the search knows where not to look */
 }
 
-static void test_a_start_without_a_feasible_design_finds_the_feasible_region(void **state)
+TEST(a_start_without_a_feasible_design_finds_the_feasible_region)
 {
-    (void)state;
     world_with_limits(&here, 8, 3, 1);
     here.upper[0] = 0.31; /* feasible: x0 >= 0.3, one thirtieth of the box */
     const SearchConfig c = config(10, 60);
@@ -347,9 +337,8 @@ static void first_not_below_second(double x[], const void *self)
         x[0] = x[1];
 }
 
-static void test_repaired_and_frozen_variables_are_respected(void **state)
+TEST(repaired_and_frozen_variables_are_respected)
 {
-    (void)state;
     world(&here, 8, 3);
     here.problem.repair = first_not_below_second;
     here.lower[5] = here.upper[5] = 0.25;
@@ -361,9 +350,8 @@ static void test_repaired_and_frozen_variables_are_respected(void **state)
     }
 }
 
-static void test_no_budget_is_ever_exceeded(void **state)
+TEST(no_budget_is_ever_exceeded)
 {
-    (void)state;
     const size_t budgets[] = {1, 7, 40, 41, 53};
     for (size_t i = 0; i < sizeof budgets / sizeof budgets[0]; i++) {
         world(&here, 6, 2);
@@ -373,9 +361,8 @@ static void test_no_budget_is_ever_exceeded(void **state)
     }
 }
 
-static void test_every_way_to_stop_is_named(void **state)
+TEST(every_way_to_stop_is_named)
 {
-    (void)state;
     SearchConfig c = config(40, 500);
     c.generations = 3;
     world(&here, 6, 2);
@@ -412,9 +399,8 @@ static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double
 }
 
 /* Two objectives and three variables: the front is filled soon. */
-static void test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume(void **state)
+TEST(a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume)
 {
-    (void)state;
     static Seen stopped, all;
     memset(&stopped, 0, sizeof stopped);
     memset(&all, 0, sizeof all);
@@ -433,9 +419,8 @@ static void test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of
         fail_msg("stopped after %zu, %.4f below the hypervolume %.4f of %zu", stopped.n, lost, h[1], all.n);
 }
 
-static void test_a_search_that_improves_does_not_stop(void **state)
+TEST(a_search_that_improves_does_not_stop)
 {
-    (void)state;
     memset(&seen, 0, sizeof seen);
     SearchConfig c = config(40, 400);
     c.surrogate = SURROGATE_OFF; /* far from the front for long */
@@ -445,9 +430,8 @@ static void test_a_search_that_improves_does_not_stop(void **state)
 }
 
 /* h = h_inf - c n^-a gains 2^-a of the last gain when n is doubled. */
-static void test_the_gain_of_a_power_law_is_foretold_exactly(void **state)
+TEST(the_gain_of_a_power_law_is_foretold_exactly)
 {
-    (void)state;
     const double at[] = {0.9 - pow(100, -0.7), 0.9 - pow(200, -0.7), 0.9 - pow(400, -0.7)};
     assert_close(convergence_expected(at), pow(400, -0.7) - pow(800, -0.7), 1e-12);
     assert_close(convergence_expected((double[]){0.1, 0.2, 0.4}), 0.2,
@@ -458,9 +442,8 @@ static void test_the_gain_of_a_power_law_is_foretold_exactly(void **state)
 }
 
 /* Box of one front: h grows with every corner that is cut off, and is the exact area in the end. */
-static void test_shares_are_areas_in_a_box_about_the_front(void **state)
+TEST(shares_are_areas_in_a_box_about_the_front)
 {
-    (void)state;
     Err err = {0};
     const double F[] = {9, 9, 2, 2, 0, 10, 10, 0, 5, 5};
     const unsigned char counts[] = {1, 1, 1, 1, 0}, front[] = {0, 1, 1, 1, 0};
@@ -494,9 +477,8 @@ static Status fail_in_a_slab(size_t n, const double X[], const size_t draws[], d
     return STATUS_OK;
 }
 
-static void test_where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind(void **state)
+TEST(where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind)
 {
-    (void)state;
     if (SANITIZED) /* statistics of code that the tests beside it go through */
         skip();
     double sum[2] = {0};
@@ -553,9 +535,8 @@ static void fill_archive(Archive *a, Random *r)
 }
 
 /* Of designs with the same chance that share keeps the limit and succeeds. */
-static void test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit(void **state)
+TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
 {
-    (void)state;
     Archive a;
     Surrogate *s;
     Population p;
@@ -596,9 +577,8 @@ static void test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit
     pareto_archive_free(&a);
 }
 
-static void test_answers_without_any_pattern_fall_back_to_plain_offspring(void **state)
+TEST(answers_without_any_pattern_fall_back_to_plain_offspring)
 {
-    (void)state;
     world(&here, 8, 3);
     here.all_alike_noise = 1;
     const SearchConfig c = config(60, 150);
@@ -606,9 +586,8 @@ static void test_answers_without_any_pattern_fall_back_to_plain_offspring(void *
     assert_less(0.05, seen.error);
 }
 
-static void test_an_archive_beyond_the_surface_s_size_is_thinned(void **state)
+TEST(an_archive_beyond_the_surface_s_size_is_thinned)
 {
-    (void)state;
     world(&here, 8, 3);
     SearchConfig c = config(40, 200);
     c.surrogate_max = 60;
@@ -616,9 +595,8 @@ static void test_an_archive_beyond_the_surface_s_size_is_thinned(void **state)
     assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.F));
 }
 
-static void test_settings_that_make_no_sense_are_refused_by_name(void **state)
+TEST(settings_that_make_no_sense_are_refused_by_name)
 {
-    (void)state;
     Err err = {0};
     StopReason reason;
     world(&here, 6, 2);
@@ -693,9 +671,8 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
 
 /* The valleys next to the lowest one are at 1 + 2 0.16 at least. Of 72 designs after the sample a share between
  * 0.03 and PROBE_SHARE probes, in the mean over the seeds. */
-static void test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else(void **state)
+TEST(single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else)
 {
-    (void)state;
     enum { SEEDS = 8 };
     size_t probes = 0, in_lowest = 0, n;
     for (uint32_t seed = 1; seed <= SEEDS; seed++) {
@@ -710,9 +687,8 @@ static void test_single_variables_are_probed_where_there_are_waves_along_them_an
 }
 
 /* The corner is found at once; after that the surface proposes what is known already. */
-static void test_a_front_of_a_single_design_still_spends_the_budget(void **state)
+TEST(a_front_of_a_single_design_still_spends_the_budget)
 {
-    (void)state;
     world(&here, 3, 2);
     here.function.evaluate = evaluate_agreeing;
     const SearchConfig c = config(20, 200);
@@ -721,9 +697,8 @@ static void test_a_front_of_a_single_design_still_spends_the_budget(void **state
     assert_int_equal(seen.n, 200);
 }
 
-static void test_without_a_surrogate_the_front_is_worse(void **state)
+TEST(without_a_surrogate_the_front_is_worse)
 {
-    (void)state;
     SearchConfig c = config(40, 200);
     world(&here, 12, 3);
     run(&here, &c, &seen);
@@ -736,9 +711,8 @@ static void test_without_a_surrogate_the_front_is_worse(void **state)
     assert_less(volume(seen.n, 3, seen.F), with);
 }
 
-static void test_a_start_of_size_zero_follows_the_number_of_variables(void **state)
+TEST(a_start_of_size_zero_follows_the_number_of_variables)
 {
-    (void)state;
     world(&here, 8, 3);
     SearchConfig c = config(0, 120);
     run(&here, &c, &seen);
@@ -748,37 +722,4 @@ static void test_a_start_of_size_zero_follows_the_number_of_variables(void **sta
     assert_int_equal(sampled, 44);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
-        cmocka_unit_test_setup(test_answers_that_no_surrogate_fits_do_not_end_the_search, fresh),
-        cmocka_unit_test_setup(test_a_first_sample_of_four_designs_is_enough, fresh),
-        cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
-        cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
-        cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
-        cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),
-        cmocka_unit_test_setup(test_a_world_where_everything_fails_ends_with_an_empty_front, fresh),
-        cmocka_unit_test_setup(test_constraints_hold_on_the_front, fresh),
-        cmocka_unit_test_setup(test_a_start_without_a_feasible_design_finds_the_feasible_region, fresh),
-        cmocka_unit_test_setup(test_repaired_and_frozen_variables_are_respected, fresh),
-        cmocka_unit_test_setup(test_no_budget_is_ever_exceeded, fresh),
-        cmocka_unit_test_setup(test_every_way_to_stop_is_named, fresh),
-        cmocka_unit_test_setup(test_answers_without_any_pattern_fall_back_to_plain_offspring, fresh),
-        cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
-        cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
-        cmocka_unit_test_setup(test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else,
-                               fresh),
-        cmocka_unit_test_setup(test_a_front_of_a_single_design_still_spends_the_budget, fresh),
-        cmocka_unit_test_setup(test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume, fresh),
-        cmocka_unit_test_setup(test_a_search_that_improves_does_not_stop, fresh),
-        cmocka_unit_test(test_the_gain_of_a_power_law_is_foretold_exactly),
-        cmocka_unit_test(test_shares_are_areas_in_a_box_about_the_front),
-        cmocka_unit_test_setup(test_where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind,
-                               fresh),
-        cmocka_unit_test_setup(test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit, fresh),
-        cmocka_unit_test_setup(test_without_a_surrogate_the_front_is_worse, fresh),
-        cmocka_unit_test_setup(test_a_start_of_size_zero_follows_the_number_of_variables, fresh),
-    };
-    return cmocka_run_group_tests_name("search", tests, NULL, NULL);
-}
+SUITE_EACH(fresh)

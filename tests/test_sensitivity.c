@@ -172,7 +172,4 @@ TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_thr
     free(two);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -205,9 +205,8 @@ static json_t *post_json(const char *path, json_t *question)
 
 /* -- whom it answers ----------------------------------------------------------------------------------------------- */
 
-static void test_a_request_without_the_token_is_refused(void **state)
+TEST(a_request_without_the_token_is_refused)
 {
-    (void)state;
     char almost[64];
     expect_code(200, "GET", "/%T/0/", "");
     expect_code(302, "GET", "/%T/", "");
@@ -219,9 +218,8 @@ static void test_a_request_without_the_token_is_refused(void **state)
     expect_code(403, "GET", "/%", "");
 }
 
-static void test_a_foreign_host_or_origin_is_refused(void **state)
+TEST(a_foreign_host_or_origin_is_refused)
 {
-    (void)state;
     static const char *const REFUSED[] = {"Host: evil.example\r\n",
                                           "Host: 127.0.0.1.evil.example\r\n",
                                           "Host: localhost:80x\r\n",
@@ -236,9 +234,8 @@ static void test_a_foreign_host_or_origin_is_refused(void **state)
     expect_code(200, "GET", "/%T/0/front", "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8000\r\n");
 }
 
-static void test_no_request_leads_to_a_file(void **state)
+TEST(no_request_leads_to_a_file)
 {
-    (void)state;
     static const char *const PATHS[] = {"/%T/../../etc/passwd",
                                         "/%T/0/../../../etc/passwd",
                                         "/%T/%2e%2e/%2e%2e/etc/passwd",
@@ -265,9 +262,8 @@ static void expect_header(const char *wanted, const char *method, const char *pa
     free(answer);
 }
 
-static void test_every_address_says_which_methods_it_knows(void **state)
+TEST(every_address_says_which_methods_it_knows)
 {
-    (void)state;
     static const char *const METHODS[] = {"PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"};
     static const char *const READ_ONLY[] = {"/%T/",         "/%T/runs",       "/%T/0/",         "/%T/0/front",
                                             "/%T/0/events", "/%T/0/design/1", "/%T/0/against/1"};
@@ -282,9 +278,8 @@ static void test_every_address_says_which_methods_it_knows(void **state)
     expect_code(404, "POST", "/%T/0/nothing", "Content-Length: 0\r\n");
 }
 
-static void test_head_is_get_without_a_body(void **state)
+TEST(head_is_get_without_a_body)
 {
-    (void)state;
     static const char *const PATHS[] = {"/%T/0/", "/%T/runs", "/%T/0/events"};
     for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++) {
         char *answer = ask("HEAD", PATHS[i], "", ""), *body = strstr(answer, "\r\n\r\n");
@@ -295,9 +290,8 @@ static void test_head_is_get_without_a_body(void **state)
     expect_code(403, "HEAD", "/0/", "");
 }
 
-static void test_an_address_without_its_last_slash_leads_to_the_one_with_it(void **state)
+TEST(an_address_without_its_last_slash_leads_to_the_one_with_it)
 {
-    (void)state;
     char wanted[TOKEN_TEXT + 32];
     snprintf(wanted, sizeof wanted, "\r\nLocation: %s/\r\n", server.token);
     expect_header(wanted, "GET", "/%T");
@@ -308,9 +302,8 @@ static void test_an_address_without_its_last_slash_leads_to_the_one_with_it(void
 
 /* -- bounds -------------------------------------------------------------------------------------------------------- */
 
-static void test_what_is_too_large_is_not_read(void **state)
+TEST(what_is_too_large_is_not_read)
 {
-    (void)state;
     enum { MUCH = 1 << 20 };
     char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
     memset(much, 'x', MUCH);
@@ -344,9 +337,8 @@ static void test_what_is_too_large_is_not_read(void **state)
 
 /* Requests that come byte by byte, more of them than there is room for, each begun anew when it is ended: whoever asks
  * properly is answered. */
-static void test_a_slow_flood_leaves_others_answered(void **state)
+TEST(a_slow_flood_leaves_others_answered)
 {
-    (void)state;
     enum { SLOW = 300 };
     const Served before = serve_here("runs");
     int fd[SLOW], n_ended = 0;
@@ -385,9 +377,8 @@ static size_t threads_of_server(void)
     return n;
 }
 
-static void test_a_thousand_connections_leave_room_for_one_that_asks(void **state)
+TEST(a_thousand_connections_leave_room_for_one_that_asks)
 {
-    (void)state;
     enum { MANY = 1000 };
     struct rlimit files;
     int fd[MANY];
@@ -424,9 +415,8 @@ static double seconds_of(const struct rusage *used)
 }
 
 /* At the limit of open files nothing could be accepted, again and again. */
-static void test_where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered(void **state)
+TEST(where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered)
 {
-    (void)state;
     enum { MANY = 100 };
     const Served before = server;
     int fd[MANY];
@@ -472,9 +462,8 @@ static size_t plain_row(const Table *front)
     return row;
 }
 
-static void test_what_if_nothing_changes_is_what_the_run_has(void **state)
+TEST(what_if_nothing_changes_is_what_the_run_has)
 {
-    (void)state;
     Table front = table_of("runs/a/front.csv");
     const size_t row = plain_row(&front);
     json_t *answer = post_json(
@@ -487,9 +476,8 @@ static void test_what_if_nothing_changes_is_what_the_run_has(void **state)
     table_free(&front);
 }
 
-static void test_what_if_under_another_motion_is_what_simulate_prints(void **state)
+TEST(what_if_under_another_motion_is_what_simulate_prints)
 {
-    (void)state;
     static const char *const NAMES[] = {"j1_m", "j2_m", "j3_g", "ed1_pct", "ed5_10_pct", "edcs_pct", "mcore_kg"};
     char arguments[300];
     Table front = table_of("runs/a/front.csv");
@@ -512,9 +500,8 @@ static void test_what_if_under_another_motion_is_what_simulate_prints(void **sta
 }
 
 /* One simulation of it, by the options that the server names for `imtet simulate`. */
-static void test_what_if_of_a_run_of_several_simulations_is_one_of_them(void **state)
+TEST(what_if_of_a_run_of_several_simulations_is_one_of_them)
 {
-    (void)state;
     Table front = table_of("runs/d/front.csv");
     json_t *bounds = ask_json("/%T/3/what-if"), *values = json_object_get(bounds, "values");
     const double plates[] = {0.01, 0.02, 0.03};
@@ -538,9 +525,8 @@ static void test_what_if_of_a_run_of_several_simulations_is_one_of_them(void **s
     table_free(&front);
 }
 
-static void test_questions_that_are_none_are_refused(void **state)
+TEST(questions_that_are_none_are_refused)
 {
-    (void)state;
     static const char *const QUESTIONS[] = {"",           "[]",       "{}",        "{\"x\": [1, 2]}",
                                             "{\"x\": 3}", "\xff\xfe", "{\"x\": [", "{\"x\": [], \"x\": []}"};
     char length[64];
@@ -552,9 +538,8 @@ static void test_questions_that_are_none_are_refused(void **state)
     }
 }
 
-static void test_two_runs_are_measured_in_one_box(void **state)
+TEST(two_runs_are_measured_in_one_box)
 {
-    (void)state;
     json_t *both = ask_json("/%T/0/against/1"), *again = ask_json("/%T/1/against/0");
     for (size_t r = 0; r < 2; r++) {
         const json_t *one = json_array_get(json_object_get(both, "runs"), r);
@@ -588,9 +573,8 @@ static void test_two_runs_are_measured_in_one_box(void **state)
     expect_code(404, "GET", "/%T/2/design/1", "");
 }
 
-static void test_the_page_is_the_report_with_live_parts(void **state)
+TEST(the_page_is_the_report_with_live_parts)
 {
-    (void)state;
     char *page = ask("GET", "/%T/0/", "", ""), *policy = strstr(page, "Content-Security-Policy\" content=\"");
     assert_non_null(policy);
     assert_non_null(strstr(policy, "connect-src 'self'"));
@@ -605,9 +589,8 @@ static void test_the_page_is_the_report_with_live_parts(void **state)
 
 /* -- the run ------------------------------------------------------------------------------------------------------- */
 
-static void test_a_run_has_the_same_bytes_with_ten_pages_looking_on(void **state)
+TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
 {
-    (void)state;
     char text[256], path[PATH_MAX], begun[PATH_MAX + 16];
     int fd[10];
     char *words[] = {"sh", "-c", NULL, NULL};
@@ -654,9 +637,8 @@ static char *sums(void)
     return read_in_place("all");
 }
 
-static void test_nothing_of_a_run_is_written(void **state)
+TEST(nothing_of_a_run_is_written)
 {
-    (void)state;
     char *before = sums();
     Table front = table_of("runs/a/front.csv");
     char path[64];
@@ -679,9 +661,8 @@ static void refuse_note(int wanted, const char *note)
     free(answer);
 }
 
-static void test_notes_are_of_designs_of_the_run_and_lie_beside_it(void **state)
+TEST(notes_are_of_designs_of_the_run_and_lie_beside_it)
 {
-    (void)state;
     Table front = table_of("runs/b/front.csv");
     const int id = (int)front.values[0];
     char key[24], path[PATH_MAX];
@@ -726,9 +707,8 @@ static void copy(const char *from, const char *to)
 }
 
 /* Every listing names it with its reason, and none waits for it. */
-static void test_a_run_that_cannot_be_read_holds_up_no_listing(void **state)
+TEST(a_run_that_cannot_be_read_holds_up_no_listing)
 {
-    (void)state;
     copy("runs/a", "odd/a");
     copy("runs/a", "odd/broken");
     write_in_place("odd/broken/run.sqlite", "no database");
@@ -758,9 +738,8 @@ static json_t *state_now(char state[32])
     return run;
 }
 
-static void test_a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers(void **state)
+TEST(a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers)
 {
-    (void)state;
     char word[32];
     copy("runs/a", "odd/gone");
     const Served before = serve_here("odd/gone");
@@ -784,9 +763,8 @@ static void test_a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_num
 }
 
 /* The run d judges designs by several simulations, a by one. */
-static void test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now(void **state)
+TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
 {
-    (void)state;
     copy("runs/a", "odd/a");
     const Served before = serve_here("odd/a");
     json_t *bounds = ask_json("/%T/0/what-if");
@@ -819,9 +797,8 @@ static void test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now(
 }
 
 /* Nothing changes in its folder: a later version is one that was read again because the first was released. */
-static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
+TEST(a_run_that_is_not_asked_for_any_more_is_released)
 {
-    (void)state;
     char path[PATH_MAX];
     Watch *w;
     View first, again, kept;
@@ -855,9 +832,8 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
 
 /* -- ends ---------------------------------------------------------------------------------------------------------- */
 
-static void test_what_cannot_be_served_is_said(void **state)
+TEST(what_cannot_be_served_is_said)
 {
-    (void)state;
     char arguments[128];
     expect(66, "no-such-run", "serve no-such-run");
     expect(66, "is no run, and holds none", "serve docs");
@@ -866,9 +842,8 @@ static void test_what_cannot_be_served_is_said(void **state)
     expect(74, "no server", arguments);
 }
 
-static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
+TEST(ctrl_c_ends_it_while_pages_look_on)
 {
-    (void)state;
     char text[256], byte;
     int fd[4];
     snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
@@ -887,9 +862,8 @@ static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
 }
 
 /* Each takes a second or two, and pages that wait for them have gone. */
-static void test_ctrl_c_does_not_wait_for_the_questions_in_the_queue(void **state)
+TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
 {
-    (void)state;
     enum { QUESTIONS = 8 };
     const Served before = server;
     if (SANITIZED)
@@ -938,9 +912,8 @@ static void test_ctrl_c_does_not_wait_for_the_questions_in_the_queue(void **stat
 
 /* -- a browser ----------------------------------------------------------------------------------------------------- */
 
-static void test_a_browser_follows_a_run_and_asks_what_if(void **state)
+TEST(a_browser_follows_a_run_and_asks_what_if)
 {
-    (void)state;
     char command[1024];
     if (SANITIZED)
         skip(); /* the same page as without */
@@ -986,36 +959,4 @@ static int finish(void **state)
     return clear_place(state);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_request_without_the_token_is_refused),
-        cmocka_unit_test(test_a_foreign_host_or_origin_is_refused),
-        cmocka_unit_test(test_no_request_leads_to_a_file),
-        cmocka_unit_test(test_every_address_says_which_methods_it_knows),
-        cmocka_unit_test(test_head_is_get_without_a_body),
-        cmocka_unit_test(test_an_address_without_its_last_slash_leads_to_the_one_with_it),
-        cmocka_unit_test(test_what_is_too_large_is_not_read),
-        cmocka_unit_test(test_a_slow_flood_leaves_others_answered),
-        cmocka_unit_test(test_a_thousand_connections_leave_room_for_one_that_asks),
-        cmocka_unit_test(test_where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered),
-        cmocka_unit_test(test_what_if_nothing_changes_is_what_the_run_has),
-        cmocka_unit_test(test_what_if_under_another_motion_is_what_simulate_prints),
-        cmocka_unit_test(test_what_if_of_a_run_of_several_simulations_is_one_of_them),
-        cmocka_unit_test(test_questions_that_are_none_are_refused),
-        cmocka_unit_test(test_two_runs_are_measured_in_one_box),
-        cmocka_unit_test(test_the_page_is_the_report_with_live_parts),
-        cmocka_unit_test(test_nothing_of_a_run_is_written),
-        cmocka_unit_test(test_notes_are_of_designs_of_the_run_and_lie_beside_it),
-        cmocka_unit_test(test_a_run_has_the_same_bytes_with_ten_pages_looking_on),
-        cmocka_unit_test(test_a_run_that_cannot_be_read_holds_up_no_listing),
-        cmocka_unit_test(test_a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers),
-        cmocka_unit_test(test_a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now),
-        cmocka_unit_test(test_a_run_that_is_not_asked_for_any_more_is_released),
-        cmocka_unit_test(test_what_cannot_be_served_is_said),
-        cmocka_unit_test(test_ctrl_c_ends_it_while_pages_look_on),
-        cmocka_unit_test(test_ctrl_c_does_not_wait_for_the_questions_in_the_queue),
-        cmocka_unit_test(test_a_browser_follows_a_run_and_asks_what_if),
-    };
-    return cmocka_run_group_tests(tests, begin, finish);
-}
+SUITE(begin, finish)

@@ -606,7 +606,4 @@ TEST(fidelity_needs_replicates_that_average_no_noise)
     assert_true(settings_screens(&s));
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -153,7 +153,4 @@ TEST(a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there)
     assert_same_run("alone", "moved");
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

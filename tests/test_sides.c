@@ -253,7 +253,4 @@ TEST(a_design_of_other_sides_is_refused_by_its_column)
            "check configs/quick.ini --set design.gap_sides=either");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

@@ -221,7 +221,4 @@ TEST(what_cannot_be_simplified_says_so_by_its_status)
     expect(2, "--zones", "simplify @/run --zones 21");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, end_run);
-}
+SUITE(make_run, end_run)

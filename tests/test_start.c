@@ -120,7 +120,4 @@ TEST(a_design_of_the_tower_has_the_same_objectives_in_either_mode)
     run_free(&turns);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -548,8 +548,11 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
     hypervolume_free(h);
 }
 
-int main(void)
+/* Kernels as the program has them, whose runs are compared with those of this process. */
+static int prepare_pinned(void **state)
 {
-    linalg_use(KERNELS_PINNED); /* as the program, whose runs are compared with those of this process */
-    return RUN_TESTS(prepare, clear_place);
+    linalg_use(KERNELS_PINNED);
+    return prepare(state);
 }
+
+SUITE(prepare_pinned, clear_place)

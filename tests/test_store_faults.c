@@ -178,9 +178,8 @@ static void fail_once(Kind kind, long at, const char *front)
     free(now);
 }
 
-static void test_a_study_whose_kth_call_fails_goes_on_to_the_same_front(void **state)
+TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
 {
-    (void)state;
     Err err = {0};
     const char *wanted = getenv("FAULTS");
     const long most = wanted ? strtol(wanted, NULL, 10) : SOME;
@@ -330,9 +329,8 @@ static void check_life(Kind kind, long at, int rolls_back, const char *folder, c
     free(now);
 }
 
-static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(void **state)
+TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
 {
-    (void)state;
     Err err = {0};
     char folder[PATH_MAX];
     long n[N_KINDS];
@@ -363,9 +361,8 @@ static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(voi
 }
 
 /* What SQLite says becomes a status and words; who may not share the journal reads it without locks. */
-static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
+TEST(every_fault_of_the_database_is_said_in_our_words)
 {
-    (void)state;
     static const struct {
         int code;
         Status status;
@@ -415,9 +412,8 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
 }
 
 /* It is whole, or it is said. */
-static void test_a_text_for_which_there_is_no_room_is_not_taken_for_whole(void **state)
+TEST(a_text_for_which_there_is_no_room_is_not_taken_for_whole)
 {
-    (void)state;
     enum { LINES = 20000 };
     char *text;
     size_t length;
@@ -458,9 +454,8 @@ static void refused_by_store(const char *folder, int fresh, const char *words)
         fail_msg("%s: %s, wanted %s", folder, err.text, words);
 }
 
-static void test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next(void **state)
+TEST(a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next)
 {
-    (void)state;
     char path[2 * PATH_MAX], other[PATH_MAX], old[PATH_MAX];
     RunStore *first, *second;
     Database *d;
@@ -487,9 +482,8 @@ static void test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_take
 }
 
 /* Designs for a run that has none yet; and generations that the store cannot keep. */
-static void test_a_generation_that_was_not_simulated_is_refused(void **state)
+TEST(a_generation_that_was_not_simulated_is_refused)
 {
-    (void)state;
     char folder[PATH_MAX];
     RunStore *store;
     Err err = {0};
@@ -526,15 +520,4 @@ static int make_quick_place(void **state)
     return mkdtemp(place.folder) ? 0 : -1;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables),
-        cmocka_unit_test(test_every_fault_of_the_database_is_said_in_our_words),
-        cmocka_unit_test(test_a_text_for_which_there_is_no_room_is_not_taken_for_whole),
-        cmocka_unit_test(test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next),
-        cmocka_unit_test(test_a_generation_that_was_not_simulated_is_refused),
-        cmocka_unit_test(test_a_study_whose_kth_call_fails_goes_on_to_the_same_front),
-    };
-    return cmocka_run_group_tests_name("store faults", tests, make_quick_place, clear_place);
-}
+SUITE(make_quick_place, clear_place)

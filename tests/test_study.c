@@ -423,7 +423,4 @@ TEST(a_textbook_problem_is_written_design_by_design)
     expect(2, "--csv", "problem wfg4");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

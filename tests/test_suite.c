@@ -206,7 +206,4 @@ TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_li
     expect(65, "does not hold what it held for the run", "evaluate @/run --design knee --json");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

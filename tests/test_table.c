@@ -264,7 +264,4 @@ TEST(a_named_pipe_is_refused_before_it_is_waited_for)
     rmdir(folder);
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -177,7 +177,4 @@ TEST(shares_of_no_net_input_are_undefined)
     assert_true(isnan(r.ed1_pct) && isnan(r.ed5_10_pct) && isnan(r.edcs_pct));
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -208,7 +208,4 @@ TEST(no_kill_loses_an_evaluation_or_changes_the_front)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

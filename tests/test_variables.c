@@ -222,7 +222,4 @@ TEST(designs_of_other_variables_are_refused)
     forget(&s);
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_run, clear_place);
-}
+SUITE(make_run, clear_place)

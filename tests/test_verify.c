@@ -91,7 +91,4 @@ TEST(what_has_no_full_model_is_refused)
     expect(66, "nowhere", "evaluate --full-model nowhere --design none");
 }
 
-int main(void)
-{
-    return RUN_TESTS(make_place, clear_place);
-}
+SUITE(make_place, clear_place)

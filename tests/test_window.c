@@ -102,7 +102,4 @@ TEST(peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

@@ -230,7 +230,4 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     free(all);
 }
 
-int main(void)
-{
-    return RUN_TESTS(prepare, clear_place);
-}
+SUITE(prepare, clear_place)

@@ -496,7 +496,4 @@ TEST(very_weak_storeys_under_strong_shaking_stay_stable)
     }
 }
 
-int main(void)
-{
-    return RUN_TESTS(NULL, NULL);
-}
+SUITE(NULL, NULL)

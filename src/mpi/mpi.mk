@@ -45,6 +45,6 @@ test-mpi: ## tests of imtet_mpi with RANKS=4 at most; skipped where there is no 
 	@if command -v $(MPICC) >/dev/null; then $(MAKE) --no-print-directory test-mpi-here; \
 	 else echo 'test-mpi: skipped, there is no $(MPICC); scripts/setup-mpi installs it'; fi
 
-test-mpi-here: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/test_mpi
-	@echo '$(MODE) test_mpi $(BUILD)/tests/test_mpi' | \
+test-mpi-here: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
+	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi' | \
 	 IMTET_MPI=$(abspath $(MPI_PROGRAM)) IMTET_MPI_OTHER=$(abspath $(BUILD)/other/imtet_mpi) MPI_RANKS=$(RANKS) scripts/run-tests 1
