@@ -96,9 +96,7 @@ TEST(the_distance_of_two_samples_is_that_of_their_steps)
 
 TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
 {
-    if (SANITIZED) /* the engines go through the stability table */
-        skip();
-    const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.2};
+    const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.03};
     Sweep sweep = {0};
     BenchCase bench_case = {0};
     Ground g;
@@ -106,6 +104,7 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
     char *csv = NULL;
     size_t size;
     ground_open(&g);
+    six_floors(&g.s.building, &g.s.core);
     CHECK_OK(bench_case_open(&bench_case, bench_kind(0), &g.s, &g.m, 1, &err), &err);
     bench_case.duration = 2;
     FILE *quiet = fopen("/dev/null", "w");
@@ -171,13 +170,12 @@ TEST(quantiles_are_the_least_that_a_share_does_not_exceed)
 
 TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
-    if (SANITIZED) /* many runs of code that the other tests go through */
-        skip();
     Ground g;
     Err err;
     char *page = NULL;
     size_t size;
     ground_open(&g);
+    g.m.n = (size_t)(22 / g.m.dt_s);
     FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
     assert_true(f && quiet);
     const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 1};
@@ -196,12 +194,10 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 /* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
 TEST(the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings)
 {
-    if (SANITIZED) /* many runs of code that the other tests go through */
-        skip();
     double spread[2];
     Ground g;
     ground_open(&g);
-    g.m.n = (size_t)(25 / g.m.dt_s); /* what is left of a window of 60 s */
+    g.m.n = (size_t)(18 / g.m.dt_s); /* what is left of a window of 60 s */
     for (int i = 0; i < 2; i++) {
         BenchCase bench_case = {0};
         DistributionTest test = {0};
@@ -243,8 +239,6 @@ static void check_nothing_is_beyond(const Course *reference, const Course *found
 
 TEST(no_plain_search_gets_beyond_the_references_of_a_problem)
 {
-    if (SANITIZED) /* searches go through the next test */
-        skip();
     Err err;
     Settings s;
     settings_defaults(&s);

@@ -370,6 +370,7 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     Frame f;
     Physical p;
     CoreBeam *core = calloc(1, sizeof *core);
+    o.core.width_m = 1;
     make_shaking(accel);
     make_frame(&f, N, 4e7, 1e5, 0.03);
     make_core(core, &o, N);
@@ -382,7 +383,7 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     memset(core->zeta, 0, sizeof core->zeta);
     const SimResult rigid = run_system(SCENE_RIGID, &f, core, (LinearDevice){0}, &m);
     double before = INFINITY;
-    for (double c = 1e10; c < 1e14; c *= 10) {
+    for (double c = 1e8; c < 1e12; c *= 10) {
         const SimResult tight = run_system(SCENE_LINKS, &f, core, (LinearDevice){.link_ns_m = c}, &m);
         const double off = fabs(tight.j1_m / rigid.j1_m - 1);
         assert_true(off < 0.3 * before || off < 1e-5);
@@ -441,13 +442,19 @@ static void run_alone(const Problem *p, size_t r, SceneKind kind, const double x
     sim_worker_free(w);
 }
 
-static void open_tower(Problem *p, const char *records, Robust robust, long threads, double yield_drift)
+/* Of six floors or of twenty, elastic where yield_drift is 0. */
+static void open_tower(Problem *p, int floors, const char *records, Robust robust, long threads, double yield_drift)
 {
     Settings s;
     Err err = {0};
     char text[200];
     paper_defaults(&s);
     s.sim.duration_s = 25;
+    if (floors == 6) {
+        six_floors(&s.building, &s.core);
+        s.motion.stretch = 1;
+        s.sim.duration_s = 12;
+    }
     s.building.yield_drift = yield_drift;
     s.sim.robust = robust;
     s.search.threads = threads;
@@ -456,10 +463,12 @@ static void open_tower(Problem *p, const char *records, Robust robust, long thre
     CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
 }
 
-static void rigid_design(double x[22])
+static void rigid_design(int floors, double x[22])
 {
-    for (int j = 0; j < 22; j++)
-        x[j] = j < 20 ? 1e-6 : j == 20 ? 0.03 : 0.01;
+    for (int j = 0; j < floors; j++)
+        x[j] = 1e-6;
+    x[floors] = 0.03;
+    x[floors + 1] = 0.01;
 }
 
 TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads)
@@ -468,11 +477,11 @@ TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_thre
     Err err = {0};
     double x[22];
     Baseline *both[3]; /* worst, mean, worst on two threads */
-    rigid_design(x);
+    rigid_design(6, x);
     for (int i = 0; i < 3; i++) {
         both[i] = calloc(N_BASELINES, sizeof **both);
-        open_tower(&p, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, i == 2 ? 2 : 1, 0);
-        CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, both[i], &err), &err);
+        open_tower(&p, 6, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, i == 2 ? 2 : 1, 0);
+        CHECK_OK(baselines_find(&p, x, i == 1 ? BASELINE_RIGID : BASELINE_LINKS, both[i], &err), &err);
         for (int k = BASELINE_NO_CORE; k <= BASELINE_RIGID; k++) {
             SimResult each[2];
             for (size_t r = 0; r < 2; r++)
@@ -502,8 +511,8 @@ static void find_devices(double yield_drift)
     Err err = {0};
     double x[22];
     Baseline b[N_BASELINES];
-    rigid_design(x);
-    open_tower(&p, "none", ROBUST_WORST, 1, yield_drift);
+    rigid_design(6, x);
+    open_tower(&p, 6, "none", ROBUST_WORST, 1, yield_drift);
     CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, b, &err), &err);
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
         const double found = goal(&b[k], &b[BASELINE_NO_CORE]);
@@ -532,7 +541,7 @@ TEST(devices_are_better_than_none_and_than_their_neighbours)
 /* Those of the elastic tower are not: the period of a tower that yields is longer. */
 TEST(devices_of_a_tower_that_yields_are_found_for_it)
 {
-    find_devices(0.004);
+    find_devices(0.001);
 }
 
 /* Tight links move floors and core as one, with the sum of what both damp, which is what gaps that vanish leave; the
@@ -542,8 +551,8 @@ TEST(gaps_that_vanish_are_tight_links_and_the_rigid_baseline_is_damped_more)
     Problem p;
     double x[22];
     SimResult rigid, closed, tight;
-    rigid_design(x);
-    open_tower(&p, "none", ROBUST_WORST, 1, 0);
+    rigid_design(20, x);
+    open_tower(&p, 20, "none", ROBUST_WORST, 1, 0);
     run_alone(&p, 0, SCENE_RIGID, x, NULL, &rigid);
     run_alone(&p, 0, SCENE_LINKS, x, &(LinearDevice){.link_ns_m = 1e12}, &tight);
     run_alone(&p, 0, SCENE_IMPACT, x, NULL, &closed);
