@@ -458,28 +458,39 @@ TEST(a_list_of_damping_gives_each_mode_its_ratio)
     expect_refusal_of(&o, "has 21 ratios; the building has 20 modes");
 }
 
-/* As many floors as there may be, with impacts: sets of floors, pads and designs have room for all of them. */
+/* As many floors as there may be, of which every 18th and the roof strike at once: sets of floors, pads and designs have
+ * room for all of them. */
 TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
 {
-    if (SANITIZED) /* long, and the code is that of fewer floors */
-        skip();
     const BuildingOptions o = folder_of("tall");
     char rows[8192] = "height_m,mass_kg,stiffness_n_m\n", head[2048] = "", gaps[2048] = "", command[512];
     for (int j = 0; j < FLOORS_MAX; j++) {
+        const int is_near = j % 18 == 0 || j == FLOORS_MAX - 1;
         snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "3.8,4e5,%g\n", 6e9 * (1 - 0.8 * j / FLOORS_MAX));
         snprintf(head + strlen(head), sizeof head - strlen(head), "gap_%02d_m,", j + 1);
-        snprintf(gaps + strlen(gaps), sizeof gaps - strlen(gaps), "%g,", 0.002 + 0.0004 * ((j * 37) % FLOORS_MAX));
+        snprintf(gaps + strlen(gaps), sizeof gaps - strlen(gaps), "%g,", is_near ? 5e-6 : 0.01);
     }
     write_file(&o, "storeys.csv", "%s", rows);
     write_file(&o, "design.csv", "%st_base_m,t_top_m\n%s0.02,0.01\n", head, gaps);
+    write_file(&o, "push.csv", "time_s,accel_m_s2\n0,0\n0.2,3\n");
     json_t *r[2];
     for (int i = 0; i < 2; i++) {
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
-                 "builtin:sylmar-like --set motion.stretch=1 --set sim.duration_s=4 --set sim.accuracy=fine --set "
-                 "sim.engine=%s --json",
+                 "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
+                 "sim.engine=%s --json --contacts @/contacts.csv",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
+        Table contacts;
+        Err err = {0};
+        char *path = in_place("contacts.csv");
+        double highest = 0;
+        CHECK_OK(table_read(&contacts, path, 1, &err), &err);
+        for (size_t k = 0; k < contacts.n_rows; k++)
+            highest = fmax(highest, contacts.values[k * contacts.n_cols + (size_t)table_column(&contacts, "floor")]);
+        assert_same_number(highest, FLOORS_MAX);
+        table_free(&contacts);
+        free(path);
     }
     assert_at_most(10, number(r[0], "impacts"));
     assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
@@ -780,26 +791,30 @@ TEST(only_a_frame_has_more_than_its_floors)
 /* Both engines on the full model, and the rigid pair's base shear and energies with it. */
 TEST(the_full_model_is_simulated_alike_by_two_engines)
 {
-    if (SANITIZED) /* long, and the code is that of fewer modes */
-        skip();
-    char design[1024] = "";
+    char design[1024] = "", record[4096] = "time_s,accel_m_s2\n";
     const BuildingOptions o = folder_of("design");
     json_t *r[2];
     for (int j = 0; j < 20; j++)
         snprintf(design + strlen(design), sizeof design - strlen(design), "gap_%02d_m,", j + 1);
     strcat(design, "t_base_m,t_top_m\n");
     for (int j = 0; j < 20; j++)
-        snprintf(design + strlen(design), sizeof design - strlen(design), "%g,", 0.02 + 0.01 * ((j * 7) % 20));
+        snprintf(design + strlen(design), sizeof design - strlen(design), "%g,", 0.001 + 0.0005 * ((j * 7) % 20));
     write_file(&o, "design.csv", "%s0.02,0.008\n", design);
+    for (int k = 0; k <= 60; k++)
+        snprintf(record + strlen(record), sizeof record - strlen(record), "%.2f,%.17g\n", 0.02 * k,
+                 3 * sin(2.5 * 0.02 * k) + 2 * sin(8.2 * 0.02 * k));
+    write_file(&o, "shaking.csv", "%s", record);
     for (int i = 0; i < 2; i++) {
         char command[512];
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                 "builtin:kobe-like --set sim.duration_s=24 --set sim.accuracy=fine --set sim.engine=%s --json",
+                 "@/design/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
+                 "sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
     }
     static const char *const SAME[] = {"j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n"};
+
     assert_at_most(10, number(r[0], "impacts"));
     assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
     for (size_t k = 0; k < sizeof SAME / sizeof SAME[0]; k++)

@@ -479,8 +479,6 @@ static Status fail_in_a_slab(size_t n, const double X[], const size_t draws[], d
 
 TEST(where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind)
 {
-    if (SANITIZED) /* statistics of code that the tests beside it go through */
-        skip();
     double sum[2] = {0};
     for (uint32_t seed = 1; seed <= 3; seed++) {
         double h[2];
