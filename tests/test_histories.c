@@ -468,7 +468,7 @@ static long impacts_with(double gap, const char *law, const char *engine)
     write_in_place("one/gap.csv", text);
     snprintf(
         command, sizeof command,
-        "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.duration_s=4 "
+        "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.duration_s=3.5 "
         "--set sim.engine=%s --set contact.law=%s",
         engine, law);
     json_t *o = json_of(command);

@@ -22,16 +22,16 @@ typedef struct {
 static const char SIX[] = "configs/neighbours/tower";
 static const Window WINDOWS[] = {
     {"builtin:kobe-like", "guyan", CORE_BOX, 3, 1, 3.1, 2.5, 0},
-    {"builtin:kobe-like", "appendix", CORE_EFFECTIVE, 9, 0.2, 1.0, 1.5, 0},
-    {"builtin:elcentro-like", SIX, CORE_BOX, 5, 0.05, 1.0, 2, 0},
-    {"builtin:sylmar-like", SIX, CORE_EFFECTIVE, 7, 0.05, 1.0, 2.5, 0},
+    {"builtin:kobe-like", "appendix", CORE_EFFECTIVE, 9, 0.2, 1.0, 1.4, 0},
+    {"builtin:elcentro-like", SIX, CORE_BOX, 5, 0.05, 1.0, 1.75, 0},
+    {"builtin:sylmar-like", SIX, CORE_EFFECTIVE, 7, 0.05, 1.0, 2, 0},
     {"builtin:elcentro-like", SIX, CORE_BOX, 11, 0.02, 1.0, 1.75, 0},
 };
 static const Window WITH_BUMPERS[] = {
-    {"builtin:kobe-like", SIX, CORE_BOX, 3, 0.05, 1.0, 2.25, 1e10},
-    {"builtin:elcentro-like", SIX, CORE_BOX, 5, 0.05, 1.0, 2.25, 1e9},
-    {"builtin:kobe-like", SIX, CORE_EFFECTIVE, 9, 0.05, 1.0, 2.5, 1e8},
-    {"builtin:elcentro-like", SIX, CORE_BOX, 11, 0.02, 1.0, 2.75, 1e7},
+    {"builtin:kobe-like", SIX, CORE_BOX, 3, 0.05, 1.0, 1.75, 1e10},
+    {"builtin:elcentro-like", SIX, CORE_BOX, 5, 0.05, 1.0, 1.75, 1e9},
+    {"builtin:kobe-like", SIX, CORE_EFFECTIVE, 9, 0.05, 1.0, 1.75, 1e8},
+    {"builtin:elcentro-like", SIX, CORE_BOX, 11, 0.02, 1.0, 2, 1e7},
 };
 /* J1, J2, J3, shares of mode 1, modes 5 to 10, the core */
 static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 1e-2, 1e-2, 1e-2, 1e-2};
