@@ -191,6 +191,7 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     size_t size;
     ground_open(&g);
     write_soft_floors(&g.s.building, folder);
+    g.m.n = (size_t)(20 / g.m.dt_s);
     FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
     assert_true(f && quiet);
     const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 1};
