@@ -126,7 +126,7 @@ static SimResult run_all(Engine engine, double exponent, double yield_drift)
     six_floors(&t.settings.building, &t.settings.core);
     t.settings.design.link_exponent = exponent;
     t.settings.building.yield_drift = yield_drift;
-    t.settings.sim.duration_s = 4.5;
+    t.settings.sim.duration_s = 4.2;
     t.x[FEW] = t.x[FEW + 1] = 0.02;
     for (int j = 0; j < FEW; j++)
         t.x[FEW + 2 + j] = j % 3 == 0 ? 0.2e6 : 0;

@@ -370,7 +370,7 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     Frame f;
     Physical p;
     CoreBeam *core = calloc(1, sizeof *core);
-    o.core.width_m = 1;
+    o.core.width_m = 1; /* slender, as above */
     make_shaking(accel);
     make_frame(&f, N, 4e7, 1e5, 0.03);
     make_core(core, &o, N);
