@@ -165,6 +165,15 @@ static inline char *read_in_place(const char *name)
     return text;
 }
 
+/* A record of 1.2 s of two sines, under which gaps close at once. */
+static inline void write_shaking(const char *name)
+{
+    char text[4096] = "time_s,accel_m_s2\n";
+    for (int i = 0; i <= 60; i++)
+        sprintf(text + strlen(text), "%.2f,%.17g\n", 0.02 * i, 3 * sin(2.5 * 0.02 * i) + 2 * sin(8.2 * 0.02 * i));
+    write_in_place(name, text);
+}
+
 static inline int make_place(void **state)
 {
     (void)state;

@@ -791,7 +791,7 @@ TEST(only_a_frame_has_more_than_its_floors)
 /* Both engines on the full model, and the rigid pair's base shear and energies with it. */
 TEST(the_full_model_is_simulated_alike_by_two_engines)
 {
-    char design[1024] = "", record[4096] = "time_s,accel_m_s2\n";
+    char design[1024] = "";
     const BuildingOptions o = folder_of("design");
     json_t *r[2];
     for (int j = 0; j < 20; j++)
@@ -800,15 +800,12 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
     for (int j = 0; j < 20; j++)
         snprintf(design + strlen(design), sizeof design - strlen(design), "%g,", 0.001 + 0.0005 * ((j * 7) % 20));
     write_file(&o, "design.csv", "%s0.02,0.008\n", design);
-    for (int k = 0; k <= 60; k++)
-        snprintf(record + strlen(record), sizeof record - strlen(record), "%.2f,%.17g\n", 0.02 * k,
-                 3 * sin(2.5 * 0.02 * k) + 2 * sin(8.2 * 0.02 * k));
-    write_file(&o, "shaking.csv", "%s", record);
+    write_shaking("shaking.csv");
     for (int i = 0; i < 2; i++) {
         char command[512];
         snprintf(command, sizeof command,
                  "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                 "@/design/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
+                 "@/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
                  "sim.engine=%s --json",
                  i ? "cvode" : "fast");
         r[i] = json_of(command);
