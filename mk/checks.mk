@@ -1,7 +1,7 @@
 # Checks beyond the tests.
 
 .PHONY: lint deb apt api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
-        laws fresh-debian
+        laws fresh-debian stranger
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
 	@scripts/setup packages-lint.txt
@@ -84,6 +84,9 @@ valgrind: $(PROGRAM) ## the same under valgrind
 stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 600": also those of 1e6 and 1e7 steps
 	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
 	@scripts/tables stability
+
+stranger: $(PROGRAM) ## how many files a new objective, contact law and baseline touch, each built and tried (tests/stranger)
+	@scripts/stranger
 
 laws: $(BENCH) ## rebound of the contact laws
 	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv
