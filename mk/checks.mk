@@ -1,6 +1,6 @@
 # Checks beyond the tests.
 
-.PHONY: lint deb apt api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+.PHONY: lint deb api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
         laws fresh-debian stranger
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
@@ -95,9 +95,6 @@ laws: $(BENCH) ## rebound of the contact laws
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
 
-fresh-packages: apt ## the packages in a Debian that has nothing, the same way
-	@scripts/fresh-debian build/fresh-packages build/apt
-
 CALLS ?= 100000
 api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
 	@$(MAKE) --no-print-directory -j$(JOBS) MODE=asan T=asking tests
@@ -106,6 +103,3 @@ api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
 deb: ## packages imtet, imtet-mpi, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt
 	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)
-
-apt: deb ## these packages as an apt repository in build/apt; KEY=NAME signs it (gpg)
-	@scripts/apt build/deb build/apt
