@@ -24,13 +24,17 @@ static int is_finite(const FixedStep *m)
     return sum == 0;
 }
 
-/* At the end of a step: contacts as they are now. */
+/* At the end of a step: contacts as they are now. The peaks' arc ends where one has begun or ended. */
 static void settle(FixedStep *m)
 {
     double w[FLOORS_MAX];
+    int before[FLOORS_MAX];
     if (m->model->nc > 0) {
+        memcpy(before, m->contacts.side, sizeof before);
         floors_from_modes(m->model, 0, m->model->m, m->q, w);
         contacts_settle(&m->contacts, w);
+        if (memcmp(before, m->contacts.side, sizeof before) != 0)
+            peak_monitor_break(&m->account.peaks, 0);
     }
     m->power = fixed_step_forces(m, m->q, m->v, m->contact);
 }
