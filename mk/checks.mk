@@ -85,9 +85,10 @@ stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 6
 	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
 	@scripts/tables stability
 
-laws: $(BENCH) ## rebound of the contact laws
-	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv
+laws: $(BENCH) ## rebound of the contact laws, engines under each
+	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv --engines docs/measured/contact-laws-engines.csv
 	@scripts/plot-laws docs/measured/contact-laws.csv docs/contact-laws
+	@scripts/tables contact-laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
