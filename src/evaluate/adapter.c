@@ -62,8 +62,10 @@ Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
 /* The one place that picks a simulator. */
 static Status open_simulator(Adapter *a, const Settings *s, Err *err)
 {
+    Settings own = *s;
+    own.sim.measures_only = 1;
     if (s->problem.kind == PROBLEM_TOWER)
-        return tower_open(&a->problem, s, TOWER_AS_SET, SIZE_MAX, err);
+        return tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err);
     if (s->problem.kind != PROBLEM_EXTERNAL)
         return textbook_open(&a->problem, &s->problem, (uint32_t)s->search.seed, err);
     TRY(external_open(&a->problem, &s->problem, a->threads, err));

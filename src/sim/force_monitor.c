@@ -37,7 +37,7 @@ typedef struct {
 struct ForceMonitor {
     int n, nb;
     int at_both, at_slow, at_velocity, n_groups; /* groups: core from 0, building and core, building, velocities */
-    int core_modes, nc, own_modes, has_residual, yields;
+    int core_modes, nc, own_modes, has_residual, with_storeys, yields;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
@@ -241,6 +241,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
         m->group[i].building = joined || i >= m->at_both ? m->group[i].room : NULL;
         memset(m->group[i].reach, 0, sizeof m->group[i].reach);
     }
+    m->with_storeys = !o->sim.measures_only;
     m->weight_n = 0;
     for (int s = 0; s < n; s++)
         m->z[s + 1] = m->z[s] + b->storey_m[s];
@@ -282,9 +283,10 @@ static void set_residual(const ForceMonitor *m, Group *g)
     }
 }
 
+/* Is there a core, are the building's storeys wanted? */
 static int is_followed(const ForceMonitor *m, int group)
 {
-    return group >= m->at_slow || m->nc > 0;
+    return group < m->at_slow ? m->nc > 0 : group == m->at_slow || m->with_storeys;
 }
 
 void force_monitor_start(ForceMonitor *m, int core_modes, double end)
@@ -628,8 +630,8 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
     close_open_contacts(m, t);
     *out = m->sum;
     for (int s = 0; s < n; s++) {
-        out->building_shear_n[s] = peak_of(m, m->at_slow, s > 0 ? s + 1 : 0);
-        out->peak_velocity_m_s[s] = peak_of(m, m->at_velocity, s);
+        out->building_shear_n[s] = m->with_storeys || s == 0 ? peak_of(m, m->at_slow, s > 0 ? s + 1 : 0) : NAN;
+        out->peak_velocity_m_s[s] = m->with_storeys ? peak_of(m, m->at_velocity, s) : NAN;
         out->core_shear_n[s] = peak_of(m, 0, s);
         out->core_moment_nm[s] = peak_of(m, 0, n + s);
     }

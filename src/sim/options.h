@@ -64,6 +64,7 @@ typedef struct {
     double gap_tolerance_m; /* standard deviation of a gap as built */
     double filter_hz;       /* cutoff frequency of SimResult.j3_filtered_g */
     int filtered;           /* no setting: who wants it says so */
+    int measures_only;      /* no setting: of SimForces what measures are made of, no storeys of the building */
     Forces forces;          /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
 

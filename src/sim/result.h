@@ -49,6 +49,7 @@ typedef struct {
     double core_buckling_pa[FLOORS_MAX], core_slenderness[FLOORS_MAX]; /* critical stress; clear width / thickness */
     double core_buckling_ratio; /* largest stress / critical stress of a storey */
 
+    /* with SimOptions.measures_only of the building the base alone, no velocities: NAN */
     double building_shear_n[FLOORS_MAX], building_base_shear_n, building_overturning_nm;
     double base_shear_n, base_shear_ratio, overturning_nm; /* of building and core; over the weight of the floors */
     double peak_velocity_m_s[FLOORS_MAX];                  /* of the floors relative to the ground */
