@@ -1,7 +1,7 @@
 # Checks beyond the tests.
 
-.PHONY: lint deb apt api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
-        laws fresh-debian
+.PHONY: lint deb api-fuzz fuzz fuzz-here fuzz-minute coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+        laws fresh-debian stranger
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
 	@scripts/setup packages-lint.txt
@@ -85,15 +85,16 @@ stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 6
 	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
 	@scripts/tables stability
 
-laws: $(BENCH) ## rebound of the contact laws
-	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv
+stranger: $(PROGRAM) ## how many files a new objective, contact law and baseline touch, each built and tried (tests/stranger)
+	@scripts/stranger
+
+laws: $(BENCH) ## rebound of the contact laws, engines under each
+	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv --engines docs/measured/contact-laws-engines.csv
 	@scripts/plot-laws docs/measured/contact-laws.csv docs/contact-laws
+	@scripts/tables contact-laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
-
-fresh-packages: apt ## the packages in a Debian that has nothing, the same way
-	@scripts/fresh-debian build/fresh-packages build/apt
 
 CALLS ?= 100000
 api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
@@ -103,6 +104,3 @@ api-fuzz: ## random calls of the library under AddressSanitizer; CALLS=100000
 deb: ## packages imtet, imtet-mpi, libimtet0, libimtet-dev, python3-imtet into build/deb, by debhelper
 	@scripts/setup packages-deb.txt
 	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)
-
-apt: deb ## these packages as an apt repository in build/apt; KEY=NAME signs it (gpg)
-	@scripts/apt build/deb build/apt

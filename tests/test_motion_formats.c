@@ -437,15 +437,12 @@ static void refused(const char *file, const MotionHow *how, const char *says)
 
 TEST(counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name)
 {
-    static const char EVT[] = "K\1\1\11 the tags of a recorder";
     Motion m;
     Err err = {0};
     refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.unit (--unit) to counts=VALUE");
     refused("little.sac", &(MotionHow){0}, "set motion.unit (--unit) to counts=VALUE");
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
     refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, knet/SYN0010101010000.NS'");
-    assert_int_equal(motion_parse(&m, "a.evt", EVT, sizeof EVT, &(MotionHow){0}, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "a.evt: Kinemetrics EVT without a header of 2040 bytes"));
     Text t = read_specimen("knet.tar.gz");
     assert_int_equal(motion_parse(&m, "cut.tar.gz", t.text, t.length / 2, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "cut.tar.gz: a damaged archive"));
@@ -905,57 +902,6 @@ TEST(units_in_other_words_are_taken_or_named)
     }
     assert_int_equal(parse_text(&m, "time_s,accel [mg]\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "unit 'mg' of its acceleration is not known"));
-}
-
-/* Recorders of Kinemetrics: five tenths of a second at 100 Hz, 24 bits; the 43 samples and seven zeros. */
-TEST(a_file_of_a_kinemetrics_recorder_is_read_to_its_samples)
-{
-    static const char *const NAMES[] = {"1 HNN", "2 HNE", "3 HNZ"};
-    for (int k = 0; k < 3; k++) {
-        Motion m;
-        Err err;
-        CHECK_OK(motion_read(&m, "tests/motion/three.evt", &(MotionHow){.channel = NAMES[k]}, &err), &err);
-        assert_int_equal(m.n, 50);
-        assert_close(m.dt_s, DT, 1e-12);
-        assert_string_equal(m.format, "evt");
-        assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[k], 1e-5);
-        assert_true(motion_peak(&m) == fabs(m.accel[PEAK_AT]) && m.accel[49] == 0);
-        motion_free(&m);
-    }
-}
-
-TEST(what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said)
-{
-    static const struct {
-        size_t at;
-        unsigned char byte;
-        const char *says;
-    } CASES[] = {
-        {1, 0, "least significant byte first"},
-        {8, 9, "without a header of 2040 bytes"},
-        {16 + 0x237, 9, "holds 5 frames of a tenth of a second, its header announces 9"},
-        {2056 + 16, 4, "is of type 4"},
-        {2056 + 16 + 14, 1 << 6, "samples of 2 bytes"},
-        {2056 + 16 + 11, 3, "60 are expected"},
-        {2056 + 16 + 13, 99, "99 Hz; type 3"},
-        {2056 + 138 + 16 + 11, 3, "60 are expected"},
-        {2056 + 4 + 3, 1, "holds 0 frames"},
-    };
-    Text two = repeated(read_specimen("three.evt"), 2);
-    Err doubled = {0};
-    assert_int_equal(motion_parse(&(Motion){0}, "a.evt", two.text, two.length, &FIRST, &doubled), STATUS_BAD_DATA);
-    assert_non_null(strstr(doubled.text, "a second record begins at byte "));
-    free(two.text);
-    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
-        Text t = read_specimen("three.evt");
-        Motion m;
-        Err err = {0};
-        t.text[CASES[i].at] = (char)CASES[i].byte;
-        assert_int_equal(motion_parse(&m, "a.evt", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-        if (!strstr(err.text, CASES[i].says))
-            fail_msg("'%s' should be in '%s'", CASES[i].says, err.text);
-        free(t.text);
-    }
 }
 
 /* A miniSEED of floats holds whatever four bytes are. */

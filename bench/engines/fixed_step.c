@@ -24,13 +24,17 @@ static int is_finite(const FixedStep *m)
     return sum == 0;
 }
 
-/* At the end of a step: contacts as they are now. */
+/* At the end of a step: contacts as they are now. The peaks' arc ends where one has begun or ended. */
 static void settle(FixedStep *m)
 {
     double w[FLOORS_MAX];
+    int before[FLOORS_MAX];
     if (m->model->nc > 0) {
+        memcpy(before, m->contacts.side, sizeof before);
         floors_from_modes(m->model, 0, m->model->m, m->q, w);
         contacts_settle(&m->contacts, w);
+        if (memcmp(before, m->contacts.side, sizeof before) != 0)
+            peak_monitor_break(&m->account.peaks, 0);
     }
     m->power = fixed_step_forces(m, m->q, m->v, m->contact);
 }
@@ -47,6 +51,21 @@ static void remember_start(FixedStep *m, double a)
         c->v_before[i] = m->v[i];
         c->a_before[i] = w * m->h < 1 ? pull + m->contact[i] - model->gamma[i] * a : 0;
     }
+}
+
+/* Contacts and forces at the end of a step, for who asked for them. */
+static void record_forces(FixedStep *m, double ground)
+{
+    const SimModel *model = m->model;
+    double force[FLOORS_MAX] = {0};
+    const FloorSet in = model->nc > 0 ? contacts_record(&m->contacts, m->t, m->q, m->v, force) : 0;
+    force_monitor_point(m->contacts.forces, &(ForcePoint){.t = m->t,
+                                                          .ground = ground,
+                                                          .building_q = m->q,
+                                                          .building_v = m->v,
+                                                          .core_q = m->q + model->nb,
+                                                          .force = force,
+                                                          .in_contact = in});
 }
 
 /* From sample to sample (or to the end of the run), ground acceleration from a0 to a1. */
@@ -70,6 +89,8 @@ static RunOutcome cross_interval(FixedStep *m, const FixedStepMethod *method, vo
         if (!is_finite(m))
             return RUN_NOT_FINITE;
         settle(m);
+        if (m->contacts.forces)
+            record_forces(m, to);
         energy_account_add(&m->account, method->at_end * h, m->v, to, &m->power);
         const double since = m->t - m->peaks_at;
         if (since > (contacts_any(&m->contacts) ? PEAKS_IN_CONTACT : PEAKS_EVERY) * (1 - 1e-9) || k == n - 1) {
@@ -115,7 +136,10 @@ static void explain(const FixedStep *m, SimResult *result)
 Status fixed_step_run(const FixedStepMethod *method, void *work, const SimModel *model, const Motion *motion,
                       const EngineOptions *options, SimResult *result)
 {
-    FixedStep m = {.model = model, .contacts = {.model = model, .by_overlap = 1, .log = options->onsets}};
+    FixedStep m = {.model = model,
+                   .contacts = {.model = model, .by_overlap = 1, .log = options->onsets, .forces = options->forces}};
+    if (options->forces)
+        force_monitor_start(options->forces, model->nc - model->has_mass, options->duration);
     energy_account_start(&m.account, model);
     memset(result, 0, sizeof *result);
     result->n_floors = model->n;

@@ -268,26 +268,8 @@ static void strength(Trial *t)
 
 /* ---- machines ---------------------------------------------------------------------------------------------------- */
 
-static int processor_has(FastKernel *kernel)
-{
-#ifdef __x86_64__
-    if (kernel == fast_kernel_avx512)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-               __builtin_cpu_supports("avx512dq");
-    if (kernel == fast_kernel_avx2)
-        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-#endif
-    return kernel == fast_kernel_base;
-}
-
 static void vector_width(Trial *t)
 {
-    static FastKernel *const KERNELS[] = {fast_kernel_base,
-#ifdef __x86_64__
-                                          fast_kernel_avx2, fast_kernel_avx512
-#endif
-    };
-    static const char *const NAMES[] = {"base", "avx2", "avx512"};
     if (t->engine != ENGINE_FAST) /* one kernel: nothing to compare */
         return;
     TRIAL_EACH_ACCURACY(t)
@@ -308,18 +290,19 @@ static void vector_width(Trial *t)
         need(fast_create(&work, b.n, b.n, 0, 0, &err), &err);
         const EngineOptions run = {.duration = (double)(tower.motion.n - 1) * tower.motion.dt_s};
         const FastTolerances tolerances = fast_tolerances(t->accuracy);
-        for (size_t i = 0; i < sizeof KERNELS / sizeof KERNELS[0]; i++) {
+        for (int i = 0; i < 2 * FAST_SETS; i++) {
+            const FastKernels *set = fast_kernels(i / 2);
             SimResult r;
-            if (!processor_has(KERNELS[i]))
+            if (!set)
                 continue;
-            KERNELS[i](work, &model, &tower.motion, &run, &tolerances, &r);
-            if (i == 0)
+            (i % 2 ? set->plain : set->run)(work, &model, &tower.motion, &run, &tolerances, &r);
+            if (first.steps == 0)
                 first = r;
-            trial_compare(t, &r, r.j1_m, first.j1_m, first.j1_m, 1e-8, "%s against base: J1", NAMES[i]);
-            trial_compare(t, &r, r.j3_g, first.j3_g, first.j3_g, trial_allowed(t, 1e-6, 1e-4), "%s against base: J3",
-                          NAMES[i]);
+            trial_compare(t, &r, r.j1_m, first.j1_m, first.j1_m, 1e-8, "%s against the first: J1", set->name);
+            trial_compare(t, &r, r.j3_g, first.j3_g, first.j3_g, trial_allowed(t, 1e-6, 1e-4),
+                          "%s against the first: J3", set->name);
             trial_compare(t, &r, r.input_energy_j, first.input_energy_j, first.input_energy_j, 1e-8,
-                          "%s against base: input energy", NAMES[i]);
+                          "%s against the first: input energy", set->name);
         }
         fast_free(work);
         model_free(&model);

@@ -156,21 +156,33 @@ static Status find_no_core(Tuning *t, Err *err)
     return STATUS_OK;
 }
 
+static Status tune(Tuning *t, LinearDevice *device)
+{
+    double u[2] = {0.5, 0.5}, building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], mass;
+    TRY(scene_frequencies(t->at[0].scenario->scene, t->x, building, core, both, &mass, t->err));
+    TRY(find_no_core(t, t->err));
+    set_scales(t);
+    search_grid(t, u);
+    if (t->scene == SCENE_TMD)
+        try_warburton(t, mass, u);
+    search_simplex(t, u);
+    *device = t->device;
+    return t->status;
+}
+
 Status device_find(const ReplicatePlan *plan, size_t n, const Shaken at[], SceneKind kind, const double x[],
                    LinearDevice *device, Err *err)
 {
     ReplicatePlan alone = *plan;
     Tuning t = {.plan = &alone, .at = at, .scene = kind, .x = x, .best = INFINITY, .err = err};
-    double u[2] = {0.5, 0.5}, building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], mass;
     alone.n_records = n;
     alone.n_replicates = 1;
-    TRY(scene_frequencies(at[0].scenario->scene, x, building, core, both, &mass, err));
-    TRY(find_no_core(&t, err));
-    set_scales(&t);
-    search_grid(&t, u);
-    if (kind == SCENE_TMD)
-        try_warburton(&t, mass, u);
-    search_simplex(&t, u);
-    *device = t.device;
-    return t.status;
+    for (size_t r = 0; r < n; r++) {
+        const double omega = scene_building(at[r].scenario->scene)->omega[0];
+        sim_worker_until(at[r].worker, device_strong_part(&at[r].scenario->motion, 2 * M_PI / omega));
+    }
+    const Status status = tune(&t, device);
+    for (size_t r = 0; r < n; r++)
+        sim_worker_until(at[r].worker, INFINITY);
+    return status;
 }

@@ -3,7 +3,8 @@
  *   goal = J1 / J1_0 + J2 / J2_0 + J3 / J3_0          _0: the building alone, every J over the records by the same rule
  *
  * is minimised: first a grid, for the tuned mass with Warburton's optimum for white noise in it, then Nelder and Mead
- * from its best point.
+ * from its best point. The simulations end with the strong part of each record: peaks lie in it, and the device that
+ * does best is the same.
  *
  * Source   G. B. Warburton, Earthquake Eng. Struct. Dyn. 10 (1982) 381-401
  * Threads  those of the integrators */

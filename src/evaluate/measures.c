@@ -30,8 +30,8 @@ double measure_value(const SimResult *r, int k)
     const unsigned needs = MEASURES[k].needs;
     if (k >= MEASURES_LISTED)
         return r->chance[k - MEASURES_LISTED];
-    if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known) ||
-        ((needs & NEEDS_YIELDING) && !r->yields))
+    if (((needs & (NEEDS_FORCES | NEEDS_FEW_FORCES)) && !r->forces_known) ||
+        ((needs & NEEDS_FILTER) && !r->filtered_known) || ((needs & NEEDS_YIELDING) && !r->yields))
         return NAN;
     switch ((MeasureId)k) {
 #define X(id, name, unit, sense, needs, value, what)                                                                   \

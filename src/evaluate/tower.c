@@ -68,10 +68,12 @@ static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err
     memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
     if (place >= r->n_scenes)
         estimate_options(&r->settings.sim, &s->sim);
-    const unsigned needs = measures_need(t->judged);
-    s->sim.filtered = s->sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
-    if (needs & NEEDS_FORCES)
+    const unsigned needs = measures_need(s->sim.forces == FORCES_YES ? ~(MeasureSet)0 : t->judged);
+    s->sim.filtered = (needs & NEEDS_FILTER) != 0;
+    if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
         s->sim.forces = FORCES_YES;
+    if (needs & NEEDS_FORCES)
+        s->sim.measures_only = 0;
     return c->setting[0] ? settings_set(s, c->setting, err) : STATUS_OK;
 }
 

@@ -11,7 +11,7 @@
  * taken for m/s2 shows 35 g). */
 static const double LARGEST_PEAK_G = 20.0;
 
-static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT, &FORMAT_SIMCENTER};
+static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_SIMCENTER};
 enum { N_BINARY_FORMATS = N_OF(BINARY_FORMATS), ARCHIVES_DEEP = 2 };
 
 static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};

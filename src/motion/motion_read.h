@@ -10,7 +10,6 @@
  *   slist    IRIS ASCII, and tspair            mseed    miniSEED 2
  *   sac      SAC, binary and alphanumeric      simcenter  SimCenter JSON
  *   csmnc    CSMNC (China)                     csn      CSN (Chile), text
- *   evt      Kinemetrics EVT
  *   csv      plain text: one, two or many columns
  *
  * and archives of them (zip, tar, gzip, bzip2, xz).

@@ -1,6 +1,6 @@
 # imtet_mpi: the same program over the ranks of MPI. What src/mpi defines takes the place of src/evaluate/alone.c.
 
-.PHONY: mpi scale scale-ranks test-mpi test-mpi-here slurm-test
+.PHONY: mpi scale scale-ranks tests-mpi test-mpi test-mpi-here slurm-test
 
 MPICC       ?= mpicc
 MPI_PROGRAM := $(if $(filter release,$(MODE)),imtet_mpi,$(BUILD)/imtet_mpi)
@@ -45,6 +45,8 @@ test-mpi: ## tests of imtet_mpi with RANKS=4 at most; skipped where there is no 
 	@if command -v $(MPICC) >/dev/null; then $(MAKE) --no-print-directory test-mpi-here; \
 	 else echo 'test-mpi: skipped, there is no $(MPICC); scripts/setup-mpi installs it'; fi
 
-test-mpi-here: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
+tests-mpi: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
+
+test-mpi-here: tests-mpi
 	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi' | \
 	 IMTET_MPI=$(abspath $(MPI_PROGRAM)) IMTET_MPI_OTHER=$(abspath $(BUILD)/other/imtet_mpi) MPI_RANKS=$(RANKS) scripts/run-tests 1

@@ -1,8 +1,10 @@
 /* sim/peak_monitor.h -- peaks over continuous time from the points of a step-by-step integration.
  *
- * A parabola through three successive points gives the peak wherever the middle one is the largest by magnitude; the
- * points need not be equidistant. Error about (w h)^4 / 400 of a component of frequency w sampled every h. Where the
- * motion has a kink no parabola goes through it: peak_monitor_break.
+ * Points that follow each other without a break lie on one smooth arc: one step of an integrator with dense output, or
+ * equal steps between two changes of contact. A parabola goes through every three successive ones of an arc and gives
+ * a peak wherever its vertex lies within their span; they need not be equidistant. Error about (w h)^4 / 400 of a
+ * component of frequency w sampled every h. Across a kink, or from one step to another of quite a different length, the
+ * vertex says nothing: peak_monitor_break.
  *
  * Threads  no state */
 #pragma once
@@ -24,7 +26,7 @@ typedef struct {
 } PeakPoint;
 
 typedef struct {
-    int n, count; /* floors; points so far */
+    int n, count, arc; /* floors; points so far, of them on the present arc */
     PeakPoint ring[3];
     double peak[PEAK_KINDS][FLOORS_MAX];
 } PeakMonitor;
@@ -35,22 +37,16 @@ static inline PeakPoint *peak_monitor_next(PeakMonitor *p)
     return &p->ring[p->count % 3];
 }
 
-/* Largest magnitude of the parabola through (0, y0), (h1, y1), (h1 + h2, y2), |y1| not below |y0|, |y2|. */
-static inline double parabola_peak(double h1, double h2, double y0, double y1, double y2)
-{
-    const double d1 = (y1 - y0) / h1, d2 = (y2 - y1) / h2;
-    const double curvature = (d2 - d1) / (h1 + h2), slope = d1 + curvature * h1; /* y1 + slope x + curvature x^2 */
-    const double x = -slope / (2 * curvature);
-    return x > -h1 && x < h2 ? fabs(y1 + 0.5 * slope * x) : fabs(y1);
-}
-
+/* Raises peaks to the vertex of the parabola through a, b and c, where its slopes at a and c differ in sign. */
 static inline void peak_monitor_refine(PeakMonitor *p, const PeakPoint *a, const PeakPoint *b, const PeakPoint *c)
 {
+    const double h1 = b->t - a->t, h2 = c->t - b->t, span = h1 + h2, r1 = 1 / (h1 * span), r2 = 1 / (h2 * span);
     for (int kind = 0; kind < PEAK_KINDS; kind++)
         for (int j = 0; j < p->n; j++) {
-            const double ya = a->of[kind][j], yb = b->of[kind][j], yc = c->of[kind][j];
-            if (fabs(yb) >= fabs(ya) && fabs(yb) >= fabs(yc))
-                p->peak[kind][j] = fmax(p->peak[kind][j], parabola_peak(b->t - a->t, c->t - b->t, ya, yb, yc));
+            const double y = b->of[kind][j], d1 = (y - a->of[kind][j]) * r1, d2 = (c->of[kind][j] - y) * r2;
+            const double curvature = d2 - d1, slope = h2 * d1 + h1 * d2; /* y + slope x + curvature x^2 */
+            if ((slope - 2 * h1 * curvature) * (slope + 2 * h2 * curvature) < 0)
+                p->peak[kind][j] = fmax(p->peak[kind][j], fabs(y - 0.25 * slope * slope / curvature));
         }
 }
 
@@ -67,17 +63,16 @@ static inline void peak_monitor_add(PeakMonitor *p)
         for (int j = 0; j < p->n; j++)
             if (fabs(now->of[kind][j]) > p->peak[kind][j])
                 p->peak[kind][j] = fabs(now->of[kind][j]);
-    if (p->count > 1)
+    if (p->arc > 1)
         peak_monitor_refine(p, oldest, before, now);
     p->count++;
+    p->arc++;
 }
 
-/* A kink at the last point. */
-static inline void peak_monitor_break(PeakMonitor *p)
+/* Another arc begins: at the last point, or after it. */
+static inline void peak_monitor_break(PeakMonitor *p, int at_last)
 {
-    if (p->count > 1)
-        p->ring[0] = p->ring[(p->count - 1) % 3];
-    p->count = p->count > 0;
+    p->arc = at_last && p->count > 0;
 }
 
 static inline void peak_monitor_report(const PeakMonitor *p, SimResult *result)

@@ -427,6 +427,11 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
     worker->device = *device;
 }
 
+void sim_worker_until(SimWorker *worker, double seconds)
+{
+    worker->run.duration = fmin(worker->scene->run.duration, seconds);
+}
+
 /* The dashpot of the tuned mass: c = 2 zeta m w, its spring m w^2. */
 static void add_devices(SimWorker *w, const Design *d, double exponent)
 {

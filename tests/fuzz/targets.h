@@ -11,7 +11,7 @@
 
 void fuzz_settings(const uint8_t *data, size_t size);   /* a settings file */
 void fuzz_motion(const uint8_t *data, size_t size);     /* a ground motion of any kind, told by its content */
-void fuzz_instrument(const uint8_t *data, size_t size); /* the same with a gain: miniSEED, SAC, EVT; then processed */
+void fuzz_instrument(const uint8_t *data, size_t size); /* the same with a gain: miniSEED, SAC; then processed */
 void fuzz_archive(const uint8_t *data, size_t size);    /* the same, from zip, tar and what packs them */
 void fuzz_table(const uint8_t *data, size_t size);      /* CSV: numbers with and without a header, and designs */
 void fuzz_worker(const uint8_t *data, size_t size);     /* first line: a command; the rest: what a worker answers */

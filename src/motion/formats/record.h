@@ -62,7 +62,7 @@ typedef struct {
     int (*recognise)(const unsigned char bytes[], size_t n);
     Status (*read)(Record *r, const char *path, const char *bytes, size_t n, Err *err);
 } BinaryFormat;
-extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT, FORMAT_SIMCENTER;
+extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_SIMCENTER;
 
 /* Alphanumeric SAC. */
 int sac_text_is(Lines l);

@@ -61,7 +61,7 @@ int contacts_switch(Contacts *c, double t, const double q[], const double v[], c
 void contacts_settle(Contacts *c, const double w[]);
 
 /* Gives the monitor what the contacts did since the last call, by the trapezoidal rule, and the forces f_j (n) now.
- * Returns the floors that are in contact. By event only. */
+ * Returns the floors that are in contact. */
 FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
 
 /* By event: the forces f_j (n) at the state q, q', with those of the devices. */

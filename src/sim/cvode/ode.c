@@ -501,13 +501,12 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         else if (flag == ODE_ROOT)
             o->solver->found(o, found);
         from = to;
+        peak_monitor_break(&o->account.peaks, 1);
         if (sample_step(o, t_before, *t) || (o->options->sample && send_samples(o, *t)))
             return RUN_ENGINE_FAILED;
         o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
         if (!switch_flags(o, *t, &to, found))
             continue;
-        if (o->model->yields)
-            peak_monitor_break(&o->account.peaks);
         if (start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }

@@ -131,26 +131,46 @@ void fast_free(FastWork *work)
     free(work);
 }
 
-typedef struct {
-    const char *name;
-    FastKernel *run, *plain;
-} Kernel;
-
-/* The widest vectors that this processor has. */
-static Kernel best_kernel(void)
+static int processor_has(int set)
 {
 #ifdef __x86_64__
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-        return (Kernel){"avx512", fast_kernel_avx512, fast_plain_avx512};
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return (Kernel){"avx2", fast_kernel_avx2, fast_plain_avx2};
+    if (set == FAST_AVX512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512dq");
+    if (set == FAST_AVX2)
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #endif
-    return (Kernel){"base", fast_kernel_base, fast_plain_base};
+    return set == FAST_BASE;
+}
+
+/* Which sets are built, a bit each: the Makefile says it. */
+const FastKernels *fast_kernels(int set)
+{
+    static const FastKernels SETS[FAST_SETS] = {
+#if FAST_BUILT & 1
+        [FAST_BASE] = {"base", fast_kernel_base, fast_plain_base},
+#endif
+#if FAST_BUILT & 2
+        [FAST_AVX2] = {"avx2", fast_kernel_avx2, fast_plain_avx2},
+#endif
+#if FAST_BUILT & 4
+        [FAST_AVX512] = {"avx512", fast_kernel_avx2, fast_plain_avx512},
+#endif
+    };
+    return SETS[set].plain && processor_has(set) ? &SETS[set] : NULL;
+}
+
+static const FastKernels *best_kernels(void)
+{
+    int set = FAST_SETS - 1;
+    while (!fast_kernels(set))
+        set--;
+    return fast_kernels(set);
 }
 
 const char *fast_kernel_name(void)
 {
-    return best_kernel().name;
+    return best_kernels()->name;
 }
 
 FastTolerances fast_tolerances(Accuracy accuracy)
@@ -205,9 +225,9 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const
               const FastTolerances *tolerances, SimResult *result)
 {
     const unsigned mode = denormal_off();
-    const Kernel kernel = best_kernel();
+    const FastKernels *kernels = best_kernels();
     const int is_plain = !model->yields && model->n_devices == 0 && motion->n_force == 0;
-    (is_plain ? kernel.plain : kernel.run)(work, model, motion, options, tolerances, result);
+    (is_plain ? kernels->plain : kernels->run)(work, model, motion, options, tolerances, result);
     denormal_restore(mode);
 }
 

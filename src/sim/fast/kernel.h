@@ -214,5 +214,15 @@ typedef struct FastWork {
 typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
                         const FastTolerances *tolerances, SimResult *result);
 
-/* fast_plain_*: for models without storeys that yield and devices, and motions without forces on floors. */
-FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512, fast_plain_base, fast_plain_avx2, fast_plain_avx512;
+/* fast_plain_*: for models without storeys that yield and devices, and motions without forces on floors. They alone
+ * gain from the widest vectors. */
+FastKernel fast_kernel_base, fast_kernel_avx2, fast_plain_base, fast_plain_avx2, fast_plain_avx512;
+
+enum { FAST_BASE, FAST_AVX2, FAST_AVX512, FAST_SETS };
+typedef struct {
+    const char *name;
+    FastKernel *run, *plain;
+} FastKernels;
+
+/* Those of an instruction set; NULL: this processor or this build does not have it. */
+const FastKernels *fast_kernels(int set);
