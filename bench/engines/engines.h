@@ -12,7 +12,6 @@
     X(ARKODE_IMEX, arkode_imex, TOLERANCE_RELATIVE)                                                                    \
     X(ETDRK4, etdrk4, TOLERANCE_STEP)                                                                                  \
     X(NEWMARK, newmark, TOLERANCE_STEP)                                                                                \
-    X(CENTRAL, central, TOLERANCE_STEP)                                                                                \
     X(RADAU, radau, TOLERANCE_STEP)
 
 /* Continues Engine. */

@@ -1,9 +1,6 @@
-/* Newmark's family, mode by mode, contact forces by Newton:
+/* Newmark's average acceleration, mode by mode, contact forces by Newton:
  *
- *   q1 = q + h q' + h^2 ((1/2 - beta) a + beta a1),   q1' = q' + h (a + a1)/2,   a1 + 2 zeta w q1' + w^2 q1 = P1
- *
- *   newmark   beta = 1/4: average acceleration
- *   central   beta = 0: central differences; forces from q1 and the velocity predicted there */
+ *   q1 = q + h q' + h^2 (a + a1)/4,   q1' = q' + h (a + a1)/2,   a1 + 2 zeta w q1' + w^2 q1 = P1 */
 #include <string.h>
 
 #include "base/clones.h"
@@ -11,14 +8,15 @@
 #include "bench/engines/engines.h"
 #include "bench/engines/fixed_step.h"
 
+static const double BETA = 0.25;
+
 typedef struct {
-    double beta;
-    double D[MODES_MAX];                         /* 1 + zeta w h + w^2 beta h^2 */
+    double D[MODES_MAX];                         /* 1 + zeta w h + w^2 h^2 / 4 */
     double a[MODES_MAX];                         /* the scheme's acceleration at the start of the step */
     double q_free[MODES_MAX], v_free[MODES_MAX]; /* q*, v*: without a1 */
     double a_free[MODES_MAX];                    /* a1 without the contacts at the end of the step */
     int started;
-    Implicit contacts; /* unused by central */
+    Implicit contacts;
 } Newmark;
 
 static void prepare(const FixedStep *m, void *work)
@@ -28,14 +26,14 @@ static void prepare(const FixedStep *m, void *work)
     const double h = m->h;
     for (int i = 0; i < model->m; i++) {
         const double w = model->omega[i];
-        k->D[i] = 1 + model->zeta[i] * w * h + w * w * k->beta * h * h;
+        k->D[i] = 1 + model->zeta[i] * w * h + w * w * BETA * h * h;
     }
     for (int j = 0; j < k->contacts.N; j++)
         for (int l = 0; l < k->contacts.N; l++) {
             double sum = 0;
             for (int i = 0; i < model->m; i++)
                 sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + l] / k->D[i];
-            k->contacts.A[l * model->n + j] = k->beta * h * h * sum;
+            k->contacts.A[l * model->n + j] = BETA * h * h * sum;
             k->contacts.B[l * model->n + j] = 0.5 * h * sum;
         }
 }
@@ -47,7 +45,7 @@ CLONED static void predict(Newmark *k, const FixedStep *m, double a1)
     const double h = m->h;
     for (int i = 0; i < model->m; i++) {
         const double w = model->omega[i];
-        const double q = m->q[i] + h * m->v[i] + h * h * (0.5 - k->beta) * k->a[i];
+        const double q = m->q[i] + h * m->v[i] + h * h * (0.5 - BETA) * k->a[i];
         const double v = m->v[i] + 0.5 * h * k->a[i];
         k->q_free[i] = q;
         k->v_free[i] = v;
@@ -61,7 +59,7 @@ CLONED static void finish(Newmark *k, FixedStep *m, const double g[])
     const double h = m->h;
     for (int i = 0; i < m->model->m; i++) {
         k->a[i] = k->a_free[i] + g[i] / k->D[i];
-        m->q[i] = k->q_free[i] + h * h * k->beta * k->a[i];
+        m->q[i] = k->q_free[i] + h * h * BETA * k->a[i];
         m->v[i] = k->v_free[i] + 0.5 * h * k->a[i];
     }
 }
@@ -73,7 +71,7 @@ static void start(Newmark *k, const FixedStep *m, double a0)
     k->started = 1;
 }
 
-static int advance_implicit(FixedStep *m, double a0, double a1, void *work)
+static int advance(FixedStep *m, double a0, double a1, void *work)
 {
     Newmark *k = work;
     Implicit *x = &k->contacts;
@@ -84,7 +82,7 @@ static int advance_implicit(FixedStep *m, double a0, double a1, void *work)
     if (model->nc > 0) {
         double q[MODES_MAX], v[MODES_MAX];
         for (int i = 0; i < model->m; i++) {
-            q[i] = k->q_free[i] + m->h * m->h * k->beta * k->a_free[i];
+            q[i] = k->q_free[i] + m->h * m->h * BETA * k->a_free[i];
             v[i] = k->v_free[i] + 0.5 * m->h * k->a_free[i];
         }
         floors_from_modes(model, 0, model->m, q, w);
@@ -103,42 +101,14 @@ static int advance_implicit(FixedStep *m, double a0, double a1, void *work)
     return 1;
 }
 
-static int advance_central(FixedStep *m, double a0, double a1, void *work)
-{
-    Newmark *k = work;
-    double v[MODES_MAX], g[MODES_MAX];
-    start(k, m, a0);
-    predict(k, m, a1);
-    for (int i = 0; i < m->model->m; i++)
-        v[i] = m->v[i] + m->h * k->a[i];
-    fixed_step_forces(m, k->q_free, v, g);
-    finish(k, m, g);
-    return 1;
-}
-
-static Status run(const FixedStepMethod *method, double beta, const SimModel *model, const Motion *motion,
-                  const EngineOptions *options, SimResult *result, Err *err)
-{
-    Newmark k = {.beta = beta};
-    Status status = STATUS_OK;
-    if (beta > 0)
-        status = implicit_create(&k.contacts, model->n, 1, err);
-    if (status == STATUS_OK)
-        status = fixed_step_run(method, &k, model, motion, options, result);
-    implicit_free(&k.contacts);
-    return status;
-}
-
 Status engine_newmark(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                       Err *err)
 {
-    static const FixedStepMethod METHOD = {{5e-4, 1e-4, 2e-5}, 0.5, 0.5, prepare, advance_implicit};
-    return run(&METHOD, 0.25, model, motion, options, result, err);
-}
-
-Status engine_central(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
-                      Err *err)
-{
-    static const FixedStepMethod METHOD = {{1e-4, 5e-5, 1e-5}, 0.5, 0.5, prepare, advance_central};
-    return run(&METHOD, 0, model, motion, options, result, err);
+    static const FixedStepMethod METHOD = {{5e-4, 1e-4, 2e-5}, 0.5, 0.5, prepare, advance};
+    Newmark k = {0};
+    Status status = implicit_create(&k.contacts, model->n, 1, err);
+    if (status == STATUS_OK)
+        status = fixed_step_run(&METHOD, &k, model, motion, options, result);
+    implicit_free(&k.contacts);
+    return status;
 }
