@@ -70,8 +70,8 @@ static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    free(output_of("optimize configs/quick.ini --out @/run --max-evals 8 --set search.initial=8 --set "
-                   "search.population=8 --set search.polish=0 --set motion.stretch=1 --set sim.duration_s=8"));
+    free(output_of("optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 8 --set search.initial=8 --set "
+                   "search.population=8 --set search.polish=0 --set sim.duration_s=8"));
     return 0;
 }
 

@@ -608,7 +608,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     double stress = 0, j1 = 0;
     char arguments[800], command[800];
     expect(0, "",
-           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 24 --set search.population=8 --set search.initial=16 "
+           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 12 --set search.population=8 --set search.initial=8 "
            "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --record builtin:kobe-like "
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
@@ -646,7 +646,8 @@ TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS
            "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-           "search.polish=0 --set sim.duration_s=8 --set motion.records=builtin:sylmar-like,builtin:elcentro-like "
+           "search.polish=0 --set sim.duration_s=3 --record builtin:elcentro-like --set sim.accuracy=coarse --set "
+           "motion.records=builtin:sylmar-like,builtin:kobe-like "
            "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
     expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
     char *page = read_in_place("screened.html");
@@ -659,7 +660,8 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
 {
     char *said = output_of(
         "optimize configs/quick.ini " SIX_FLOORS "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-        "search.polish=0 --set sim.duration_s=20 --set design.variables=gaps,thickness,links --set "
+        "search.polish=0 --set sim.duration_s=4 --record builtin:elcentro-like --set "
+        "design.variables=gaps,thickness,links --set "
         "design.devices=link,none --set design.device_zones=2 --set design.gap_zones=1 --set design.link_zones=1 --set "
         "search.objectives=j1_m,cost --set 'design.prices=link=1 core_t=1' --out @/links");
     assert_non_null(strstr(said, "against no core: with links better in J1 displacement; worse in cost\n"));

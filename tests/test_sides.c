@@ -210,7 +210,7 @@ TEST(replicates_change_both_sides_together_only_where_they_are_one_variable)
     }
 }
 
-#define SHORT SIX_FLOORS "--set sim.duration_s=8 --set sim.accuracy=coarse "
+#define SHORT SIX_FLOORS "--record builtin:elcentro-like --set sim.duration_s=4 --set sim.accuracy=coarse "
 #define EACH  "--set design.gap_sides=each --set design.gap_zones=2 "
 
 TEST(every_command_follows_gaps_by_side)

@@ -166,7 +166,7 @@ TEST(a_design_is_simulated_the_same_by_any_variables)
 
 /* -- commands ------------------------------------------------------------------------------------------------------ */
 
-#define SHORT SIX_FLOORS "--set sim.duration_s=8 --set sim.accuracy=coarse "
+#define SHORT SIX_FLOORS "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 --set sim.accuracy=coarse "
 #define WIDE  "--set design.variables=gaps,thickness,bumper,side --set design.gap_zones=3 "
 
 static int make_run(void **state)
