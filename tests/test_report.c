@@ -365,6 +365,7 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
     Detail several, alone;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
     CHECK_OK(settings_put(&s, "sim.robust", "mean", &err), &err);
+    CHECK_OK(settings_put(&s, "sim.duration_s", "5", &err), &err);
     const double *x = tower.table.row[run_knee(&tower)].x;
     const DetailOptions options = {.floor = -1, .without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
@@ -609,7 +610,8 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     char arguments[800], command[800];
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS "--max-evals 12 --set search.population=8 --set search.initial=8 "
-           "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --record builtin:kobe-like "
+           "--set search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=4 --set sim.accuracy=coarse --record "
+           "builtin:kobe-like "
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
     expect(0, "", "report @/several --dossier @/several.html");

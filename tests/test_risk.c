@@ -82,7 +82,7 @@ TEST(a_study_minimises_and_limits_probabilities)
     char path[PATH_MAX];
     write_in_place("tower.ini", SIX_FLOORS_INI
                    "record = builtin:elcentro-like\nrecords = builtin:sylmar-like,builtin:suite-03,builtin:suite-04\n"
-                   "[sim]\nduration_s = 5\naccuracy = coarse\nrobust = cvar\n"
+                   "[sim]\nduration_s = 4\naccuracy = coarse\nrobust = cvar\n"
                    "[search]\nobjectives = p(drift_ratio>0.012), j3_g\nlimits = p(j1_m>0.1)<=0.75\n"
                    "initial = 8\npopulation = 8\nmax_evals = 12\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/tower.ini --out @/chance"));

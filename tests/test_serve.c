@@ -18,7 +18,7 @@ enum { ANSWER_MAX = 4 << 20 };
 static const double LATE_S = 12;
 #define SMALL                                                                                                          \
     "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set search.initial=40 "         \
-    "--threads 1 --record builtin:elcentro-like --set motion.stretch=1 --set sim.duration_s=6"
+    "--threads 1 --set sim.duration_s=28"
 
 typedef struct {
     pid_t pid; /* 0: this process */

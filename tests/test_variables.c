@@ -191,7 +191,6 @@ TEST(every_command_follows_the_variables_of_a_run)
         "polish @/run --design knee --evals 24",
         "building configs/quick.ini " WIDE "--design @/run:knee",
         "check configs/quick.ini " WIDE SHORT,
-        "report @/run --pictures @/pictures",
         "optimize configs/quick.ini --out @/again --max-evals 20 --set search.polish=0 --set search.start=@/run " WIDE
             SHORT,
         "report @/run",
