@@ -178,6 +178,7 @@ static void assert_same_designs(imtet_search *s, const Exercise *e, const Run *r
         assert_int_equal(ids[i], run->table.row[run->front[i]].id);
 }
 
+/* The run of `imtet optimize`, made once for all tests. */
 static void optimize(const Exercise *e, Run *run)
 {
     char name[64], command[256], path[PATH_MAX];
@@ -185,8 +186,9 @@ static void optimize(const Exercise *e, Run *run)
     snprintf(name, sizeof name, "%s.ini", e->name);
     write_in_place(name, e->ini);
     snprintf(command, sizeof command, "optimize @/%s.ini --out @/%s", e->name, e->name);
-    free(output_of(command));
-    CHECK_OK(run_read(run, path_of(e->name, path), &err), &err);
+    if (access(path_of(e->name, path), F_OK) != 0)
+        free(output_of(command));
+    CHECK_OK(run_read(run, path, &err), &err);
     assert_int_equal(run->table.n, e->n);
 }
 
@@ -209,10 +211,8 @@ TEST(told_in_any_order_saved_and_loaded_anywhere_they_are_the_same)
 {
     for (size_t k = 0; k < N_OF(EXERCISES); k++) {
         Run run;
-        char path[PATH_MAX];
-        Err err = {0};
-        CHECK_OK(run_read(&run, path_of(EXERCISES[k].name, path), &err), &err);
-        for (uint32_t seed = 0; seed < (SANITIZED ? 2 : 6); seed++) {
+        optimize(&EXERCISES[k], &run);
+        for (uint32_t seed = 0; seed < (SANITIZED ? 2 : 5); seed++) {
             Random dice = random_stream(seed, RANDOM_TEST, 0, 0);
             imtet_search *s = drive(&EXERCISES[k], 0, &dice);
             assert_same_designs(s, &EXERCISES[k], &run);

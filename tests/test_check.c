@@ -32,7 +32,7 @@ static void write_building(double k_factor, double m_factor, int top_first)
     write_in_place("six/K.csv", stiffness);
     write_in_place("six/M.csv", mass);
     write_in_place("six.ini", "[building]\nmodel = six\nheights_m = 3.5\n[core]\nwidth_m = 3\n"
-                              "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 1\n");
+                              "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 0.5\n");
 }
 
 /* The keys of the warnings, "a b c". */
@@ -546,7 +546,7 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
     mkdir(folder, 0777);
     write_in_place("tall/storeys.csv", storeys);
     snprintf(text, sizeof text,
-             "[building]\nmodel = %s\n[motion]\npga_g = 0.3\nstretch = 0.1\n[sim]\nduration_s = "
+             "[building]\nmodel = %s\n[motion]\npga_g = 0.3\nstretch = 0.05\n[sim]\nduration_s = "
              "1\n[search]\nobjectives = j1_m, j3_g\n"
              "population = 4\ninitial = 4\nmax_evals = 4\npolish = 0\nthreads = 1\n",
              folder);

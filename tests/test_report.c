@@ -610,7 +610,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     char arguments[800], command[800];
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS "--max-evals 12 --set search.population=8 --set search.initial=8 "
-           "--set search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=4 --set sim.accuracy=coarse --record "
+           "--set search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=3 --set sim.accuracy=coarse --record "
            "builtin:kobe-like "
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
