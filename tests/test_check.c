@@ -32,7 +32,7 @@ static void write_building(double k_factor, double m_factor, int top_first)
     write_in_place("six/K.csv", stiffness);
     write_in_place("six/M.csv", mass);
     write_in_place("six.ini", "[building]\nmodel = six\nheights_m = 3.5\n[core]\nwidth_m = 3\n"
-                              "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 0.5\n");
+                              "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 0.5\naccuracy = coarse\n");
 }
 
 /* The keys of the warnings, "a b c". */

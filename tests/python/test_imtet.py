@@ -283,7 +283,8 @@ class Simulating(unittest.TestCase):
 
     def test_fronts_of_runs_of_one_problem_are_merged_and_of_two_refused(self):
         def run(name, *more):
-            program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "40", "--threads", "1", *SHORT, *more)
+            program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "28", "--threads", "1", "--set", "search.initial=16",
+                    "--set", "search.population=12", "--set", "search.polish=0", *SHORT, *more)
             return os.path.join(PLACE, name)
         a, b, c = run("a"), run("b", "--seed", "2"), run("c", "--set", "motion.stretch=2")
         merged, of = imtet.merge_fronts(a, b)
