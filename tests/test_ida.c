@@ -64,14 +64,15 @@ TEST(a_failed_simulation_counts_as_infinite)
 
 /* ---- as a command ------------------------------------------------------------------------------------------------ */
 
-#define RANGE "evaluate @/run --design knee --record builtin:kobe-like --record builtin:sylmar-like --pga 0.1:0.1:0.3 "
+#define RANGE                                                                                                          \
+    "evaluate @/run --design knee --record builtin:elcentro-like --record builtin:sylmar-like --pga 0.1:0.1:0.3 "
 
 static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    free(output_of("optimize configs/quick.ini --out @/run --max-evals 8 --set search.initial=8 --set "
-                   "search.population=8 --set search.polish=0 --set motion.stretch=1 --set sim.duration_s=8"));
+    free(output_of("optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 8 --set search.initial=8 --set "
+                   "search.population=8 --set search.polish=0 --record builtin:elcentro-like --set sim.duration_s=4"));
     return 0;
 }
 
@@ -92,7 +93,7 @@ TEST(every_record_is_simulated_at_every_intensity)
     for (size_t i = 0; i < 6; i++) {
         char arguments[160];
         snprintf(arguments, sizeof arguments, "evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
-                 i < 3 ? "kobe-like" : "sylmar-like", i % 3 + 1);
+                 i < 3 ? "elcentro-like" : "sylmar-like", i % 3 + 1);
         json_t *one = json_of(arguments);
         assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
         static const char *const SCENES[] = {"with_core", "rigid", "no_core"};

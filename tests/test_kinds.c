@@ -140,8 +140,8 @@ TEST(a_value_that_is_sold_is_the_nearest_and_mutation_takes_another)
 /* Gaps of 5 mm, five plates; of a study whose designs would differ by less than that at its end. */
 TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
 {
-    write_in_place("steps.ini",
-                   "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 4\n[design]\n"
+    write_in_place("steps.ini", SIX_FLOORS_INI
+                   "[sim]\nduration_s = 4\n[design]\n"
                    "gap_zones = 2\nstep_gap_m = 0.005\nstep_thickness_m = 0.008, 0.01, 0.012, 0.015, 0.02\n"
                    "[search]\ninitial = 20\npopulation = 12\nmax_evals = 120\npolish = 0\n");
     free(output_of("optimize @/steps.ini --out @/steps --threads 1"));
@@ -170,26 +170,22 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
            "optimize @/steps.ini --out @/no --set 'design.step_thickness_m=0.02, 0.01'");
 }
 
-#if SANITIZED /* links and mass are tuned first, which takes a minute there */
-#define FINE "accuracy = coarse\n"
-#else
-#define FINE "accuracy = fine\n"
-#endif
-
 /* Stops, links or nothing in two zones, a tuned mass or none at the roof. */
 #define DEVICES                                                                                                        \
-    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[design]\nvariables = gaps, thickness, links, tuned_mass\n"    \
+    SIX_FLOORS_INI                                                                                                     \
+    "[design]\nvariables = gaps, thickness, links, tuned_mass\n"                                                       \
     "devices = gap, link, none\ngap_zones = 2\nlink_zones = 2\ndevice_zones = 2\nmass_hz = 0.05, 3\nmass_damping = "   \
     "0.01, 1\n[search]\npolish = 0\n"                                                                                  \
-    "objectives = j1_m, j2_m, j3_g\ninitial = 12\npopulation = 12\nmax_evals = 36\n[sim]\nduration_s = 8\n"
+    "objectives = j1_m, j2_m, j3_g\ninitial = 12\npopulation = 12\nmax_evals = 36\n[sim]\nduration_s = 8\naccuracy = " \
+    "coarse\n"
 
 TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends_below_them)
 {
     static const BaselineKind KIND[] = {BASELINE_LINKS, BASELINE_TMD};
-    Settings s = settings_of(DEVICES FINE, "unused");
+    Settings s = settings_of(DEVICES, "unused");
     Problem p;
     Err err = {0};
-    write_in_place("devices.ini", DEVICES FINE);
+    write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/devices"));
     Run run = run_of("devices");
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
@@ -210,7 +206,7 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
 
 TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill)
 {
-    write_in_place("devices.ini", SANITIZED ? DEVICES FINE : DEVICES);
+    write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/whole"));
     free(output_of("optimize @/devices.ini --out @/two --threads 2"));
     for (size_t least = 12; least < 24; least += 6) {

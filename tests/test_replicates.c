@@ -319,7 +319,8 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
     assert_close(out.sum[0].sd[MEASURE_J3], sd, 1e-12);
 }
 
-#define SHORT "--set sim.duration_s=25 --set sim.accuracy=coarse --set motion.record=builtin:sylmar-like "
+#define SHORT                                                                                                          \
+    "--set motion.stretch=1 --set sim.duration_s=6 --set sim.accuracy=coarse --set motion.record=builtin:sylmar-like "
 
 static void write_design(void)
 {

@@ -365,6 +365,7 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
     Detail several, alone;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
     CHECK_OK(settings_put(&s, "sim.robust", "mean", &err), &err);
+    CHECK_OK(settings_put(&s, "sim.duration_s", "5", &err), &err);
     const double *x = tower.table.row[run_knee(&tower)].x;
     const DetailOptions options = {.floor = -1, .without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
@@ -608,8 +609,9 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     double stress = 0, j1 = 0;
     char arguments[800], command[800];
     expect(0, "",
-           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 24 --set search.population=8 --set search.initial=16 "
-           "--set search.polish=0 --set sim.duration_s=8 --set sim.accuracy=coarse --record builtin:kobe-like "
+           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 12 --set search.population=8 --set search.initial=8 "
+           "--set search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=3 --set sim.accuracy=coarse --record "
+           "builtin:kobe-like "
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
     expect(0, "", "report @/several --dossier @/several.html");
@@ -646,7 +648,8 @@ TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS
            "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-           "search.polish=0 --set sim.duration_s=8 --set motion.records=builtin:sylmar-like,builtin:elcentro-like "
+           "search.polish=0 --set sim.duration_s=3 --record builtin:elcentro-like --set sim.accuracy=coarse --set "
+           "motion.records=builtin:sylmar-like,builtin:kobe-like "
            "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
     expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
     char *page = read_in_place("screened.html");
@@ -659,7 +662,8 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
 {
     char *said = output_of(
         "optimize configs/quick.ini " SIX_FLOORS "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-        "search.polish=0 --set sim.duration_s=20 --set design.variables=gaps,thickness,links --set "
+        "search.polish=0 --set sim.duration_s=4 --record builtin:elcentro-like --set "
+        "design.variables=gaps,thickness,links --set "
         "design.devices=link,none --set design.device_zones=2 --set design.gap_zones=1 --set design.link_zones=1 --set "
         "search.objectives=j1_m,cost --set 'design.prices=link=1 core_t=1' --out @/links");
     assert_non_null(strstr(said, "against no core: with links better in J1 displacement; worse in cost\n"));

@@ -81,10 +81,10 @@ TEST(a_study_minimises_and_limits_probabilities)
     Err err = {0};
     char path[PATH_MAX];
     write_in_place("tower.ini", SIX_FLOORS_INI
-                   "record = builtin:suite-01\nrecords = builtin:suite-02,builtin:suite-03,builtin:suite-04\n"
-                   "[sim]\nduration_s = 14\naccuracy = coarse\nrobust = cvar\n"
+                   "record = builtin:elcentro-like\nrecords = builtin:sylmar-like,builtin:suite-03,builtin:suite-04\n"
+                   "[sim]\nduration_s = 4\naccuracy = coarse\nrobust = cvar\n"
                    "[search]\nobjectives = p(drift_ratio>0.012), j3_g\nlimits = p(j1_m>0.1)<=0.75\n"
-                   "initial = 10\npopulation = 8\nmax_evals = 14\nthreads = 2\npolish = 0\n");
+                   "initial = 8\npopulation = 8\nmax_evals = 12\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/tower.ini --out @/chance"));
     CHECK_OK(run_read(&run, path_of("chance", path), &err), &err);
     const Schema *s = &run.schema;
@@ -398,7 +398,7 @@ static void expect_annual_losses(const json_t *o, const char *const scenes[4])
 /* What was counted is what the rows of the records have; the building alone answers in proportion to Sa. */
 TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere)
 {
-    write_in_place("three_list.txt", "builtin:suite-01\nbuiltin:suite-02\nbuiltin:suite-03\n");
+    write_in_place("three_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\nbuiltin:suite-03\n");
     write_in_place("hazard.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.01\n1,0.0001\n");
     json_t *o = json_of(CURVES "--hazard @/hazard.csv --json"), *run;
     static const char *const SCENES[] = {"with_core", "rigid", "no_core", "links"};
@@ -464,7 +464,7 @@ static void expect_alone(const char *words, const char *range, const char *limit
 
 TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 {
-    write_in_place("two_list.txt", "builtin:suite-01\nbuiltin:suite-02\n");
+    write_in_place("two_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\n");
     json_t *o = json_of(ON_TWO "--sa 0.1 --json");
     const json_t *records = json_object_get(o, "records");
     double sum = 0; /* one of two exceeds the half of it at 0.1 g */
@@ -489,7 +489,7 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     const double T = 1 / json_number_value(json_array_get(hz, 0));
     Motion m;
     Err err = {0};
-    CHECK_OK(motion_load(&m, "builtin:suite-01", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_load(&m, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     double at = 0;
     spectrum_psa(&m, 0.05, 1, &T, &at);
     assert_close(number(json_array_get(json_object_get(o, "records"), 0), "scale"), 0.2 * 9.81 / at, 1e-6);
@@ -530,18 +530,18 @@ TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_o
 
 #define OF_YEARS                                                                                                       \
     "--set search.objectives=annual_loss,j3_g --set sim.robust=mean --set motion.pga_g=0 "                             \
-    "--set 'motion.record=builtin:suite-01 factor=0.5 rate=0.02' "
+    "--set 'motion.record=builtin:elcentro-like factor=0.5 rate=0.02' "
 #define YEARS "@/tower.ini " OF_YEARS "--set motion.records=@/year_list.txt "
 
 TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
 {
-    static const char *const SOURCE[] = {"builtin:suite-01 factor=0.5", "builtin:suite-01 factor=1.5",
-                                         "builtin:suite-03"};
+    static const char *const SOURCE[] = {"builtin:elcentro-like factor=0.5", "builtin:elcentro-like factor=1.5",
+                                         "builtin:sylmar-like"};
     static const double RATE[] = {0.02, 0.003, 0.0007};
     double sum = 0;
     char command[400];
-    write_in_place("year_list.txt", "builtin:suite-01 factor=0.5 rate=0.02\n# rarer\n"
-                                    "builtin:suite-01 factor=1.5 rate=0.003\nbuiltin:suite-03 rate=7e-4\n");
+    write_in_place("year_list.txt", "builtin:elcentro-like factor=0.5 rate=0.02\n# rarer\n"
+                                    "builtin:elcentro-like factor=1.5 rate=0.003\nbuiltin:sylmar-like rate=7e-4\n");
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {

@@ -14,13 +14,22 @@
 #include "serve/watch.h"
 
 enum { ANSWER_MAX = 4 << 20 };
-/* Without a browser a shorter motion does. */
 /* Below the 15 s after which the server closes a connection that says nothing. */
 static const double LATE_S = 12;
-#define SMALL_RUN                                                                                                      \
+#define SMALL                                                                                                          \
     "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set search.initial=40 "         \
-    "--threads 1"
-static const char *const SMALL = SANITIZED ? SMALL_RUN " --set sim.duration_s=15" : SMALL_RUN;
+    "--threads 1 "
+
+static int has_browser(void)
+{
+    return !SANITIZED && system("command -v chromium >/dev/null && command -v node >/dev/null") == 0;
+}
+
+/* Without a browser a shorter motion does. */
+static const char *duration(void)
+{
+    return has_browser() ? "" : "--set sim.duration_s=15 ";
+}
 
 typedef struct {
     pid_t pid; /* 0: this process */
@@ -589,25 +598,30 @@ TEST(the_page_is_the_report_with_live_parts)
 
 /* -- the run ------------------------------------------------------------------------------------------------------- */
 
+/* The run is halted until every page has been told of it. */
 TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
 {
-    char text[256], path[PATH_MAX], begun[PATH_MAX + 16];
+    char text[256], path[PATH_MAX], begun[PATH_MAX + 16], byte;
     int fd[10];
     char *words[] = {"sh", "-c", NULL, NULL};
-    assert_less(
-        0, asprintf(&words[2], "'%s' %s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), SMALL, place.folder));
+    assert_less(0, asprintf(&words[2], "exec '%s' " SMALL "%s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"),
+                            duration(), place.folder));
     const Served before = server;
     pid_t pid;
     assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
     snprintf(begun, sizeof begun, "%s/settings.ini", path_of("watched", path));
-    for (int i = 0; i < 600 && access(begun, F_OK) != 0; i++)
-        rest(0.05);
+    for (int i = 0; i < 6000 && access(begun, F_OK) != 0; i++)
+        rest(0.01);
+    kill(pid, SIGSTOP);
     serve("watched");
     snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
     for (int i = 0; i < 10; i++) {
         fd[i] = dial();
         say(fd[i], text);
     }
+    for (int i = 0; i < 10; i++)
+        assert_int_equal(recv(fd[i], &byte, 1, MSG_PEEK), 1);
+    kill(pid, SIGCONT);
     int status = 0;
     while (waitpid(pid, &status, WNOHANG) == 0) {
         free(ask("GET", "/%T/0/", "", ""));
@@ -861,15 +875,13 @@ TEST(ctrl_c_ends_it_while_pages_look_on)
     serve("runs");
 }
 
-/* Each takes a second or two, and pages that wait for them have gone. */
+/* Each takes a while, and pages that wait for them have gone. */
 TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
 {
     enum { QUESTIONS = 8 };
     const Served before = server;
-    if (SANITIZED)
-        skip(); /* a simulation of seconds takes a minute */
-    write_in_place("long.ini", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 800\n[search]\n"
-                               "initial = 4\npopulation = 4\nmax_evals = 400\nthreads = 1\n");
+    write_in_place("long.ini", SIX_FLOORS_INI "stretch = 300\n[search]\n"
+                                              "initial = 4\npopulation = 4\nmax_evals = 400\nthreads = 1\n");
     const pid_t pid = start("long.ini", "long/run");
     while (finished_in("long/run") < 4)
         rest(0.05);
@@ -915,9 +927,7 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
 TEST(a_browser_follows_a_run_and_asks_what_if)
 {
     char command[1024];
-    if (SANITIZED)
-        skip(); /* the same page as without */
-    if (system("command -v chromium >/dev/null && command -v node >/dev/null") != 0) {
+    if (!has_browser()) { /* the page is the same with sanitizers */
         print_message("chromium or node is not installed: the page is not tried in a browser (make setup-browser)\n");
         skip();
     }
@@ -942,7 +952,7 @@ static int begin(void **state)
         "--set sim.uncertain=restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
         "motion.factor=0.5"};
     for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {
-        run(&said, "%s %s", SMALL, RUNS[i]);
+        run(&said, SMALL "%s %s", duration(), RUNS[i]);
         if (said.code != 0)
             print_error("%s", said.err);
         forget(&said);

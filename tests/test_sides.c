@@ -210,13 +210,13 @@ TEST(replicates_change_both_sides_together_only_where_they_are_one_variable)
     }
 }
 
-#define SHORT SIX_FLOORS "--set sim.duration_s=8 --set sim.accuracy=coarse "
-#define EACH  "--set design.gap_sides=each --set design.gap_zones=2 "
+#define SHORT SIX_FLOORS "--record builtin:elcentro-like --set sim.duration_s=4 --set sim.accuracy=coarse "
+#define EACH  "--set design.gap_sides=each --set design.gap_zones=2 --set design.variables=gaps,thickness,bumper,side "
 
 TEST(every_command_follows_gaps_by_side)
 {
-    static const char HEADER[] =
-        "id,gap_left_zone_1_m,gap_left_zone_2_m,gap_right_zone_1_m,gap_right_zone_2_m,t_base_m,t_top_m,j1_m,";
+    static const char HEADER[] = "id,gap_left_zone_1_m,gap_left_zone_2_m,gap_right_zone_1_m,gap_right_zone_2_m,t_base_"
+                                 "m,t_top_m,bumper_log10_n_m,side_m,j1_m,";
     static const char *const COMMANDS[] = {
         "simulate configs/quick.ini " SHORT EACH "--json --design @/run:knee",
         "simulate configs/quick.ini " SHORT EACH "--replicates 2 --design @/run:knee",

@@ -16,7 +16,7 @@ static int make_run(void **state)
         return 1;
     write_in_place(
         "s.ini",
-        "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 12\n"
+        "[motion]\nrecord = builtin:elcentro-like\npga_g = 0.3\n[sim]\nduration_s = 4\n"
         "accuracy = coarse\n[search]\ninitial = 20\npopulation = 12\nmax_evals = 40\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/s.ini --out @/run"));
     Err err = {0};

@@ -16,14 +16,24 @@ static double period(int i)
     return SUITE_SHORTEST_S * pow(SUITE_LONGEST_S / SUITE_SHORTEST_S, (double)i / (PERIODS - 1));
 }
 
-static Motion motion_of(int i)
+static Motion motion[SUITE_MOTIONS]; /* made once for all tests */
+
+static int make_suite(void **state)
 {
-    Motion m;
     Err err = {0};
     char source[OPTION_TEXT_MAX];
-    snprintf(source, sizeof source, "builtin:suite-%02d", i + 1);
-    CHECK_OK(motion_load(&m, source, UNIT_FROM_FILE, &err), &err);
-    return m;
+    for (int i = 0; i < SUITE_MOTIONS; i++) {
+        snprintf(source, sizeof source, "builtin:suite-%02d", i + 1);
+        CHECK_OK(motion_load(&motion[i], source, UNIT_FROM_FILE, &err), &err);
+    }
+    return make_place(state);
+}
+
+static int end_suite(void **state)
+{
+    for (int i = 0; i < SUITE_MOTIONS; i++)
+        motion_free(&motion[i]);
+    return clear_place(state);
 }
 
 TEST(the_mean_spectrum_of_the_suite_is_within_a_tenth_of_the_code_spectrum_and_its_records_differ)
@@ -35,14 +45,12 @@ TEST(the_mean_spectrum_of_the_suite_is_within_a_tenth_of_the_code_spectrum_and_i
     for (int k = 0; k < PERIODS; k++)
         T[k] = period(k);
     for (int i = 0; i < SUITE_MOTIONS; i++) {
-        Motion m = motion_of(i);
-        spectrum_psa(&m, 0.05, PERIODS, T, psa);
+        spectrum_psa(&motion[i], 0.05, PERIODS, T, psa);
         for (int k = 0; k < PERIODS; k++) {
             mean[k] += psa[k] / SUITE_MOTIONS;
             log_sum[k] += log(psa[k]) / SUITE_MOTIONS;
             log_squares[k] += log(psa[k]) * log(psa[k]) / SUITE_MOTIONS;
         }
-        motion_free(&m);
     }
     for (int k = 0; k < PERIODS; k++) {
         assert_close(mean[k], target_psa(&code, T[k]), 0.1);
@@ -56,18 +64,17 @@ TEST(the_ground_of_the_suite_ends_at_rest_where_it_began_and_no_two_motions_are_
 {
     uint64_t hash[SUITE_MOTIONS];
     for (int i = 0; i < SUITE_MOTIONS; i++) {
-        Motion m = motion_of(i);
+        const Motion *m = &motion[i];
         MotionFigures f;
-        double *v = calloc(3 * m.n, sizeof *v);
-        motion_figures(&m, &f);
-        motion_histories(&m, v, v + m.n, v + 2 * m.n);
-        assert_less(fabs(v[m.n - 1]), 1e-6 * f.pgv_m_s);
-        assert_less(fabs(v[2 * m.n - 1]), 1e-4 * f.pgd_m); /* samples are whole millionths */
-        hash[i] = m.file_hash;
+        double *v = calloc(3 * m->n, sizeof *v);
+        motion_figures(m, &f);
+        motion_histories(m, v, v + m->n, v + 2 * m->n);
+        assert_less(fabs(v[m->n - 1]), 1e-6 * f.pgv_m_s);
+        assert_less(fabs(v[2 * m->n - 1]), 1e-4 * f.pgd_m); /* samples are whole millionths */
+        hash[i] = m->file_hash;
         for (int j = 0; j < i; j++)
             assert_true(hash[j] != hash[i]);
         free(v);
-        motion_free(&m);
     }
 }
 
@@ -193,17 +200,17 @@ TEST(what_is_wrong_in_a_suite_is_said_with_its_file_and_line)
 
 TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_list)
 {
-    write_in_place("study_list.txt", "builtin:suite-02\nbuiltin:suite-03 factor=1.5\n");
+    write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.5\n");
     free(output_of("optimize configs/quick.ini " SIX_FLOORS
-                   "--set motion.record=builtin:suite-01 --set sim.duration_s=12 "
+                   "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 "
                    "--set motion.pga_g=0 --set motion.records=@/study_list.txt --set sim.accuracy=coarse --set "
-                   "search.max_evals=10 "
+                   "search.max_evals=4 --set search.initial=4 --set search.population=4 "
                    "--set search.polish=0 --out @/run"));
     json_t *o = json_of("evaluate @/run --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 3);
     json_decref(o);
-    write_in_place("study_list.txt", "builtin:suite-02\nbuiltin:suite-03 factor=1.6\n");
+    write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.6\n");
     expect(65, "does not hold what it held for the run", "evaluate @/run --design knee --json");
 }
 
-SUITE(make_place, clear_place)
+SUITE(make_suite, end_suite)

@@ -21,6 +21,7 @@ PLACE, PROGRAM = os.path.abspath(sys.argv.pop(1)), os.environ["IMTET"]
 SETTINGS = {"initial": 16, "population": 12, "threads": 1}
 SIX = {"building.model": os.path.join(ROOT, "configs/neighbours/tower"), "core.width_m": 5, "design.gap_m": "0.001,0.05",
        "motion.pga_g": 0.3}
+SHORT = [w for k, v in {**SIX, "motion.record": "builtin:elcentro-like", "sim.duration_s": 8}.items() for w in ("--set", f"{k}={v}")]
 
 
 def f(x):
@@ -30,7 +31,7 @@ def f(x):
 
 
 def search(**more):
-    return imtet.Search([0] * 4, [1] * 4, 2, evaluations=90, **{**SETTINGS, **more})
+    return imtet.Search([0] * 4, [1] * 4, 2, evaluations=60, **{**SETTINGS, **more})
 
 
 def drive(s, n=8, after=None):
@@ -74,7 +75,7 @@ class Searching(unittest.TestCase):
                       "    print(json.dumps({'id': r['id'], **({'error': 'no'} if 0.30 < x[0] < 0.32 else a)}), flush=True)\n")
         with open(os.path.join(PLACE, "w.ini"), "w") as out:
             out.write(f"[problem]\nkind = external\ncommand = python3 {worker}\nvariables = 4\nobjectives = 2\n[search]\n"
-                      "initial = 16\npopulation = 12\nmax_evals = 90\nthreads = 1\n")
+                      "initial = 16\npopulation = 12\nmax_evals = 60\nthreads = 1\n")
         program("optimize", os.path.join(PLACE, "w.ini"), "--out", os.path.join(PLACE, "w"))
         run = imtet.open_run(os.path.join(PLACE, "w"))
         F, X, _ = drive(search()).told()
@@ -260,8 +261,8 @@ class Simulating(unittest.TestCase):
         self.assertGreater(gained, 1000)
 
     def test_a_run_has_its_front_and_simulates_its_designs(self):
-        out, x = os.path.join(PLACE, "six"), [w for k, v in SIX.items() for w in ("--set", f"{k}={v}")]
-        program("optimize", "configs/quick.ini", "--out", out, "--max-evals", "60", "--threads", "1", *x, "--set", "motion.stretch=1")
+        out = os.path.join(PLACE, "six")
+        program("optimize", "configs/quick.ini", "--out", out, "--max-evals", "60", "--threads", "1", *SHORT, "--set", "motion.stretch=1")
         run = imtet.open_run(out)
         written = np.genfromtxt(os.path.join(out, "front.csv"), delimiter=",", names=True)
         self.assertEqual(len(run.front), len(written))
@@ -282,8 +283,8 @@ class Simulating(unittest.TestCase):
 
     def test_fronts_of_runs_of_one_problem_are_merged_and_of_two_refused(self):
         def run(name, *more):
-            program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "40", "--threads", "1",
-                    *[w for k, v in SIX.items() for w in ("--set", f"{k}={v}")], *more)
+            program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "28", "--threads", "1", "--set", "search.initial=16",
+                    "--set", "search.population=12", "--set", "search.polish=0", *SHORT, *more)
             return os.path.join(PLACE, name)
         a, b, c = run("a"), run("b", "--seed", "2"), run("c", "--set", "motion.stretch=2")
         merged, of = imtet.merge_fronts(a, b)

@@ -108,7 +108,7 @@ async function takePictures() {
 
 const tried = {
   async "a page shows a generation while its run goes on, later ones in their order, and the last"() {
-    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "150", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
+    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "150", "--set", "sim.duration_s=28", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
     live.stdout.resume();
     const log = join(root, "live", "log.jsonl"), seen = () => (existsSync(log) ? readFileSync(log, "utf8").split("\n").filter((l) => l.startsWith("{") && l.endsWith("}")).map((l) => JSON.parse(l)).filter((e) => e.event === "generation").map((e) => e.number) : []);
     while (!seen().length) await pause(10);
