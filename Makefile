@@ -42,14 +42,17 @@ FAST.asan    := -O2
 FLAGS.sim    := $(FAST.$(MODE))
 FLAGS.rbf    := $(FAST.$(MODE)) $(NO_TRAPS)
 FLAGS.kernel := $(FLAGS.sim) $(NO_TRAPS) -Wno-psabi
-# Kernels for narrower vectors than this processor's are run by one case of `imtet-bench stability` there: the compiler takes
-# half as long over them.
-WIDEST       := $(lastword base $(filter avx2 avx512dq,$(shell grep -m1 ^flags /proc/cpuinfo)))
-NARROW.asan  := -O1
-FLAGS.base   := -DFAST_LANES=2 $(if $(filter-out base,$(WIDEST)),$(NARROW.$(MODE)))
-FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3 -mtune=haswell $(if $(filter avx512dq,$(WIDEST)),$(NARROW.$(MODE)))
+FLAGS.base   := -DFAST_LANES=2
+FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3 -mtune=haswell
 FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mtune=skylake-avx512 -mprefer-vector-width=512
 KERNELS      := base $(if $(filter x86_64,$(shell uname -m)),avx2 avx512)
+# Sanitized there is that of this processor alone, under the names of all: kernels are half of a sanitized build.
+ifeq ($(MODE),asan)
+WIDEST       := $(lastword base $(patsubst avx512dq,avx512,$(filter avx2 avx512dq,$(shell grep -m1 ^flags /proc/cpuinfo))))
+NARROWER     := $(filter-out $(WIDEST),$(KERNELS))
+LDFLAGS      += $(foreach kind,kernel plain,$(NARROWER:%=-Wl,--defsym=fast_$(kind)_%=fast_$(kind)_$(WIDEST)))
+KERNELS      := $(WIDEST)
+endif
 KERNEL_OBJ   := $(foreach kind,kernel plain,$(KERNELS:%=$(BUILD)/src/sim/fast/$(kind)_%.o))
 
 flags_of   = $(if $(2),; $(1): $(filter-out -W% -ffile-prefix-map=%,$(2)))
@@ -186,12 +189,13 @@ include bench/bench.mk src/mpi/mpi.mk
 
 # Every file of tests runs once, where it proves most: what reads foreign bytes, keeps runs, or talks to others under
 # AddressSanitizer and UBSan, on short runs; physics, search and numbers as users run them, where the sanitizers would find
-# little and take three times as long. Longest first.
-NAMES.asan    := store_faults cli serve disk suite async torture workers
+# little and take three times as long. The library's is run in both: what is installed is not sanitized. Longest first.
+NAMES.asan    := store_faults serve store torture disk async damage workers cli resume asking shared moved run_read manual \
+                 import motion_formats motion queue library safety asked job_limit settings table fuzz_corpus
 NAMES.release := check
-OTHERS        := $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
+OTHERS        := library $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
 NAMES.release += $(OTHERS)
-NAMES         := $(NAMES.release) $(NAMES.asan)
+NAMES         := $(sort $(NAMES.release) $(NAMES.asan))
 # Other modes, as coverage, have all of them.
 IN_MODE       := $(or $(T),$(NAMES.$(MODE)),$(NAMES))
 
@@ -207,11 +211,13 @@ WRAPPED.shared       := statfs
 PARTS.fuzz_corpus    := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
 
 # $(call test_program,NAMES): links these files of tests.
+# Of what runs sanitized nothing needs the bench.
+bench_of     = $(if $(filter-out $(NAMES.asan),$(1)),$(BENCH_LIB))
 test_objects = $(BUILD)/tests/main.o $(foreach name,$(1),$(BUILD)/tests/test_$(name).o $(PARTS.$(name)))
 test_link    = $(Q)$(CC) $(LDFLAGS) $(GOLD) $(foreach name,$(1),$(WRAPPED.$(name):%=-Wl,--wrap=%)) -o $@ $(call test_objects,$(1)) \
-               $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
+               $(call bench_of,$(1)) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
 TEST_PROGRAM := $(BUILD)/tests/$(if $(T),some,all)
-$(TEST_PROGRAM): $(call test_objects,$(IN_MODE)) $(BENCH_LIB) $(LIB) $(if $(T),.FORCE)
+$(TEST_PROGRAM): $(call test_objects,$(IN_MODE)) $(call bench_of,$(IN_MODE)) $(LIB) $(if $(T),.FORCE)
 	@echo '  LD  $@'
 	$(call test_link,$(IN_MODE))
 
@@ -232,6 +238,8 @@ JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) $(C
 ifeq ($(MODE)$(T),release)
 BESIDE.release := $(BENCH)
 JOBS_OF += $(STABILITY:%='release stability_% $(BENCH) stability --quick --seconds 3 --engine %') 'release laws $(BENCH) laws'
+else ifeq ($(MODE)$(T),asan)
+JOBS_OF += 'asan short-run scripts/short-run $(PROGRAM)'
 endif
 
 tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one

@@ -15,8 +15,8 @@ typedef struct {
 static const Prey PREYS[] = {
     {"textbook", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\nnoise = 0.02\n"
                  "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
-    {"tower", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 8\n"
-              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
+    {"tower", SIX_FLOORS_INI "[sim]\nduration_s = 8\n"
+                             "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
     /* designs see one of four records first; objectives with probabilities */
     {"race", "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"
              "[design]\ngap_m = 0.001, 0.05\n[motion]\nrecord = builtin:suite-01\n"
