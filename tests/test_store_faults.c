@@ -137,6 +137,13 @@ static void remove_in_place(const char *name)
 
 /* -- a study ------------------------------------------------------------------------------------------------------- */
 
+static Settings short_textbook(const char *out)
+{
+    Settings s = settings_of(TEXTBOOK, out);
+    s.search.max_evals = 28;
+    return s;
+}
+
 static Status study(const Settings *s, Err *err)
 {
     StudySummary summary;
@@ -162,7 +169,7 @@ static void fail_once(Kind kind, long at, const char *front)
 {
     Err err = {0};
     remove_in_place("faulty");
-    const Settings s = settings_of(TEXTBOOK, "faulty");
+    const Settings s = short_textbook("faulty");
     if (at % 2 == 0)
         run_half(&s);
     arm(kind, at, SQLITE_IOERR);
@@ -184,7 +191,7 @@ TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
     Err err = {0};
     const char *wanted = getenv("FAULTS");
     const long most = wanted ? strtol(wanted, NULL, 10) : SOME;
-    const Settings s = settings_of(TEXTBOOK, "whole");
+    const Settings s = short_textbook("whole");
     long n[N_KINDS];
     arm(0, 0, SQLITE_OK);
     CHECK_OK(study(&s, &err), &err);

@@ -171,8 +171,8 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
 TEST(processes_of_their_own_change_no_byte)
 {
     write_in_place("isolated.ini", ISOLATED);
-    free(output_of("optimize @/isolated.ini --out @/apart"));
-    free(output_of("optimize @/isolated.ini --out @/here --set run.isolate=no --threads 1"));
+    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/apart"));
+    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/here --set run.isolate=no --threads 1"));
     char *apart = read_in_place("apart/front.csv"), *here = read_in_place("here/front.csv");
     assert_string_equal(apart, here);
     free(apart);
