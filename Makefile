@@ -210,9 +210,9 @@ WRAPPED.store_faults := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_ope
 WRAPPED.shared       := statfs
 PARTS.fuzz_corpus    := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
 
-# $(call test_program,NAMES): links these files of tests.
 # Of what runs sanitized nothing needs the bench.
 bench_of     = $(if $(filter-out $(NAMES.asan),$(1)),$(BENCH_LIB))
+# $(call test_link,NAMES): links these files of tests.
 test_objects = $(BUILD)/tests/main.o $(foreach name,$(1),$(BUILD)/tests/test_$(name).o $(PARTS.$(name)))
 test_link    = $(Q)$(CC) $(LDFLAGS) $(GOLD) $(foreach name,$(1),$(WRAPPED.$(name):%=-Wl,--wrap=%)) -o $@ $(call test_objects,$(1)) \
                $(call bench_of,$(1)) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
