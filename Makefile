@@ -192,12 +192,13 @@ include bench/bench.mk src/mpi/mpi.mk
 
 # Every file of tests runs once, where it proves most: what reads foreign bytes, keeps runs, or talks to others under
 # AddressSanitizer and UBSan, on short runs; physics, search and numbers as users run them, where the sanitizers would find
-# little and take three times as long. Longest first.
-NAMES.asan    := store_faults cli serve disk suite async torture workers
-NAMES.release := check
-OTHERS        := $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
+# little and take three times as long. The library's is run in both: what is installed is not sanitized. Longest first.
+NAMES.asan    := store_faults workers cli serve store asking damage disk async shared moved run_read manual \
+                 import motion_formats motion queue library safety asked job_limit settings table fuzz_corpus
+NAMES.release := check resume torture
+OTHERS        := library $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
 NAMES.release += $(OTHERS)
-NAMES         := $(NAMES.release) $(NAMES.asan)
+NAMES         := $(sort $(NAMES.release) $(NAMES.asan))
 # Other modes, as coverage, have all of them.
 IN_MODE       := $(or $(T),$(NAMES.$(MODE)),$(NAMES))
 
@@ -212,12 +213,14 @@ WRAPPED.store_faults := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_ope
 WRAPPED.shared       := statfs
 PARTS.fuzz_corpus    := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
 
-# $(call test_program,NAMES): links these files of tests.
+# Of what runs sanitized nothing needs the bench.
+bench_of     = $(if $(filter-out $(NAMES.asan),$(1)),$(BENCH_LIB))
+# $(call test_link,NAMES): links these files of tests.
 test_objects = $(BUILD)/tests/main.o $(foreach name,$(1),$(BUILD)/tests/test_$(name).o $(PARTS.$(name)))
 test_link    = $(Q)$(CC) $(LDFLAGS) $(GOLD) $(foreach name,$(1),$(WRAPPED.$(name):%=-Wl,--wrap=%)) -o $@ $(call test_objects,$(1)) \
-               $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
+               $(call bench_of,$(1)) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
 TEST_PROGRAM := $(BUILD)/tests/$(if $(T),some,all)
-$(TEST_PROGRAM): $(call test_objects,$(IN_MODE)) $(BENCH_LIB) $(LIB) $(if $(T),.FORCE)
+$(TEST_PROGRAM): $(call test_objects,$(IN_MODE)) $(call bench_of,$(IN_MODE)) $(LIB) $(if $(T),.FORCE)
 	@echo '  LD  $@'
 	$(call test_link,$(IN_MODE))
 
@@ -238,6 +241,8 @@ JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) $(C
 ifeq ($(MODE)$(T),release)
 BESIDE.release := $(BENCH)
 JOBS_OF += $(STABILITY:%='release stability_% $(BENCH) stability --quick --seconds 3 --engine %') 'release laws $(BENCH) laws'
+else ifeq ($(MODE)$(T),asan)
+JOBS_OF += 'asan short-run scripts/short-run $(PROGRAM)'
 endif
 
 tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one

@@ -191,8 +191,8 @@ static inline int clear_place(void **state)
 
 /* Every simulation in a process of its own. */
 static const char ISOLATED[] =
-    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\nstretch = 3.1\n[sim]\nduration_s = 20\n"
-    "[search]\nmax_evals = 80\npolish = 0\nthreads = 2\nfailures_max = 0\n[run]\nisolate = yes\n";
+    SIX_FLOORS_INI "[sim]\nduration_s = 20\n"
+                   "[search]\nmax_evals = 80\npolish = 0\nthreads = 2\nfailures_max = 0\n[run]\nisolate = yes\n";
 
 /* A process that simulates for `parent` is killed; 0: none does just now. */
 static inline int shoot_child_of(pid_t parent)

@@ -567,4 +567,26 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
     run_free(&run);
 }
 
+/* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
+TEST(this_build_gives_the_stored_answers)
+{
+    json_t *all = json_of("check --self --json"), *check;
+    size_t i, n_zero = 0;
+    assert_true(json_is_true(json_object_get(all, "trusted")));
+    assert_less(30, json_array_size(json_object_get(all, "checks")));
+    json_array_foreach(json_object_get(all, "checks"), i, check)
+    {
+        const double stored = number(check, "stored"), tolerance = number(check, "tolerance");
+        assert_true(tolerance > 0 && tolerance < 1);
+        assert_at_most(fabs(number(check, "value") - stored), tolerance * fabs(stored));
+        n_zero += stored == 0;
+    }
+    assert_int_equal(n_zero, 2); /* the core of a building without one */
+    json_decref(all);
+    char *line = output_of("check --self");
+    assert_int_equal(strncmp(line, "this build can be trusted: ", 27), 0);
+    assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
+    free(line);
+}
+
 SUITE(prepare, clear_place)

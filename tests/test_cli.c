@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -58,30 +57,6 @@ TEST(every_command_explains_itself_with_an_example_first)
         free(same[i]);
     }
     free(version);
-}
-
-/* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
-TEST(this_build_gives_the_stored_answers)
-{
-    json_t *all = json_of("check --self --json"), *check;
-    size_t i, n_zero = 0;
-    assert_true(json_is_true(json_object_get(all, "trusted")));
-    assert_less(30, json_array_size(json_object_get(all, "checks")));
-    json_array_foreach(json_object_get(all, "checks"), i, check)
-    {
-        const double stored = number(check, "stored"), tolerance = number(check, "tolerance");
-        assert_true(tolerance > 0 && tolerance < 1);
-        assert_at_most(fabs(number(check, "value") - stored), tolerance * fabs(stored));
-        n_zero += stored == 0;
-    }
-    assert_int_equal(n_zero, 2); /* the core of a building without one */
-    json_decref(all);
-    if (SANITIZED) /* the same in words */
-        return;
-    char *line = output_of("check --self");
-    assert_int_equal(strncmp(line, "this build can be trusted: ", 27), 0);
-    assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
-    free(line);
 }
 
 TEST(a_misunderstood_command_line_ends_with_2_and_a_suggestion)
@@ -289,24 +264,6 @@ TEST(modes_take_the_wall_from_a_design)
     free(given);
 }
 
-/* A million samples: 8 MB each for five histories, 24 and 10 for the rows and the text of the file. */
-TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
-{
-    struct rusage used;
-    char *path = in_place("long.csv");
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fprintf(f, "# dt = 0.01 s, units: m/s2\n");
-    for (int i = 0; i < (SANITIZED ? 100000 : 1000000); i++)
-        fprintf(f, "%.6f\n", sin(i));
-    assert_int_equal(fclose(f), 0);
-    expect(0, "", "spectrum @/long.csv --json --history @/long_history.csv >/dev/null");
-    assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
-    if (!SANITIZED)
-        assert_at_most((double)used.ru_maxrss, 100e3); /* kB */
-    free(path);
-}
-
 TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 {
     Err err = {0};
@@ -497,10 +454,10 @@ static void write_five_floors(double k, double m)
     write_in_place("five/K.csv", stiffness);
     write_in_place("five/M.csv", mass);
     write_in_place("five.ini", "[building]\nmodel = five\nheights_m = 4, 3\n[core]\nwidth_m = 5\n"
-                               "[motion]\npga_g = 0.3\n[sim]\nduration_s = 15\n"
+                               "[motion]\npga_g = 0.6\n[sim]\nduration_s = 8\n"
                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\n");
     write_in_place("five.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,t_top_m\n"
-                               "0.01,0.02,0.03,0.04,0.05,0.012,0.0064\n");
+                               "0.002,0.004,0.006,0.008,0.01,0.012,0.0064\n");
 }
 
 TEST(a_building_of_five_floors_goes_all_the_way)
@@ -522,7 +479,7 @@ TEST(a_building_of_five_floors_goes_all_the_way)
     json_decref(fast);
     json_decref(slow);
 
-    free(output_of("optimize @/five.ini --out @/five.run"));
+    free(output_of("optimize @/five.ini --set sim.duration_s=6 --out @/five.run"));
     char *front = read_in_place("five.run/front.csv");
     assert_int_equal(strncmp(front, "id,gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,", 57), 0);
     free(front);

@@ -8,6 +8,10 @@
 
 #include "store/folder.h"
 
+/* An answer takes 40 ms; a run of it is killed. */
+static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                             "objectives = 2\n[search]\ninitial = 1000\nmax_evals = 1000\nthreads = 2\n";
+
 /* -- other processes, full disks, damage --------------------------------------------------------------------------- */
 
 TEST(a_second_process_is_refused_with_the_first_ones_number)
@@ -15,14 +19,14 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
     char wanted[64];
     LockHolder holder;
     char path[PATH_MAX];
-    write_in_place("deaf.ini", DEAF);
-    const pid_t pid = start("deaf.ini", "locked");
+    write_in_place("steady.ini", STEADY);
+    const pid_t pid = start("steady.ini", "locked");
     while (!folder_is_held(path_of("locked", path), &holder) || holder.pid != pid)
         rest(0.02);
     while (access(path_of("locked/run.sqlite", path), F_OK) != 0)
         rest(0.02);
     snprintf(wanted, sizeof wanted, "is in use by process %ld on ", (long)pid);
-    expect(74, wanted, "optimize @/deaf.ini --out @/locked");
+    expect(74, wanted, "optimize @/steady.ini --out @/locked");
     char *said = output_of("status @/locked");
     assert_non_null(strstr(said, "running (process"));
     free(said);
@@ -179,11 +183,8 @@ static size_t simulated_in(const char *name)
 /* Killed, then put where nothing can be written, with and without what SQLite shares between processes (-shm). */
 TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
 {
-    static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
-                                 "objectives = 2\n[search]\ninitial = 100\nmax_evals = 120\n";
     char folder[PATH_MAX], command[1024], path[PATH_MAX];
     struct stat journal;
-    write_in_place("steady.ini", STEADY);
     const pid_t pid = start("steady.ini", "killed");
     do {
         rest(0.05);

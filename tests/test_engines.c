@@ -21,7 +21,7 @@ static const Promise PROMISES[] = {
     {ENGINE_FAST, 20, 1e-4, 1e-5, 3e-4},        {ENGINE_CVODE, 1e-9, 1e-5, 1e-6, 1e-6},
     {ENGINE_CVODE_BDF, 1e-5, 2e-2, 3e-3, 3e-3}, {ENGINE_ARKODE_IMEX, 1e-5, 1e-3, 3e-5, 3e-3},
     {ENGINE_ETDRK4, 1e-4, 1e-4, 1e-4, 5e-4},    {ENGINE_NEWMARK, 1e-4, 3e-4, 3e-5, 3e-4},
-    {ENGINE_CENTRAL, 5e-5, 3e-4, 5e-5, 3e-4},   {ENGINE_RADAU, 2e-4, 3e-4, 1e-5, 1e-5},
+    {ENGINE_RADAU, 2e-4, 3e-4, 1e-5, 1e-5},
 };
 enum { N_PROMISES = sizeof PROMISES / sizeof PROMISES[0] };
 

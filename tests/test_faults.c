@@ -1,9 +1,7 @@
 /* Requests for memory, and writes, refused one after the other while the program runs: it says so and ends with the
  * status that stands for it, or it does without and the result is the same. FAULTS=800 in the environment: so many of
  * each kind and command, evenly spread where there are more. */
-#include "program.h"
-
-#include <limits.h>
+#include "runs.h"
 
 enum { SOME = 3 }; /* refusals of one kind in one command */
 
@@ -135,10 +133,33 @@ static void sweep_memory(const Deed *deed)
 
 TEST(without_memory_the_program_says_so_or_gives_the_same_result)
 {
-    if (SANITIZED) /* its malloc belongs to the sanitizer */
-        skip();
     for (int i = 0; i < N_DEEDS; i++)
         sweep_memory(&DEEDS[i]);
+}
+
+/* A sanitizer needs more for itself. */
+TEST(too_little_address_space_or_stack_is_said_at_once)
+{
+    static const struct {
+        const char *limit, *command, *words;
+    } CASES[] = {
+        {"ulimit -v 300000; timeout 60", "building configs/quick.ini", "address space is limited to 292 MiB"},
+        {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"},
+    };
+    write_in_place("textbook.ini", TEXTBOOK);
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        snprintf(place.under, sizeof place.under, "%s", CASES[i].limit);
+        expect(71, CASES[i].words, CASES[i].command);
+    }
+    for (int kb = 250000; kb <= 650000; kb += 100000) { /* enough or not: it ends */
+        Said said;
+        snprintf(place.under, sizeof place.under, "ulimit -v %d; timeout -s KILL 60", kb);
+        run(&said, "optimize @/textbook.ini --threads 2 --new --out @/narrow");
+        if (said.code != 71 && (said.code != 0 || kb < 300000))
+            fail_msg("%d kB: %d: %s", kb, said.code, said.err);
+        forget(&said);
+    }
+    place.under[0] = 0;
 }
 
 /* ---- writes ---------------------------------------------------------------------------------------------------- */
@@ -219,7 +240,7 @@ static void sweep_writes(const Deed *deed, const Refusal *r)
 TEST(a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front)
 {
     static const Deed EXPORT = {"export @/done --csv @/run", "run"}, STUDY = {STUDY("@/run"), "run/front.csv"};
-    if (SANITIZED || !can_trace())
+    if (!can_trace())
         skip();
     for (size_t i = 0; i < sizeof REFUSALS / sizeof REFUSALS[0]; i++) {
         sweep_writes(&EXPORT, &REFUSALS[i]);

@@ -10,13 +10,12 @@
 #include "wfg.h"
 #include "study/study.h"
 
-static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
-                            "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\n";
+static const char TOWER[] = SIX_FLOORS_INI "[sim]\nduration_s = 6\n[search]\ninitial = 12\npopulation = 8\n"
+                                           "max_evals = 20\n";
 
 /* Cheap: as many simulations as polishing wants, half a second of each. */
-static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
-                               "accuracy = coarse\n[search]\ninitial = 100\npopulation = 100\nmax_evals = 400\n"
-                               "surrogate = off\npolish = 1\n";
+static const char POLISHED[] = SIX_FLOORS_INI "[sim]\nduration_s = 6\naccuracy = coarse\n[search]\ninitial = 100\n"
+                                              "population = 100\nmax_evals = 400\nsurrogate = off\npolish = 1\n";
 
 /* An answer takes 40 ms. */
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
@@ -83,8 +82,6 @@ TEST(the_tower_stopped_in_between_is_the_tower_that_was_not)
 /* The pieces end in the search and in the polishing after it. */
 TEST(a_run_stopped_while_it_polishes_ends_with_the_same_designs)
 {
-    if (SANITIZED) /* test_polish and the other runs by pieces go through its code */
-        skip();
     StudySummary summary;
     Settings s = settings_of(POLISHED, "polish-whole");
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);

@@ -1,5 +1,5 @@
 /* kill -9 at any moment: the run stays readable, what was acknowledged stays, and it ends as if nothing had happened.
- * TORTURE_KILLS in the environment: how many, 10 if not given; the figures are printed (`make torture`). */
+ * TORTURE_KILLS in the environment: how many, 8 if not given; the figures are printed (`make torture`). */
 #include "program.h"
 
 #include <fcntl.h>
@@ -15,13 +15,13 @@ typedef struct {
 static const Prey PREYS[] = {
     {"textbook", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\nnoise = 0.02\n"
                  "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
-    {"tower", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 8\n"
-              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
+    {"tower", SIX_FLOORS_INI "[sim]\nduration_s = 5\n"
+                             "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
     /* designs see one of four records first; objectives with probabilities */
     {"race", "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"
              "[design]\ngap_m = 0.001, 0.05\n[motion]\nrecord = builtin:suite-01\n"
              "records = builtin:suite-02, builtin:suite-03, builtin:suite-04\n"
-             "[sim]\nduration_s = 8\naccuracy = coarse\nrobust = cvar\ntail = 0.5\n"
+             "[sim]\nduration_s = 3\naccuracy = coarse\nrobust = cvar\ntail = 0.5\n"
              "[search]\nobjectives = j3_g, loss, p(drift_ratio>0.012)\nfidelity = records\n"
              "initial = 24\npopulation = 16\nmax_evals = 40\nthreads = 2\n"},
     /* an answer takes 40 ms: kills come in the middle of a batch */
@@ -204,7 +204,7 @@ TEST(no_kill_loses_an_evaluation_or_changes_the_front)
         char name[64];
         snprintf(name, sizeof name, "%s.ini", PREYS[i].name);
         write_in_place(name, PREYS[i].settings);
-        torture(&PREYS[i], ((kills ? strtol(kills, NULL, 10) : 10) + N_PREYS - 1) / N_PREYS);
+        torture(&PREYS[i], ((kills ? strtol(kills, NULL, 10) : 8) + N_PREYS - 1) / N_PREYS);
     }
 }
 

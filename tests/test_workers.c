@@ -83,7 +83,7 @@ TEST(a_run_whose_workers_all_fail_stops_after_some_with_the_reason)
 /* All designs have the same objectives; shares of the energy that went in are undefined. */
 TEST(a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason)
 {
-    static const char AT_REST[] = "optimize configs/quick.ini --set sim.duration_s=6 "
+    static const char AT_REST[] = "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=2 "
                                   "--set search.population=24 --set search.polish=0 --max-evals 240 --threads 1";
     char command[512];
     for (int seed = 1; seed <= 2; seed++) {
@@ -98,31 +98,6 @@ TEST(a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason)
 }
 
 /* -- the system ---------------------------------------------------------------------------------------------------- */
-
-TEST(too_little_address_space_or_stack_is_said_at_once)
-{
-    if (SANITIZED) /* its shadow memory needs more */
-        skip();
-    static const struct {
-        const char *limit, *command, *words;
-    } CASES[] = {
-        {"ulimit -v 300000; timeout 60", "building configs/quick.ini", "address space is limited to 292 MiB"},
-        {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"},
-    };
-    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        snprintf(place.under, sizeof place.under, "%s", CASES[i].limit);
-        expect(71, CASES[i].words, CASES[i].command);
-    }
-    for (int kb = 250000; kb <= 650000; kb += 100000) { /* enough or not: it ends */
-        Said said;
-        snprintf(place.under, sizeof place.under, "ulimit -v %d; timeout -s KILL 60", kb);
-        run(&said, "optimize @/textbook.ini --threads 2 --new --out @/narrow");
-        if (said.code != 71 && (said.code != 0 || kb < 300000))
-            fail_msg("%d kB: %d: %s", kb, said.code, said.err);
-        forget(&said);
-    }
-    place.under[0] = 0;
-}
 
 /* As a shell starts what stands before `&`. */
 TEST(a_signal_that_was_ignored_at_the_start_stays_ignored)
@@ -152,7 +127,7 @@ TEST(a_building_beyond_all_buildings_is_refused_whatever_its_units)
 /* The motion is still at rest: a search has no shares of energy to go by, and a single simulation says the same. */
 TEST(a_design_without_input_fails_in_a_search_and_in_a_simulation_alike)
 {
-#define AT_REST "configs/quick.ini --set sim.duration_s=6 "
+#define AT_REST "configs/quick.ini " SIX_FLOORS "--set sim.duration_s=2 "
     write_in_place("zones.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
     expect(70, "no net energy",
            "optimize " AT_REST "--max-evals 8 --set search.initial=8 --set search.population=4 "
@@ -196,8 +171,8 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
 TEST(processes_of_their_own_change_no_byte)
 {
     write_in_place("isolated.ini", ISOLATED);
-    free(output_of("optimize @/isolated.ini --out @/apart"));
-    free(output_of("optimize @/isolated.ini --out @/here --set run.isolate=no --threads 1"));
+    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/apart"));
+    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/here --set run.isolate=no --threads 1"));
     char *apart = read_in_place("apart/front.csv"), *here = read_in_place("here/front.csv");
     assert_string_equal(apart, here);
     free(apart);
