@@ -240,7 +240,7 @@ BESIDE.library := $(if $(filter release,$(MODE)),$(SHARED) $(CORE) $(EXAMPLES))
 JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) $(CASE)')
 ifeq ($(MODE)$(T),release)
 BESIDE.release := $(BENCH)
-JOBS_OF += $(STABILITY:%='release stability_% $(BENCH) stability --quick --seconds 3 --engine %') 'release laws $(BENCH) laws'
+JOBS_OF += $(foreach e,$(STABILITY),'release stability_$(e) $(BENCH) stability --quick --seconds 3 --engine $(e)') 'release laws $(BENCH) laws'
 else ifeq ($(MODE)$(T),asan)
 JOBS_OF += 'asan short-run scripts/short-run $(PROGRAM)'
 endif
