@@ -3,7 +3,8 @@
 #include "program.h"
 
 #define STUDY                                                                                                          \
-    "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=3 --set search.initial=24 "                         \
+    "optimize configs/quick.ini " SIX_FLOORS                                                                           \
+    "--set sim.duration_s=2 --set sim.accuracy=coarse --set search.initial=24 "                                        \
     "--set search.population=8 --threads 1 --set search.polish=0 "
 #define FIRST "--set motion.record=@/one.csv"
 #define BOTH  FIRST " --set motion.records=@/two.csv,builtin:sylmar-like"
