@@ -254,7 +254,8 @@ run_tests:
 
 ifdef T
 test: ## every test of physics, search and numbers; T="moga rbf": these files of any kind; CASE=front: their tests so named
-	@for mode in $(modes); do $(MAKE) --no-print-directory -j$(JOBS) MODE=$$mode tests && $(MAKE) --no-print-directory MODE=$$mode run_tests; done
+	@code=0; for mode in $(modes); do $(MAKE) --no-print-directory -j$(JOBS) MODE=$$mode tests && \
+	    $(MAKE) --no-print-directory MODE=$$mode run_tests || code=1; done; exit $$code
 else
 test: setup
 	@$(MAKE) --no-print-directory -j$(JOBS) tests
