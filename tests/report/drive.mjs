@@ -356,7 +356,7 @@ const tried = {
       const layers = document.querySelector(".panel").closest(".layers"), box = layers.getBoundingClientRect(), click = (at, clientX, clientY) => at.dispatchEvent(new MouseEvent("click", { bubbles: true, clientX, clientY }));
       for (let k = 0; k < 3000 && document.getElementById("drawer").hidden; k++) click(layers, box.left + box.width * ((k * 0.618) % 1), box.top + (box.height * k) / 3000);
       const id = document.getElementById("drawer").dataset.wanted, line = document.querySelector("#front .layers");
-      layers.dispatchEvent(new PointerEvent("pointermove", { clientX: 0, clientY: 0 }));
+      layers.dispatchEvent(new MouseEvent("mousemove", { clientX: 0, clientY: 0 }));
       click(line.querySelector(".heading"), line.getBoundingClientRect().left + 60, line.getBoundingClientRect().top + 200);
       return document.getElementById("drawer").hidden ? "" : [id, document.getElementById("drawer").dataset.wanted].join();
     })()`);
