@@ -1,4 +1,5 @@
-/* The report and the pictures of a run: what they are computed from, what is written, and how a browser takes it. */
+/* The report and the pictures of a run: what they are computed from, what is written. In a
+ * browser: test_browser.c. */
 #include "runs.h"
 
 #include <sys/stat.h>
@@ -736,24 +737,6 @@ TEST(names_that_begin_like_a_formula_are_labels_of_pictures)
     char *svg = read_in_place("names/pictures/front.svg");
     assert_non_null(strstr(svg, ">-d<"));
     free(svg);
-}
-
-/* ---- a browser ------------------------------------------------------------------------------------------------- */
-
-TEST(a_browser_shows_a_tower_and_another_problem_brushes_and_downloads_the_selection)
-{
-    char command[512];
-    if (SANITIZED) /* the page is the same, its browser no part of the program */
-        skip();
-    if (system("command -v chromium >/dev/null && command -v node >/dev/null") != 0) {
-        print_message("chromium or node is not installed: the report is not tried in a browser (make setup-browser)\n");
-        skip();
-    }
-    snprintf(command, sizeof command,
-             "cd '%s' && node \"$OLDPWD\"/tests/report/drive.mjs tower/report.html dtlz/report.html >said 2>&1 || { "
-             "cat said; exit 1; }",
-             place.folder);
-    assert_int_equal(system(command), 0);
 }
 
 /* The bundle is what its sources make of the libraries; they are there after `make web`. */
