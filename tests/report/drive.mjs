@@ -311,7 +311,6 @@ const tried = {
     const set = setOf([]), said = await sayWith({ ...set, with_core: { ...set.with_core, j3_g: 2 * set.with_core.j3_g } });
     assert.ok(/J3 is \S+ g instead of/.test(said), said);
     assert.doesNotMatch(await sayWith(set), /turns over/);
-    await open();
   },
   async "of several records every demand says which they are"() {
     if (!run.tower) return;
@@ -501,7 +500,7 @@ async function measure() {
   assert.ok(whole < 20000 && times[times.length >> 1] < 2000, "far too slow");
 }
 
-const ofThePage = /title dragged|keys|keyboard|keep and exclude|address|Tab key|policy|sorts/; // whatever the run
+const ofThePage = /title dragged|keys|keyboard|keep and exclude|address|Tab key|policy|sorts|dark|finger|keeps the focus/; // whatever the run
 // How many trials failed; the second report and the rest have those that depend on the run.
 export async function tryReports(paths) {
   let failed = 0;
