@@ -17,6 +17,7 @@
 #include "report/words.h"
 #include "settings/options.h"
 
+static const char MOTION[] = "0,0\n0.01,1\n0.02,-1\n0.03,0\n";
 static Run tower; /* read once for all tests, its knee simulated */
 static Report report;
 
@@ -37,7 +38,9 @@ static int set_up(void **state)
     expect(0, "",
            "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
            "problem.objectives=3 --max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
-    expect(0, "", "report @/tower");
+    write_in_place("own.csv", MOTION);
+    write_in_place("twin.csv", MOTION);
+    expect(0, "twin.csv has the content of ", "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2");
     expect(0, "", "report @/dtlz");
     CHECK_OK(run_read(&tower, path_of("tower", path), &err), &err);
     const DetailOptions options = {.floor = -1, .other = tower.settings, .n_records = 1, .records = records};
@@ -330,13 +333,11 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 /* Other words behind the path, another channel or factor, make another record of the same file. */
 TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 {
-    static const char MOTION[] = "0,0\n0.01,1\n0.02,-1\n0.03,0\n", OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
+    static const char OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
     Err err = {0};
     OtherRecords *r = calloc(1, sizeof *r);
     char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
     MotionOptions study = tower.settings->motion;
-    write_in_place("own.csv", MOTION);
-    write_in_place("twin.csv", MOTION);
     write_in_place("other.csv", OTHER);
     snprintf(study.record, sizeof study.record, "%s", own);
     snprintf(twice, sizeof twice, "%s factor=2", own);
@@ -349,8 +350,6 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
     assert_int_equal(r->n, 2);
     assert_string_equal(r->source[0], other);
     assert_string_equal(r->source[1], twice);
-    expect(0, "twin.csv has the content of ",
-           "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2 --out @/twin.html");
     free(own);
     free(twin);
     free(other);
@@ -461,7 +460,7 @@ TEST(a_report_needs_the_database_alone)
     snprintf(command, sizeof command, "mkdir '%s/bare' && cp '%s'/tower/run.sqlite '%s/bare'", place.folder,
              place.folder, place.folder);
     assert_int_equal(system(command), 0);
-    expect_openings(1, "run.sqlite\"", "report @/bare --design knee");
+    expect_openings(1, "run.sqlite\"", "report @/bare --design knee --record @/own.csv --unit m_s2");
     json_t *bare = run_of("bare"), *whole = run_of("tower");
     static const char *const PARTS[] = {"schema", "knee",     "evaluated", "convergence",
                                         "detail", "settings", "provenance"};
