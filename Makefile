@@ -197,7 +197,7 @@ include bench/bench.mk src/mpi/mpi.mk
 # little and take three times as long. The library's is run in both: what is installed is not sanitized. Longest first.
 NAMES.asan    := workers moved cli serve store asking damage disk async store_faults shared run_read manual \
                  import motion_formats motion queue library safety asked job_limit settings table fuzz_corpus
-NAMES.release := check resume torture
+NAMES.release := browser check resume torture
 OTHERS        := library $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))
 NAMES.release += $(OTHERS)
 NAMES         := $(sort $(NAMES.release) $(NAMES.asan))
