@@ -39,6 +39,27 @@ TEST(all_eleven_points_of_a_front_are_found_among_1815_designs)
         assert_int_equal(found[k], 1);
 }
 
+TEST(a_choice_that_varies_becomes_any_other_word_with_equal_chance)
+{
+    enum { WORDS = 5, DRAWS = 4000 };
+    static const double upper[] = {WORDS - 1};
+    static const VariableKind kind[] = {VARIABLE_CHOICE};
+    const Problem p = {.n_var = 1, .lower = (double[]){0}, .upper = (double *)upper, .kind = (VariableKind *)kind};
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    for (int word = 0; word < WORDS; word++) {
+        const double before = word, share = 1.0 / (WORDS - 1), sd = sqrt(share * (1 - share) * DRAWS);
+        int drawn[WORDS] = {0};
+        for (int i = 0; i < DRAWS; i++) {
+            double x = before + 0.3;
+            mutate_discrete(&r, &p, &before, &x);
+            assert_true(x == floor(x) && x >= 0 && x < WORDS && x != before);
+            drawn[(int)x]++;
+        }
+        for (int other = 0; other < WORDS; other++)
+            assert_less(fabs(drawn[other] - (other == word ? 0 : share * DRAWS)), 5 * sd);
+    }
+}
+
 TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");
