@@ -99,6 +99,23 @@ static inline char *output_of(const char *arguments)
     return s.out;
 }
 
+/* Runs, and expects the words on standard output. */
+static inline void expect_output(const char *words, const char *arguments)
+{
+    char *text = output_of(arguments);
+    if (!strstr(text, words))
+        fail_msg("imtet %s\n  said: %s  wanted: %s", arguments, text, words);
+    free(text);
+}
+
+static inline void assert_same_output(const char *arguments, const char *others)
+{
+    char *a = output_of(arguments), *b = output_of(others);
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
 /* Every evaluation of a run, as `imtet export --all` writes them; to be freed. */
 static inline char *all_of(const char *run)
 {
@@ -163,6 +180,33 @@ static inline char *read_in_place(const char *name)
     char *path = in_place(name), *text = text_of(path);
     free(path);
     return text;
+}
+
+static inline void expect_file(const char *name, const char *words)
+{
+    char *text = read_in_place(name);
+    if (!strstr(text, words))
+        fail_msg("%s: %.2000s\n  wanted: %s", name, text, words);
+    free(text);
+}
+
+static inline void assert_same_files(const char *name, const char *other)
+{
+    char *a = read_in_place(name), *b = read_in_place(other);
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
+/* A CSV file with a header, in the test's own folder; released by table_free. */
+static inline Table table_of(const char *name)
+{
+    Table t;
+    Err err = {0};
+    char *path = in_place(name);
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    free(path);
+    return t;
 }
 
 /* A record of 1.2 s of two sines, under which gaps close at once. */

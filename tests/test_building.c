@@ -865,9 +865,7 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
     char *svg = read_in_place("named.svg");
     assert_non_null(strstr(svg, "<title>&#60;b&#62;: column</title>"));
     free(svg);
-    char *text = output_of("building appendix --svg @/stick.svg --set building.p_delta=on");
-    assert_non_null(strstr(text, "20 floors"));
-    free(text);
+    expect_output("20 floors", "building appendix --svg @/stick.svg --set building.p_delta=on");
     svg = read_in_place("stick.svg");
     assert_int_equal(count(svg, "<circle class=\"n\""), 20);
     free(svg);

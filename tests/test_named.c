@@ -18,15 +18,6 @@ static int make_run(void **state)
     return 0;
 }
 
-static Run run_here(void)
-{
-    Run run;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
-    return run;
-}
-
 static size_t named_of(const Run *run, size_t rows[])
 {
     size_t n = 0;
@@ -52,7 +43,7 @@ static void simulate(long id, const char *accuracy, double j[3])
 /* At `coarse`, as the search took them, some of these designs miss what `standard` promises. */
 TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t all = named_of(&run, rows), n = SANITIZED ? 1 : 5; /* `fine` takes seconds */
     int missed_before = 0;
@@ -75,7 +66,7 @@ TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
 /* Unless the command line says by which accuracy. */
 TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     const Evaluation *e = run.finer.row;
     const double wanted = run_f(&run, run_find(&run, e->id))[2];
     char words[300];
@@ -93,7 +84,7 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
 
 TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     char *all = output_of("export @/run --all --csv -"), *front = read_in_place("run/front.csv"), head[64], *row;
     size_t n_known = 0;
     assert_non_null(strstr(front, ",err_j1_m,err_j2_m,err_j3_g,"));
@@ -116,7 +107,7 @@ TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 
 TEST(choose_marks_what_cannot_be_predicted)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     size_t n_marked = 0, n_reasons = 0, i;
     json_t *o = json_of("choose @/run --json"), *pick;
     char *said = output_of("choose @/run");
@@ -141,7 +132,7 @@ TEST(choose_marks_what_cannot_be_predicted)
 /* A simulation has five copies of the design, the run up to eight. */
 TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     int n_unpredictable = 0;
     for (size_t i = 0; i < run.finer.n; i++) {
         const size_t row = run_find(&run, run.finer.row[i].id);
@@ -195,7 +186,7 @@ TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_
 TEST(a_run_that_goes_on_names_anew)
 {
     char *said = output_of(STUDY "80"), wanted[64];
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     snprintf(wanted, sizeof wanted, "simulated with more steps: %zu designs (knee, the best, some", run.finer.n);
     assert_non_null(strstr(said, wanted));
@@ -216,7 +207,7 @@ TEST(a_run_that_goes_on_names_anew)
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
 {
     free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --evals 60"));
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t n = named_of(&run, rows);
     int has_joined = 0;
@@ -242,13 +233,11 @@ TEST(what_an_interrupted_study_names_is_known_too)
                                 "[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\nthreads = 2\n";
     const Settings s = settings_of(SHORT, "run-cut");
     StudySummary summary;
-    Run run;
     Err err = {0};
-    char path[PATH_MAX];
     int left = 40;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    CHECK_OK(run_read(&run, path_of("run-cut", path), &err), &err);
+    Run run = run_in("run-cut");
     assert_non_null(run.table.row[run_knee(&run)].err);
     assert_non_null(run.table.row[run_best(&run, 0)].err);
     run_free(&run);

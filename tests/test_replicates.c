@@ -357,9 +357,7 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
 {
     static const char TOLERANCE[] = "--set sim.gap_tolerance_m=0.02 --set motion.records=builtin:elcentro-like";
     double mean[3][PAPER_OBJECTIVES], sd[3][PAPER_OBJECTIVES];
-    char words[800], path[PATH_MAX];
-    Run h;
-    Err err = {0};
+    char words[800];
     write_design();
     simulated("--set sim.gap_tolerance_m=0", mean[0], sd[0]);
     simulated("--set sim.gap_tolerance_m=0.02", mean[1], sd[1]);
@@ -372,7 +370,7 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
              "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",
              place.folder, TOLERANCE);
     free(output_of(words));
-    CHECK_OK(run_read(&h, path_of("study", path), &err), &err);
+    Run h = run_in("study");
     assert_memory_equal(h.F, mean[2], sizeof mean[2]);
     assert_memory_equal(h.table.sd, sd[2], sizeof sd[2]);
     run_free(&h);

@@ -159,8 +159,7 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     const Settings s = settings_of(TEXTBOOK, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    Run stopped;
-    CHECK_OK(run_read(&stopped, path_of("version", path), &err), &err);
+    Run stopped = run_in("version");
     snprintf(command, sizeof command, "UPDATE state SET bytes = x'0100000000000000', digest = %ld",
              state_digest(stopped.generation[stopped.n_generations - 1].number, "\1\0\0\0\0\0\0", 8));
     run_free(&stopped);
@@ -371,10 +370,7 @@ TEST(hours_are_obeyed_within_a_batch)
     s.search.max_hours = 0;
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 40);
-    char *a = read_in_place("hours/front.csv"), *b = read_in_place("interrupted/front.csv");
-    assert_string_equal(a, b);
-    free(a);
-    free(b);
+    assert_same_files("hours/front.csv", "interrupted/front.csv");
 }
 
 /* -- readers, designs from outside, failures ----------------------------------------------------------------------- */
@@ -383,10 +379,8 @@ TEST(hours_are_obeyed_within_a_batch)
 static void assert_searched_as(const char *a, const char *b, size_t n_polished)
 {
     Run first, second;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&first, path_of(a, path), &err), &err);
-    CHECK_OK(run_read(&second, path_of(b, path), &err), &err);
+    first = run_in(a);
+    second = run_in(b);
     const size_t n = run_first_polished(&first), polished = first.table.n - n;
     assert_int_equal(polished, n_polished);
     assert_int_equal(n, first.n_finished);
@@ -408,7 +402,6 @@ TEST(polished_designs_join_the_front_but_not_the_search)
 {
     char path[PATH_MAX], id[24];
     long first;
-    Run saved;
     Err err = {0};
     StudySummary summary;
     int left = 20;
@@ -422,7 +415,7 @@ TEST(polished_designs_join_the_front_but_not_the_search)
         {.x = x, .f = worse, .outcome = OUTCOME_OK},
         {.x = x, .outcome = OUTCOME_DEAD, .reason = "it died"},
     };
-    CHECK_OK(run_read(&saved, path_of("polished", path), &err), &err);
+    Run saved = run_in("polished");
     const long last = saved.table.row[saved.table.n - 1].id;
     run_free(&saved);
     CHECK_OK(add_to_run(path, 3, designs, &first, &err), &err);
@@ -460,10 +453,8 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
                                 "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
                                 "threads = 2\n");
     free(output_of("optimize @/tenth.ini --out @/tenth"));
-    Run saved;
-    Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(run_read(&saved, path_of("tenth", path), &err), &err);
+    Run saved = run_in("tenth");
     assert_int_equal(saved.table.n, 100);
     assert_int_equal(saved.n_failed, 10);
     assert_less(0, saved.n_front);
@@ -496,10 +487,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
  */
 TEST(the_front_of_every_generation_can_be_told)
 {
-    Run s;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&s, path_of("tower-whole", path), &err), &err);
+    Run s = run_in("tower-whole");
     const size_t m = s.schema.n_obj;
     for (size_t g = 0; g < s.n_generations; g++) {
         long on_front = 0;
