@@ -396,9 +396,8 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
 /* What check says of a study's times by itself; how fast this machine is only scales them. */
 static double part_of_study(const char *part, const char *sets)
 {
-    char words[300];
-    snprintf(words, sizeof words, "check @/six.ini --json --set search.max_evals=150 --set search.threads=2 %s", sets);
-    json_t *o = json_of(words), *study = json_object_get(o, "study");
+    json_t *o = json_of("check @/six.ini --json --set search.max_evals=150 --set search.threads=2 %s", sets),
+           *study = json_object_get(o, "study");
     const double value = part ? number(study, part)
                               : (number(study, "seconds") - number(study, "search_s") - number(study, "baselines_s")) /
                                     (number(study, "simulation_s") / number(study, "threads"));
@@ -484,13 +483,10 @@ TEST(what_is_wrong_stands_below_everything_else)
 
 static double search_time(const char *settings)
 {
-    char words[400];
-    snprintf(words, sizeof words,
-             "check configs/quick.ini " SIX_FLOORS
-             "--json --set sim.duration_s=3 --set motion.record=builtin:suite-01 --set "
-             "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
-             settings);
-    json_t *o = json_of(words);
+    json_t *o = json_of("check configs/quick.ini " SIX_FLOORS
+                        "--json --set sim.duration_s=3 --set motion.record=builtin:suite-01 --set "
+                        "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
+                        settings);
     const double seconds = number(json_object_get(o, "study"), "search_s");
     json_decref(o);
     return seconds;

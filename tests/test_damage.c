@@ -188,7 +188,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
 
 TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
 {
-    char advice[PATH_MAX], words[PATH_MAX];
+    char advice[PATH_MAX];
     snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
     shell("cp -r sound hurt");
     sql("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
@@ -199,10 +199,8 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
     expect(74, advice, "status @/hurt");
     shell("rm hurt/run.sqlite* && touch hurt/run.sqlite");
     expect(74, advice, "export @/hurt --csv -");
-    snprintf(words, sizeof words,
-             "optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
-             place.folder);
-    free(output_of(words));
+    free(output_of("optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
+                   place.folder));
     char *all = all_of("hurt-2");
     write_in_place("all.csv", all);
     free(all);

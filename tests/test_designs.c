@@ -36,9 +36,7 @@ static int make_run(void **state)
 
 static double j1_of(const char *word)
 {
-    char words[500];
-    snprintf(words, sizeof words, SIMULATE "%s", word);
-    json_t *o = json_of(words);
+    json_t *o = json_of(SIMULATE "%s", word);
     const double j1 = number(o, "j1_m");
     json_decref(o);
     return j1;
@@ -116,10 +114,9 @@ TEST(evaluate_without_a_record_takes_those_of_the_run)
 
 TEST(evaluate_takes_a_design_from_elsewhere)
 {
-    char there_word[80], own_word[80]; /* of a design that the study has not named: by the steps of the settings */
-    snprintf(there_word, sizeof there_word, "evaluate @/both --design @/run:%ld --json", known.off);
-    snprintf(own_word, sizeof own_word, "evaluate @/run --design %ld --json", known.off);
-    json_t *o = json_of(there_word), *own = json_of(own_word);
+    /* Of a design that the study has not named: by the steps of the settings. */
+    json_t *o = json_of("evaluate @/both --design @/run:%ld --json", known.off),
+           *own = json_of("evaluate @/run --design %ld --json", known.off);
     const json_t *there = json_array_get(json_object_get(o, "records"), 0);
     const json_t *here = json_array_get(json_object_get(own, "records"), 0);
     assert_non_null(strstr(json_string_value(json_object_get(o, "design")), "/run:"));
@@ -216,13 +213,11 @@ TEST(choose_names_the_extremes_and_writes_them)
 TEST(choose_limits_any_result_of_a_run)
 {
     Err err = {0};
-    char words[100];
     size_t k, i;
     Run h = run_in("run");
     CHECK_OK(schema_pick_result(&h.schema, "", "drift_ratio", STATUS_USAGE, &k, &err), &err);
     const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
-    snprintf(words, sizeof words, "choose @/run --json --max drift_ratio=%.17g", bound);
-    json_t *o = json_of(words), *pick;
+    json_t *o = json_of("choose @/run --json --max drift_ratio=%.17g", bound), *pick;
     assert_less(0, json_array_size(json_object_get(o, "designs")));
     json_array_foreach(json_object_get(o, "designs"), i, pick)
     {

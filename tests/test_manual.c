@@ -9,9 +9,8 @@ TEST(every_command_has_a_page_with_all_its_options)
 {
     for (int i = 0; command_at(i); i++) {
         const Command *c = command_at(i);
-        char arguments[64], option[64];
-        snprintf(arguments, sizeof arguments, "--man %s", c->name);
-        char *page = output_of(arguments);
+        char option[64];
+        char *page = output_of("--man %s", c->name);
         assert_int_equal(strncmp(page, ".TH \"imtet-", 11), 0);
         for (const ArgOption *o = c->options; o->name; o++) {
             snprintf(option, sizeof option, "  \\-\\-%s", o->name + 2);

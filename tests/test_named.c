@@ -30,10 +30,7 @@ static size_t named_of(const Run *run, size_t rows[])
 /* J1, J2, J3 by the preset `accuracy`. */
 static void simulate(long id, const char *accuracy, double j[3])
 {
-    char words[300];
-    snprintf(words, sizeof words, "simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld",
-             accuracy, id);
-    json_t *o = json_of(words);
+    json_t *o = json_of("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
     j[0] = number(o, "j1_m");
     j[1] = number(o, "j2_m");
     j[2] = number(o, "j3_g");
@@ -136,12 +133,11 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
     int n_unpredictable = 0;
     for (size_t i = 0; i < run.finer.n; i++) {
         const size_t row = run_find(&run, run.finer.row[i].id);
-        char words[300];
         if (!run_is_unpredictable(&run, row))
             continue;
         n_unpredictable++;
-        snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
-        json_t *o = json_of(words), *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
+        json_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id),
+               *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
         for (size_t k = 0; k < run.schema.n_obj; k++)
             assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));
         json_decref(o);

@@ -12,10 +12,8 @@ static const char TOWER[] = SIX_FLOORS_INI "[sim]\nduration_s = 8\naccuracy = co
 
 static void optimize(const char *name, const char *more)
 {
-    char arguments[1024];
     write_in_place("tower.ini", TOWER);
-    snprintf(arguments, sizeof arguments, "optimize @/tower.ini --out @/%s %s", name, more);
-    free(output_of(arguments));
+    free(output_of("optimize @/tower.ini --out @/%s %s", name, more));
 }
 
 /* The further measure of that name; NAN where the cell is empty. */
@@ -53,13 +51,11 @@ TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
 
 TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
 {
-    char arguments[128];
     optimize("other", "--set 'search.objectives=core_stress_pa, impacts , j1_m'");
     Run run = run_in("other");
     assert_int_equal(run.schema.n_obj, 3);
     const size_t row = run.front[0];
-    snprintf(arguments, sizeof arguments, "simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
-    json_t *o = json_of(arguments);
+    json_t *o = json_of("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
     assert_same_number(number(o, "core_stress_pa"), run_f(&run, row)[0]);
     assert_same_number(number(o, "impacts"), run_f(&run, row)[1]);
     assert_same_number(number(o, "j1_m"), run_f(&run, row)[2]);

@@ -326,10 +326,7 @@ TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale
 {
     json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
            *r = json_object_get(a, "recorded");
-    char arguments[128];
-    snprintf(arguments, sizeof arguments, "spectrum builtin:sylmar-like --json --set motion.factor=%.17g",
-             number(a, "scale"));
-    json_t *b = json_of(arguments);
+    json_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
     assert_true(json_is_true(json_object_get(a, "corrected")));
     assert_true(json_is_false(json_object_get(b, "corrected")));
     assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);
@@ -342,10 +339,7 @@ TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale
 TEST(several_motions_are_shown_with_their_mean_and_the_target)
 {
     static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
-    char arguments[256];
-    snprintf(arguments, sizeof arguments, "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv",
-             ALL);
-    free(output_of(arguments));
+    free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv", ALL));
     Table t = table_of("all.csv");
     assert_int_equal(t.n_cols, 6);
     for (size_t i = 0; i < t.n_rows; i++) {
@@ -355,9 +349,7 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
     }
     table_free(&t);
     if (system("command -v gnuplot >/dev/null") == 0) {
-        snprintf(arguments, sizeof arguments,
-                 "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL);
-        free(output_of(arguments));
+        free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL));
         char *svg = read_in_place("all.svg");
         static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
         for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)

@@ -427,9 +427,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
 /* So begins the row of the building alone, whose rate is not known. */
 static void expect_alone(const char *words, const char *range, const char *limit)
 {
-    char command[300];
-    snprintf(command, sizeof command, ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
-    char *said = output_of(command);
+    char *said = output_of(ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
     const char *row = strstr(said, "no core");
     char *end = row ? strchr(row, '\n') : NULL;
     assert_non_null(end);
@@ -519,17 +517,15 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
                                          "builtin:sylmar-like"};
     static const double RATE[] = {0.02, 0.003, 0.0007};
     double sum = 0;
-    char command[400];
     write_in_place("year_list.txt", "builtin:elcentro-like factor=0.5 rate=0.02\n# rarer\n"
                                     "builtin:elcentro-like factor=1.5 rate=0.003\nbuiltin:sylmar-like rate=7e-4\n");
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {
-        snprintf(command, sizeof command,
-                 "simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
-                 "--set 'motion.record=%s'",
-                 SOURCE[i]);
-        json_t *o = json_of(command);
+        json_t *o =
+            json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
+                    "--set 'motion.record=%s'",
+                    SOURCE[i]);
         assert_true(json_is_null(json_object_get(o, "annual_loss")));
         sum += RATE[i] * number(o, "loss");
         json_decref(o);

@@ -12,10 +12,9 @@ static void check_start(const char *asynchronous)
 {
     Run h;
     Err err = {0};
-    char arguments[256], path[PATH_MAX];
-    snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
-             strrchr(asynchronous, '=') + 1, place.folder, asynchronous);
-    free(output_of(arguments));
+    char path[PATH_MAX];
+    free(output_of("optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
+                   strrchr(asynchronous, '=') + 1, place.folder, asynchronous));
     CHECK_OK(run_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
     assert_int_equal(h.table.n, 30);
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
@@ -40,23 +39,18 @@ TEST(given_designs_come_first_inside_the_box_and_once)
 
 TEST(several_starts_are_taken_one_behind_the_other)
 {
-    char arguments[512];
     write_in_place("begin.ini", BEGIN);
     write_in_place("given.csv", GIVEN);
     write_in_place("more.csv", "x1,x2,x3,x4\n0.9,0.8,0.7,0.6\n0.1,0.2,0.3,0.4\n");
     free(output_of("optimize @/begin.ini --out @/earlier --seed 2"));
-    snprintf(arguments, sizeof arguments,
-             "optimize @/begin.ini --out @/both --set search.start=%s/given.csv,%s/more.csv", place.folder,
-             place.folder);
-    free(output_of(arguments));
+    free(output_of("optimize @/begin.ini --out @/both --set search.start=%s/given.csv,%s/more.csv", place.folder,
+                   place.folder));
     Run h = run_in("both");
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
     assert_memory_equal(h.table.x + 12, ((double[]){0.9, 0.8, 0.7, 0.6}), 4 * sizeof(double));
     run_free(&h);
-    snprintf(arguments, sizeof arguments,
-             "optimize @/begin.ini --out @/after --set search.start=%s/more.csv,%s/earlier", place.folder,
-             place.folder);
-    free(output_of(arguments));
+    free(output_of("optimize @/begin.ini --out @/after --set search.start=%s/more.csv,%s/earlier", place.folder,
+                   place.folder));
     h = run_in("after");
     Run earlier = run_in("earlier");
     assert_less(0, earlier.n_front);

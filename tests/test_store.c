@@ -233,22 +233,18 @@ static void wait_for(const char *out, size_t n)
 /* What `status` counts is in both exports, also of the generation that was cut short. */
 static void check_unfinished_is_exported(const char *out)
 {
-    char command[128];
     size_t n = 0, n_unfinished = 0;
-    snprintf(command, sizeof command, "status @/%s --json", out);
-    json_t *o = json_of(command);
+    json_t *o = json_of("status @/%s --json", out);
     const double simulated = number(o, "simulated");
     json_decref(o);
-    snprintf(command, sizeof command, "export @/%s --all --csv -", out);
-    char *all = output_of(command);
+    char *all = output_of("export @/%s --all --csv -", out);
     for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
         n++;
     for (const char *word = all; (word = strstr(word, ",unfinished,ok,,")) != NULL; word++)
         n_unfinished++;
     free(all);
     assert_true((double)n == simulated && n_unfinished > 0);
-    snprintf(command, sizeof command, "export @/%s --json", out);
-    o = json_of(command);
+    o = json_of("export @/%s --json", out);
     assert_same_number((double)json_array_size(json_object_get(o, "evaluations")), simulated);
     json_decref(o);
 }
@@ -256,9 +252,7 @@ static void check_unfinished_is_exported(const char *out)
 /* Nothing is known of the front yet; the pace comes from what was simulated. */
 static void check_status_has_no_nan(const char *out)
 {
-    char command[128];
-    snprintf(command, sizeof command, "status @/%s", out);
-    char *said = output_of(command), *list = output_of("status @");
+    char *said = output_of("status @/%s", out), *list = output_of("status @");
     assert_null(strstr(said, "nan"));
     assert_null(strstr(said, "- simulations/s"));
     assert_null(strstr(list, "nan"));

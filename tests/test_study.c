@@ -12,10 +12,9 @@
 TEST(the_front_has_the_same_bytes_at_any_number_of_threads)
 {
     static const int THREADS[] = {1, 2, 5};
-    char arguments[512], name[64], *front[3], *all[3];
+    char name[64], *front[3], *all[3];
     for (int i = 0; i < 3; i++) {
-        snprintf(arguments, sizeof arguments, SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]);
-        free(output_of(arguments));
+        free(output_of(SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]));
         snprintf(name, sizeof name, "threads-%d/front.csv", THREADS[i]);
         front[i] = read_in_place(name);
         snprintf(name, sizeof name, "threads-%d", THREADS[i]);
@@ -103,11 +102,10 @@ static long first_id(const char *front)
 
 TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
-    char *front = read_in_place("threads-1/front.csv"), arguments[256];
-    snprintf(arguments, sizeof arguments,
-             "evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
-             first_id(front));
-    json_t *o = json_of(arguments);
+    char *front = read_in_place("threads-1/front.csv");
+    json_t *o =
+        json_of("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
+                first_id(front));
     const json_t *records = json_object_get(o, "records");
     assert_int_equal(json_array_size(records), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(records, 1), "record")),
