@@ -42,7 +42,7 @@ static char *unescape(char *text)
 {
     char *to = text;
     for (const char *p = text; *p; p++)
-        *to++ = *p != '\\' ? *p : *++p == 'n' ? '\n' : *p == 't' ? '\t' : *p == 's' ? ' ' : *p;
+        *to++ = *p != '\\' || !p[1] ? *p : *++p == 'n' ? '\n' : *p == 't' ? '\t' : *p == 's' ? ' ' : *p;
     *to = 0;
     return text;
 }
@@ -54,7 +54,8 @@ static char *part(char **rest)
     while (*bar && !(*bar == '|' && (bar == begin || bar[-1] == ' ') && (bar[1] == ' ' || !bar[1])))
         bar++;
     *rest = bar + (*bar != 0) + (*bar && bar[1]);
-    bar[bar > begin ? -1 : 0] = 0;
+    if (*bar)
+        bar[bar > begin ? -1 : 0] = 0;
     return begin;
 }
 

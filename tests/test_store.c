@@ -372,9 +372,7 @@ TEST(hours_are_obeyed_within_a_batch)
 /* The designs of two searches are the same; the first has n_polished more, with ids of their own. */
 static void assert_searched_as(const char *a, const char *b, size_t n_polished)
 {
-    Run first, second;
-    first = run_in(a);
-    second = run_in(b);
+    Run first = run_in(a), second = run_in(b);
     const size_t n = run_first_polished(&first), polished = first.table.n - n;
     assert_int_equal(polished, n_polished);
     assert_int_equal(n, first.n_finished);
@@ -412,7 +410,7 @@ TEST(polished_designs_join_the_front_but_not_the_search)
     Run saved = run_in("polished");
     const long last = saved.table.row[saved.table.n - 1].id;
     run_free(&saved);
-    CHECK_OK(add_to_run(path, 3, designs, &first, &err), &err);
+    CHECK_OK(add_to_run(path_of("polished", path), 3, designs, &first, &err), &err);
     assert_int_equal(first, last + 1);
     char *front = output_of("export @/polished --csv -");
     snprintf(id, sizeof id, "\n%ld,", first);
@@ -472,7 +470,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
     o = json_of("status @ --json");
     int found = 0;
     for (size_t i = 0; i < json_array_size(o); i++)
-        found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path) == 0;
+        found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path_of("tenth", path)) == 0;
     assert_int_equal(found, 1);
     json_decref(o);
 }
