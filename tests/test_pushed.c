@@ -77,6 +77,8 @@ TEST(a_single_mass_answers_step_ramp_half_sine_and_blast_as_the_closed_forms_say
         assert_close(r.j1_m, 2 * rest, 1e-5);
         assert_close(r.j3_g * GRAVITY, FORCE / MASS, 1e-5); /* absolute: the ground is at rest */
         assert_close(r.input_energy_j, FORCE * rest * (1 - cos(OMEGA * 3)), 1e-5);
+        r = push(e, step_force, 4, 1e300); /* to the last sample */
+        assert_close(r.input_energy_j, FORCE * rest * (1 - cos(OMEGA * 4)), 1e-5);
         r = push(e, ramp_force, 3, 1e300);
         assert_close(r.j1_m, rest * (1 + fabs(sin(M_PI * 0.5 / period)) / (M_PI * 0.5 / period)), 1e-5);
         r = push(e, half_sine, 3, 1e300); /* beta 2: the peak comes after the pulse */

@@ -1,5 +1,5 @@
-/* imtet serve, asked by raw sockets: whom it answers, what it refuses, that a run does not know of it, how it ends. And
- * the page in a browser (tests/serve/drive.mjs). */
+/* imtet serve, asked by raw sockets: whom it answers, what it refuses, that a run does not know of it, how it ends. Its
+ * page in a browser: test_browser.c. */
 #include "runs.h"
 
 #include <arpa/inet.h>
@@ -18,18 +18,7 @@ enum { ANSWER_MAX = 4 << 20 };
 static const double LATE_S = 12;
 #define SMALL                                                                                                          \
     "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set search.initial=40 "         \
-    "--threads 1 "
-
-static int has_browser(void)
-{
-    return !SANITIZED && system("command -v chromium >/dev/null && command -v node >/dev/null") == 0;
-}
-
-/* Without a browser a shorter motion does. */
-static const char *duration(void)
-{
-    return has_browser() ? "" : "--set sim.duration_s=15 ";
-}
+    "--threads 1 --set sim.duration_s=15 "
 
 typedef struct {
     pid_t pid; /* 0: this process */
@@ -604,8 +593,8 @@ TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
     char text[256], path[PATH_MAX], begun[PATH_MAX + 16], byte;
     int fd[10];
     char *words[] = {"sh", "-c", NULL, NULL};
-    assert_less(0, asprintf(&words[2], "exec '%s' " SMALL "%s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"),
-                            duration(), place.folder));
+    assert_less(
+        0, asprintf(&words[2], "exec '%s' " SMALL "--out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), place.folder));
     const Served before = server;
     pid_t pid;
     assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
@@ -922,22 +911,6 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
     server = before;
 }
 
-/* -- a browser ----------------------------------------------------------------------------------------------------- */
-
-TEST(a_browser_follows_a_run_and_asks_what_if)
-{
-    char command[1024];
-    if (!has_browser()) { /* the page is the same with sanitizers */
-        print_message("chromium or node is not installed: the page is not tried in a browser (make setup-browser)\n");
-        skip();
-    }
-    snprintf(
-        command, sizeof command,
-        "node tests/serve/drive.mjs '%s' '%s' >'%s/tried' 2>&1 || { cat '%s/tried'; exit 1; }; grep ' ms' '%s/tried'",
-        getenv("IMTET"), place.folder, place.folder, place.folder, place.folder);
-    assert_int_equal(system(command), 0);
-}
-
 static int begin(void **state)
 {
     Said said;
@@ -952,7 +925,7 @@ static int begin(void **state)
         "--set sim.uncertain=restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
         "motion.factor=0.5"};
     for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {
-        run(&said, SMALL "%s %s", duration(), RUNS[i]);
+        run(&said, SMALL "%s", RUNS[i]);
         if (said.code != 0)
             print_error("%s", said.err);
         forget(&said);

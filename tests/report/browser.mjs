@@ -70,11 +70,13 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
 
     // While the page changes to another one, nobody is there to answer.
     const isBetweenPages = (error) => /navigated or closed|context was destroyed|Cannot find (default execution )?context/.test(error.message);
-    const isTrue = (expression) => evaluate(expression).catch((error) => {
+    const isTrue = (expression) => evaluate(`(async () => {
+      for (const end = Date.now() + 1000; Date.now() < end; await new Promise((done) => setTimeout(done, 20))) if (${expression}) return true;
+    })()`).catch((error) => {
       if (!isBetweenPages(error)) throw error;
     });
 
-    // Until the expression is true; it is asked every 20 ms.
+    // Until the expression is true; it is asked every 20 ms, within the page: asking from here costs more.
     async function until(expression, seconds = 60) {
       const end = Date.now() + 1000 * seconds;
       while (!(await isTrue(expression))) {

@@ -1,16 +1,17 @@
-// The page of imtet serve as a person would try it: drive.mjs IMTET FOLDER      FOLDER/runs holds the finished runs a and b
-//                                                   drive.mjs IMTET --bench RUN  prints how long a slider's update takes
-//                                                   drive.mjs IMTET --pictures FOLDER OUT  of FOLDER/kobe, a finished run
+// Reports and the page of imtet serve as a person would try them, in one browser; prints what it found, exits 1 on a fault.
+//   drive.mjs IMTET FOLDER REPORT.html ...  FOLDER/runs holds the finished runs a, b, c and d
+//   drive.mjs IMTET --bench RUN             prints how long a slider's update takes
+//   drive.mjs IMTET --pictures FOLDER OUT   of FOLDER/kobe, a finished run
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { openBrowser, picture, tryAll } from "../report/browser.mjs";
+import { picture, tryAll } from "../report/browser.mjs";
 
 const [imtet, folder, given, pictures] = process.argv.slice(2);
 const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
 if (!(isBench || isPictures ? given : folder) || !existsSync(root)) {
-  console.error(`usage: drive.mjs IMTET FOLDER | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
+  console.error(`usage: drive.mjs IMTET FOLDER [REPORT.html ...] | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
   process.exit(64);
 }
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -33,7 +34,8 @@ async function serve() {
   return said.match(/http:\S+/)[0];
 }
 
-const browser = await openBrowser();
+const { browser, tryReports } = await import("../report/drive.mjs");
+let failed = isBench || isPictures ? 0 : await tryReports(process.argv.slice(4));
 const page = await browser.openPage();
 const url = await serve(), origin = new URL(url).origin;
 const runs = async () => (await fetch(`${url}runs`)).json();
@@ -108,7 +110,7 @@ async function takePictures() {
 
 const tried = {
   async "a page shows a generation while its run goes on, later ones in their order, and the last"() {
-    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "150", "--set", "sim.duration_s=28", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
+    const live = start("optimize", join(root, "a", "settings.ini"), "--max-evals", "100", "--out", join(root, "live"));
     live.stdout.resume();
     const log = join(root, "live", "log.jsonl"), seen = () => (existsSync(log) ? readFileSync(log, "utf8").split("\n").filter((l) => l.startsWith("{") && l.endsWith("}")).map((l) => JSON.parse(l)).filter((e) => e.event === "generation").map((e) => e.number) : []);
     while (!seen().length) await pause(10);
@@ -127,7 +129,7 @@ const tried = {
     await until("document.getElementById('live').dataset.state === 'finished'");
     const shown = await page.evaluate("window.seen"); // one that was passed over shows with a later one
     assert.deepEqual(shown, [...new Set(shown)].sort((a, b) => a - b));
-    assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 150 of 150 designs simulated; 0 failed/);
+    assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 100 of 100 designs simulated; 0 failed/);
     await until("!document.getElementById('new-front').hidden");
     await click("#new-front");
     await until("document.documentElement?.dataset.ready === 'yes' && document.getElementById('new-front')?.hidden");
@@ -158,18 +160,18 @@ const tried = {
     await open("a");
     await until("document.getElementById('what-if').dataset.turn");
     const before = await page.evaluate("document.querySelector('#trial tbody').textContent");
-    tell("a gap dragged", await dragSlider(10, 16));
-    tell("a thickness dragged", await dragSlider(3, 12)); // a gap may be one that never closes
+    tell("a gap dragged", await dragSlider(10, 8));
+    tell("a thickness dragged", await dragSlider(3, 5)); // a gap may be one that never closes
     assert.notEqual(await page.evaluate("document.querySelector('#trial tbody').textContent"), before);
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
-    tell("the peak of the motion dragged", await dragSlider(0, 12));
+    tell("the peak of the motion dragged", await dragSlider(0, 5));
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /motion or restitution differ/);
     await click("#back");
     await until("/Nondominated/.test(document.getElementById('place').textContent)");
   },
   async "a slider is moved by the keyboard"() {
     const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
-    await page.evaluate("document.querySelectorAll('.slider input[type=range]')[12].focus()");
+    await page.evaluate("document.querySelectorAll('.slider input[type=range]')[6].focus()");
     await press("ArrowLeft");
     await press("ArrowRight"); // it may stand at an end
     await until(`+document.getElementById("what-if").dataset.turn > ${turn} && !document.getElementById("what-if").dataset.busy`);
@@ -179,7 +181,7 @@ const tried = {
     mkdirSync(downloads, { recursive: true });
     await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
     await click("#keep-trial");
-    await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[15]; s.value = +s.min + 0.3 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
+    await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[7]; s.value = +s.min + 0.3 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
     await until("!document.getElementById('what-if').dataset.busy");
     await click("#keep-trial");
     await click("#save-kept");
@@ -193,12 +195,12 @@ const tried = {
     said.forEach((o, i) => assert.ok(shown[i].startsWith(`J1 displacement ${+o.j1_m.toPrecision(3)}\u202fm, `), `${shown[i]} is not ${o.j1_m}`));
   },
   async "what is kept and a number typed beside a slider come back with the address"() {
-    await page.evaluate("(() => { const e = document.querySelector('[name=\"gap_12_m number\"]'); e.value = 77; e.dispatchEvent(new Event('change')); })()");
+    await page.evaluate("(() => { const e = document.querySelector('[name=\"gap_05_m number\"]'); e.value = 33; e.dispatchEvent(new Event('change')); })()");
     await until("!document.getElementById('what-if').dataset.busy");
-    assert.equal(await page.evaluate("document.querySelector('.slider input[name=gap_12_m]').value"), "0.077");
+    assert.equal(await page.evaluate("document.querySelector('.slider input[name=gap_05_m]').value"), "0.033");
     await click("#keep-trial");
     const kept = "Array.from(document.querySelectorAll('#kept li'), (li) => li.textContent).join('|')", before = await page.evaluate(kept);
-    assert.match(decodeURIComponent(await page.evaluate("location.hash")), /kept=.*gap_12_m=0\.077/);
+    assert.match(decodeURIComponent(await page.evaluate("location.hash")), /kept=.*gap_05_m=0\.033/);
     await page.call("Page.reload");
     await until(`document.getElementById("kept") && ${kept} === ${JSON.stringify(before)}`);
   },
@@ -263,8 +265,8 @@ const tried = {
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
   },
   async "everything live is reached by the Tab key"() {
-    const found = new Set(await page.focusedByTab(330));
-    for (const wanted of ["pga_g", "gap_07_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
+    const found = new Set(await page.focusedByTab(250));
+    for (const wanted of ["pga_g", "gap_06_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
   },
   async "a note is kept beside the run and shown again"() {
     const path = join(root, "a", "notes.json"), field = "document.querySelector('#drawer textarea')";
@@ -349,7 +351,6 @@ setTimeout(() => {
   process.exit(1);
 }, 300000).unref();
 
-let failed = 0;
 try {
   if (isBench) {
     await page.call("Performance.enable", { timeDomain: "threadTicks" });
@@ -361,7 +362,7 @@ try {
     await benchSlider("the peak of the motion", 0, 40);
     await benchSlider("its stretch", 1, 40);
   } else if (isPictures) await takePictures();
-  else failed = await tryAll(tried);
+  else failed += await tryAll(tried);
 } finally {
   await browser.close();
   for (const child of children) child.kill("SIGINT");

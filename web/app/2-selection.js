@@ -151,7 +151,7 @@ function pointed(place, rowAt, isBelow = false) {
     if (!event.buttons) hover(rowAt(event.clientX - box.left, event.clientY - box.top, event), event, isBelow && box);
     if (event.type === "click" && state.hovered !== undefined) mark(state.hovered);
   };
-  for (const type of ["pointermove", "click"]) place.addEventListener(type, look); // a finger does not move before
+  for (const type of ["mousemove", "click"]) place.addEventListener(type, look); // a finger does not move before
   place.addEventListener("pointerleave", () => hover(undefined));
 }
 

@@ -68,7 +68,7 @@ function cards() {
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
     element("div", { class: "value" }, ...shownValue(c, raw[k], error?.[k])),
     bySuite(c, run.detail?.standard_error?.[k]),
-    ...(run.tower && !run.detail ? [skeleton(36)] : overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o))))));
+    ...(run.tower && !run.detail ? [skeleton(24)] : overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o))))));
 }
 
 // ---- warnings
@@ -168,7 +168,7 @@ function summaryPart() {
   if (run.notes_fault) host.append(element("p", { class: "warn" }, `Notes: ${run.notes_fault}`));
   if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);
-  if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(265));
+  if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(252));
   const more = folded(host, "The best designs of the front, beside the baselines");
   more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
   if (d && run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
