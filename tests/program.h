@@ -89,9 +89,15 @@ static inline void expect(int code, const char *message, const char *arguments)
     forget(&s);
 }
 
-static inline char *output_of(const char *arguments)
+/* What it prints, with status 0; to be freed. */
+__attribute__((format(printf, 1, 2))) static inline char *output_of(const char *format, ...)
 {
+    char arguments[2048];
     Said s;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(arguments, sizeof arguments, format, list);
+    va_end(list);
     run(&s, "%s", arguments);
     if (s.code != 0)
         fail_msg("imtet %s\n  exit %d, said: %s", arguments, s.code, s.err);
@@ -99,12 +105,27 @@ static inline char *output_of(const char *arguments)
     return s.out;
 }
 
+/* Runs, and expects the words on standard output. */
+static inline void expect_output(const char *words, const char *arguments)
+{
+    char *text = output_of("%s", arguments);
+    if (!strstr(text, words))
+        fail_msg("imtet %s\n  said: %s  wanted: %s", arguments, text, words);
+    free(text);
+}
+
+static inline void assert_same_output(const char *arguments, const char *others)
+{
+    char *a = output_of("%s", arguments), *b = output_of("%s", others);
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
 /* Every evaluation of a run, as `imtet export --all` writes them; to be freed. */
 static inline char *all_of(const char *run)
 {
-    char arguments[512];
-    snprintf(arguments, sizeof arguments, "export @/%s --all --csv -", run);
-    return output_of(arguments);
+    return output_of("export @/%s --all --csv -", run);
 }
 
 /* Evaluations of its finished generations; 0: there is no run yet. */
@@ -122,10 +143,15 @@ static inline size_t finished_in(const char *name)
     return n;
 }
 
-static inline json_t *json_of(const char *arguments)
+__attribute__((format(printf, 1, 2))) static inline json_t *json_of(const char *format, ...)
 {
+    char arguments[2048];
     json_error_t error;
-    char *text = output_of(arguments);
+    va_list list;
+    va_start(list, format);
+    vsnprintf(arguments, sizeof arguments, format, list);
+    va_end(list);
+    char *text = output_of("%s", arguments);
     json_t *o = json_loads(text, 0, &error);
     if (!o)
         fail_msg("imtet %s: %s", arguments, error.text);
@@ -163,6 +189,33 @@ static inline char *read_in_place(const char *name)
     char *path = in_place(name), *text = text_of(path);
     free(path);
     return text;
+}
+
+static inline void expect_file(const char *name, const char *words)
+{
+    char *text = read_in_place(name);
+    if (!strstr(text, words))
+        fail_msg("%s: %.2000s\n  wanted: %s", name, text, words);
+    free(text);
+}
+
+static inline void assert_same_files(const char *name, const char *other)
+{
+    char *a = read_in_place(name), *b = read_in_place(other);
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
+/* A CSV file with a header, in the test's own folder; released by table_free. */
+static inline Table table_of(const char *name)
+{
+    Table t;
+    Err err = {0};
+    char *path = in_place(name);
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    free(path);
+    return t;
 }
 
 /* A record of 1.2 s of two sines, under which gaps close at once. */

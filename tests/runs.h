@@ -27,14 +27,13 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
     return path;
 }
 
-/* A CSV file with a header, in the test's own folder; released by table_free. */
-static inline Table table_of(const char *name)
+static inline Run run_in(const char *name)
 {
-    Table t;
+    Run run;
     Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
-    return t;
+    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
+    return run;
 }
 
 static inline Settings settings_of(const char *text, const char *out)
@@ -74,12 +73,8 @@ static inline void assert_same_run(const char *a, const char *b)
     char name[2][64], path[2][PATH_MAX];
     snprintf(name[0], sizeof name[0], "%s/front.csv", a);
     snprintf(name[1], sizeof name[1], "%s/front.csv", b);
-    char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
-    assert_string_equal(first, second);
-    free(first);
-    free(second);
-    first = json_export(path_of(a, path[0]));
-    second = json_export(path_of(b, path[1]));
+    assert_same_files(name[0], name[1]);
+    char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
     assert_string_equal(first, second);
     free(first);
     free(second);

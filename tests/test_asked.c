@@ -32,26 +32,13 @@ TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_st
     free(asked);
 }
 
-TEST(check_names_a_worker_that_cannot_be_used_and_passes_one_that_refuses_a_design)
-{
-    write_study("deaf.ini", "deaf");
-    expect(65, "problem.command: timeout: no answer within 0.3 s", "check @/deaf.ini");
-    expect(65, "problem.command: dead: the worker ended", "check @/deaf.ini --set problem.command=true");
-    expect(65, "problem.command: /no/such cannot be started", "check @/deaf.ini --set problem.command=/no/such");
-    expect(0, "warning: problem.command: error: every",
-           "check @/deaf.ini --set 'problem.command=sh -c '\\''read a; echo "
-           "\"{\\\"id\\\":1,\\\"error\\\":\\\"every\\\"}\"'\\'");
-}
-
 TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
 {
-    Run h;
     Err err = {0};
-    char path[PATH_MAX];
     write_study("kinds.ini", "bounded");
     free(output_of("optimize @/kinds.ini --out @/kinds"));
     free(output_of("simulate @/kinds.ini --design @/kinds/front.csv --csv @/again.csv"));
-    CHECK_OK(run_read(&h, path_of("kinds", path), &err), &err);
+    Run h = run_in("kinds");
     Table t;
     char csv[PATH_MAX];
     CHECK_OK(table_read(&t, path_of("again.csv", csv), TABLE_WORDS, &err), &err);

@@ -409,9 +409,7 @@ TEST(a_killed_run_goes_on_with_every_result_it_had)
         wait_end(pid);
         CHECK_OK(run_read(&before, path, &err), &err);
         assert_in_range(before.table.n, kill_at, 399);
-        char again[PATH_MAX + 16];
-        snprintf(again, sizeof again, "optimize %s", path);
-        free(output_of(again));
+        free(output_of("optimize %s", path));
         CHECK_OK(run_read(&after, path, &err), &err);
         assert_int_equal(after.table.n, 400);
         assert_memory_equal(before.table.x, after.table.x, before.table.n * 2 * sizeof *before.table.x);

@@ -463,7 +463,7 @@ TEST(a_list_of_damping_gives_each_mode_its_ratio)
 TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
 {
     const BuildingOptions o = folder_of("tall");
-    char rows[8192] = "height_m,mass_kg,stiffness_n_m\n", head[2048] = "", gaps[2048] = "", command[512];
+    char rows[8192] = "height_m,mass_kg,stiffness_n_m\n", head[2048] = "", gaps[2048] = "";
     for (int j = 0; j < FLOORS_MAX; j++) {
         const int is_near = j % 18 == 0 || j == FLOORS_MAX - 1;
         snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "3.8,4e5,%g\n", 6e9 * (1 - 0.8 * j / FLOORS_MAX));
@@ -475,12 +475,10 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
     write_file(&o, "push.csv", "time_s,accel_m_s2\n0,0\n0.2,3\n");
     json_t *r[2];
     for (int i = 0; i < 2; i++) {
-        snprintf(command, sizeof command,
-                 "simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
-                 "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
-                 "sim.engine=%s --json --contacts @/contacts.csv",
-                 i ? "cvode" : "fast");
-        r[i] = json_of(command);
+        r[i] = json_of("simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
+                       "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
+                       "sim.engine=%s --json --contacts @/contacts.csv",
+                       i ? "cvode" : "fast");
         Table contacts;
         Err err = {0};
         char *path = in_place("contacts.csv");
@@ -802,13 +800,10 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
     write_file(&o, "design.csv", "%s0.02,0.008\n", design);
     write_shaking("shaking.csv");
     for (int i = 0; i < 2; i++) {
-        char command[512];
-        snprintf(command, sizeof command,
-                 "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                 "@/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
-                 "sim.engine=%s --json",
-                 i ? "cvode" : "fast");
-        r[i] = json_of(command);
+        r[i] = json_of("simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
+                       "@/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
+                       "sim.engine=%s --json",
+                       i ? "cvode" : "fast");
     }
     static const char *const SAME[] = {"j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n"};
 
@@ -865,9 +860,7 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
     char *svg = read_in_place("named.svg");
     assert_non_null(strstr(svg, "<title>&#60;b&#62;: column</title>"));
     free(svg);
-    char *text = output_of("building appendix --svg @/stick.svg --set building.p_delta=on");
-    assert_non_null(strstr(text, "20 floors"));
-    free(text);
+    expect_output("20 floors", "building appendix --svg @/stick.svg --set building.p_delta=on");
     svg = read_in_place("stick.svg");
     assert_int_equal(count(svg, "<circle class=\"n\""), 20);
     free(svg);

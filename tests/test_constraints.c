@@ -15,15 +15,6 @@ static void write_bounded(const char *name, const char *mode, const char *search
     write_in_place(name, text);
 }
 
-static Run run_of(const char *name)
-{
-    Run run;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
-    return run;
-}
-
 static void assert_starts_with(const char *file, const char *head)
 {
     char *text = read_in_place(file);
@@ -35,7 +26,7 @@ TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
 {
     write_bounded("bounded.ini", "bounded", "");
     free(output_of("optimize @/bounded.ini --out @/bounded"));
-    Run run = run_of("bounded");
+    Run run = run_in("bounded");
     assert_int_equal(run.n_front, 10);
     for (size_t i = 0; i < run.n_front; i++) {
         const double *x = run_x(&run, run.front[i]);
@@ -75,7 +66,7 @@ TEST(another_number_of_values_than_in_the_first_answer_fails_the_design_alone)
 {
     write_bounded("odd.ini", "unbounded", "");
     free(output_of("optimize @/odd.ini --out @/odd"));
-    Run run = run_of("odd");
+    Run run = run_in("odd");
     assert_int_equal(run.table.n, 90);
     for (size_t i = 0; i < run.table.n; i++)
         assert_int_equal(run.table.row[i].outcome, (i + 1) % 3 == 0 ? OUTCOME_NOT_FINITE : OUTCOME_OK);
@@ -96,7 +87,7 @@ TEST(where_the_first_designs_fail_the_first_that_succeeds_says_how_many)
     char arguments[PATH_MAX + 256];
     snprintf(arguments, sizeof arguments, "optimize @/late.ini --out @/late %s", line);
     expect(69, "search.limits: none of 87 designs keeps g<=0; those that come nearest", arguments);
-    Run run = run_of("late");
+    Run run = run_in("late");
     for (size_t i = 0; i < run.table.n; i++)
         assert_int_equal(run.table.row[i].outcome, i < 3 ? OUTCOME_ERROR : OUTCOME_OK);
     assert_true(run.schema.n_extra == 1 && run.table.row[3].extra[0] == 4.0);
@@ -135,7 +126,7 @@ TEST(the_welded_beam_of_the_example_has_four_constraints)
     if (system("command -v python3 >/dev/null") != 0)
         skip();
     free(output_of("optimize configs/beam.ini --out @/beam --max-evals 40"));
-    Run run = run_of("beam");
+    Run run = run_in("beam");
     assert_int_equal(run.schema.n_extra, 4);
     assert_less(0, run.n_front);
     run_free(&run);
@@ -147,7 +138,7 @@ TEST(a_simulator_that_reads_a_template_is_searched)
     if (system("command -v python3 >/dev/null") != 0)
         skip();
     free(output_of("optimize configs/template.ini --out @/template --max-evals 40"));
-    Run run = run_of("template");
+    Run run = run_in("template");
     for (size_t i = 0; i < run.table.n; i++) {
         const Evaluation *e = &run.table.row[i];
         const double b = e->x[0], h = e->x[1], steel = e->x[2] == 0, E = steel ? 210000 : 70000;

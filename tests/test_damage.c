@@ -4,7 +4,6 @@
 
 #include <signal.h>
 #include <sqlite3.h>
-#include <sys/stat.h>
 
 #include "store/folder.h"
 
@@ -77,18 +76,6 @@ TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
     shell("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
 }
 
-TEST(a_folder_with_evaluations_and_no_database_is_never_overwritten)
-{
-    shell("mkdir half && echo 1 here 0 > half/lock"); /* killed before anything was simulated */
-    free(output_of("optimize @/textbook.ini --out @/half"));
-    assert_same_run("sound", "half");
-    shell("mkdir bare && cp sound/lock bare");
-    expect(74, "bare: 40 evaluations were stored, as its file `lock` says; run.sqlite is not there",
-           "optimize @/textbook.ini --out @/bare");
-    free(output_of("optimize @/textbook.ini --new --out @/bare"));
-    shell("test -f bare-2/front.csv && test ! -f bare/run.sqlite");
-}
-
 /* The second one takes the folder, and what the first one goes on with is not mixed into its rows. */
 TEST(where_the_lock_is_removed_one_of_two_processes_ends_and_the_run_is_whole)
 {
@@ -108,9 +95,7 @@ TEST(a_lost_journal_is_noticed)
 {
     killed_run("lost");
     shell("mv lost/run.sqlite-wal kept && cp -r lost other");
-    char *said = output_of("status @/lost");
-    assert_non_null(strstr(said, "evaluations more were stored, as its file `lock` says"));
-    free(said);
+    expect_output("evaluations more were stored, as its file `lock` says", "status @/lost");
     expect(74, "evaluations were stored, as its file `lock` says; run.sqlite has", "optimize @/lost");
     shell("mv kept lost/run.sqlite-wal");
     free(output_of("optimize @/lost"));
@@ -158,46 +143,6 @@ TEST(another_database_in_the_place_of_a_run_ends_it)
     free(said);
 }
 
-/* -- links --------------------------------------------------------------------------------------------------------- */
-
-TEST(links_in_a_foreign_folder_are_not_followed)
-{
-    static const char *const FILES[] = {"front.csv", "settings.ini", "provenance.json", "report.html",
-                                        "log.jsonl", "lock",         "run.sqlite.tmp"};
-    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
-        Said said;
-        shell("rm -rf foreign && cp -r sound foreign && echo mine > victim && ln -sf ../victim foreign/%s", FILES[i]);
-        run(&said, "optimize @/foreign --max-evals 44 --force-settings");
-        forget(&said);
-        run(&said, "report @/foreign");
-        forget(&said);
-        shell("test \"$(cat victim)\" = mine || { echo %s; false; }", FILES[i]);
-    }
-    shell("echo mine > victim && ln -s victim link");
-    free(output_of("export @/sound --csv @/link")); /* a path that was typed may be a link */
-    shell("test -L link && cmp victim sound/front.csv");
-}
-
-/* -- hands --------------------------------------------------------------------------------------------------------- */
-
-TEST(what_was_edited_in_the_exports_does_not_survive_a_resume)
-{
-    static const char *const EDITS[] = {
-        "sed -i '3s/[0-9]$/7/' front.csv", /* a last digit */
-        "rm front.csv",
-    };
-    shell("cp -r sound longer");
-    free(output_of("optimize @/longer --max-evals 44 --force-settings"));
-    for (size_t i = 0; i < sizeof EDITS / sizeof EDITS[0]; i++) {
-        shell("rm -rf edited && cp -r sound edited && cd edited && %s", EDITS[i]);
-        free(output_of("optimize @/edited")); /* it is over */
-        shell("cmp sound/front.csv edited/front.csv");
-        shell("cd edited && %s", EDITS[i]);
-        free(output_of("optimize @/edited --max-evals 44 --force-settings"));
-        shell("cmp longer/front.csv edited/front.csv");
-    }
-}
-
 /* -- bits ---------------------------------------------------------------------------------------------------------- */
 
 TEST(a_damaged_state_gives_way_to_its_copy_with_the_same_end_also_where_there_is_more_to_do)
@@ -243,7 +188,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
 
 TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
 {
-    char advice[PATH_MAX], words[PATH_MAX];
+    char advice[PATH_MAX];
     snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
     shell("cp -r sound hurt");
     sql("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
@@ -254,10 +199,8 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
     expect(74, advice, "status @/hurt");
     shell("rm hurt/run.sqlite* && touch hurt/run.sqlite");
     expect(74, advice, "export @/hurt --csv -");
-    snprintf(words, sizeof words,
-             "optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
-             place.folder);
-    free(output_of(words));
+    free(output_of("optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
+                   place.folder));
     char *all = all_of("hurt-2");
     write_in_place("all.csv", all);
     free(all);

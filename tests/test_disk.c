@@ -33,18 +33,13 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
     kill(pid, SIGKILL);
     wait_end(pid);
     assert_false(folder_is_held(path_of("locked", path), &holder));
-    said = output_of("status @/locked");
-    assert_non_null(strstr(said, "interrupted"));
-    free(said);
+    expect_output("interrupted", "status @/locked");
 }
 
 /* All of `before` is in the run as it is now. */
 static void assert_nothing_lost(const char *folder, const Run *before)
 {
-    Run after;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&after, path_of(folder, path), &err), &err);
+    Run after = run_in(folder);
     assert_at_most(before->table.n, after.table.n);
     for (size_t i = 0; i < before->table.n; i++) {
         const size_t j = run_find(&after, before->table.row[i].id), n = before->schema.n_var;
@@ -59,7 +54,6 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 {
     Said s;
     Run before;
-    Err err = {0};
     char command[512], path[PATH_MAX];
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/unlimited"));
@@ -80,7 +74,7 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
         forget(&s);
         memset(&before, 0, sizeof before);
         if (access(path_of("small/run.sqlite", path), F_OK) == 0)
-            CHECK_OK(run_read(&before, path_of("small", path), &err), &err);
+            before = run_in("small");
         free(output_of("optimize @/textbook.ini --out @/small"));
         assert_nothing_lost("small", &before);
         run_free(&before);
@@ -263,9 +257,7 @@ TEST(damage_is_found_on_opening_whatever_was_hit)
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
     expect(74, "has format 1, this program reads 10; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
-    char *list = output_of("status @");
-    assert_non_null(strstr(list, "unreadable"));
-    free(list);
+    expect_output("unreadable", "status @");
 }
 
 static long peak_kib(void)
@@ -311,17 +303,6 @@ TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
     assert_less(peak_kib(), usual + 64 * 1024);
 }
 
-TEST(a_run_is_named_by_its_database_or_through_the_root_too)
-{
-    char command[PATH_MAX + 128], path[PATH_MAX];
-    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/named"));
-    free(output_of("status @/named/run.sqlite"));
-    free(output_of("optimize @/named/run.sqlite"));
-    snprintf(command, sizeof command, "status /../../../../../../../..%s", path_of("named", path));
-    free(output_of(command));
-    expect(2, "imtet status: the [RUN] is an empty word", "status ''");
-}
-
 /* The first files that are opened must not get the numbers of standard output and error. */
 TEST(who_closes_the_standard_streams_finds_nothing_of_them_in_the_run)
 {
@@ -335,37 +316,6 @@ TEST(who_closes_the_standard_streams_finds_nothing_of_them_in_the_run)
     assert_null(strstr(log, "imtet:"));
     assert_null(strstr(log, "knee"));
     free(log);
-}
-
-TEST(readers_need_the_database_alone_and_the_files_come_back)
-{
-    char command[512];
-    free(output_of("optimize @/textbook.ini --max-evals 30 --set problem.noise=0 --out @/alone"));
-    char *front = read_in_place("alone/front.csv"), *all = all_of("alone");
-    char *settings = read_in_place("alone/settings.ini"), *provenance = read_in_place("alone/provenance.json");
-    snprintf(command, sizeof command, "cd '%s/alone' && rm *.csv *.ini *.json", place.folder);
-    assert_int_equal(system(command), 0);
-    char *exported = output_of("export @/alone --csv -"), *exported_all = output_of("export @/alone --all --csv -");
-    assert_string_equal(exported, front);
-    assert_string_equal(exported_all, all);
-    free(output_of("choose @/alone --max f1=1"));
-    snprintf(command, sizeof command, "cp -r '%s/alone' '%s/another'", place.folder, place.folder);
-    assert_int_equal(system(command), 0);
-    free(output_of("polish @/another --design knee --evals 24"));
-    free(output_of("optimize @/alone"));
-    char *again[] = {read_in_place("alone/front.csv"), all_of("alone"), read_in_place("alone/settings.ini"),
-                     read_in_place("alone/provenance.json")};
-    const char *const WANTED[] = {front, all, settings, provenance};
-    for (int i = 0; i < 4; i++) {
-        assert_string_equal(again[i], WANTED[i]);
-        free(again[i]);
-    }
-    free(front);
-    free(all);
-    free(settings);
-    free(provenance);
-    free(exported);
-    free(exported_all);
 }
 
 SUITE(prepare, clear_place)

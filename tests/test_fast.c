@@ -10,9 +10,8 @@
 
 #include "base/csv.h"
 #include "sim/fast/fast.h"
-#include "sim/sim.h"
 #include "motion/motion_scale.h"
-#include "scene_options.h"
+#include "one_scene.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */
 
@@ -165,35 +164,6 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 
 /* ---- the tower ---------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    Settings settings;
-    Motion motion;
-    Scene *scene;
-    SimWorker *worker;
-    double x[22];
-} Tower;
-
-static void tower_open(Tower *t)
-{
-    Err err = {0};
-    const SceneOptions options = settings_scene(&t->settings);
-    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
-    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
-    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
-    for (int j = 0; j < 20; j++)
-        t->x[j] = 0.008 * (j + 1);
-    t->x[20] = 0.012;
-    t->x[21] = 0.0064;
-}
-
-static void tower_close(Tower *t)
-{
-    sim_worker_free(t->worker);
-    scene_free(t->scene);
-    motion_free(&t->motion);
-}
-
 static SimResult tower_run(Tower *t, SceneKind kind)
 {
     SimResult r;
@@ -221,7 +191,7 @@ TEST(early_window_has_the_digits_that_independent_integrators_share)
     t.settings.motion.stretch = 3.0;
     t.settings.sim.duration_s = 11;
     t.settings.sim.accuracy = ACCURACY_FINE;
-    tower_open(&t);
+    tower_open(&t, 0.012, 0.0064);
     const SimResult fine = tower_run(&t, SCENE_IMPACT);
     assert_close(fine.j1_m, 0.370445, 3e-6);
     assert_close(fine.j2_m, 0.032808, 2e-5);
@@ -233,7 +203,7 @@ TEST(early_window_has_the_digits_that_independent_integrators_share)
     assert_less(fine.energy_balance_error, 1e-4);
     tower_close(&t);
     t.settings.sim.accuracy = ACCURACY_STANDARD;
-    tower_open(&t);
+    tower_open(&t, 0.012, 0.0064);
     const SimResult standard = tower_run(&t, SCENE_IMPACT);
     assert_close(standard.j1_m, fine.j1_m, 1e-3);
     assert_close(standard.j2_m, fine.j2_m, 3e-3);
@@ -251,7 +221,7 @@ TEST(kobe_without_a_core_has_its_known_response)
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
     if (!record_is_there(t.settings.motion.record))
         skip();
-    tower_open(&t);
+    tower_open(&t, 0.012, 0.0064);
     const SimResult r = tower_run(&t, SCENE_NO_CORE);
     assert_close(r.j1_m, 1.648, 3e-3);
     assert_close(r.j2_m, 0.1475, 3e-3);
@@ -266,7 +236,7 @@ static void builtin_tower(Tower *t)
     paper_defaults(&t->settings);
     t->settings.sim.duration_s = 14;
     snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
-    tower_open(t);
+    tower_open(t, 0.012, 0.0064);
 }
 
 TEST(energy_balance_closes_and_damping_never_gives)

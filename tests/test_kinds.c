@@ -9,15 +9,6 @@
 #include "evaluate/textbook.h"
 #include "moga/variation.h"
 
-static Run run_of(const char *name)
-{
-    Run run;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
-    return run;
-}
-
 /* Position by tenths; distance 0 where the second number is 5 and both choices stand for 1/2. */
 #define SMALL                                                                                                          \
     "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\nkinds = int, int, choice:a|b|c|d|e, choice:u|v|w\n"       \
@@ -27,7 +18,7 @@ TEST(all_eleven_points_of_a_front_are_found_among_1815_designs)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");
     free(output_of("optimize @/small.ini --out @/small"));
-    Run run = run_of("small");
+    Run run = run_in("small");
     size_t found[11] = {0};
     for (size_t i = 0; i < run.n_front; i++) {
         const double *f = run_f(&run, run.front[i]);
@@ -64,7 +55,7 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");
     free(output_of("optimize @/small.ini --out @/twice"));
-    Run run = run_of("twice");
+    Run run = run_in("twice");
     const double most[] = {10, 10, 4, 2};
     for (size_t i = 0; i < run.table.n; i++) {
         const double *x = run_x(&run, i);
@@ -169,7 +160,7 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
     free(output_of("optimize @/steps.ini --out @/steps-2 --threads 2"));
     char *one = all_of("steps"), *two = all_of("steps-2");
     assert_string_equal(one, two);
-    Run run = run_of("steps");
+    Run run = run_in("steps");
     for (size_t i = 0; i < run.table.n; i++) {
         const double *x = run_x(&run, i);
         for (int j = 0; j < 2; j++)
@@ -208,7 +199,7 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
     Err err = {0};
     write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/devices"));
-    Run run = run_of("devices");
+    Run run = run_in("devices");
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     for (size_t i = 0; i < 2; i++) {
         Baseline b[N_BASELINES];
@@ -248,50 +239,6 @@ TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill)
     free(cut);
 }
 
-/* A file with that device in the second zone and that roof. */
-static void write_devices(const char *name, const char *devices)
-{
-    char text[512];
-    snprintf(text, sizeof text,
-             "gap_zone_1_m,gap_zone_2_m,t_base_m,t_top_m,link_zone_1_n_s_m,link_zone_2_n_s_m,tuned_mass_kg,"
-             "tuned_mass_hz,tuned_mass_damping,device_zone_1,device_zone_2,device_roof\n"
-             "0.1,0.1,0.01,0.01,1e5,1e5,1e5,1,0.1,%s\n",
-             devices);
-    write_in_place(name, text);
-}
-
-TEST(a_file_of_designs_has_words_of_devices_or_their_places)
-{
-    write_in_place("devices.ini", DEVICES);
-    write_devices("words.csv", "gap,link,none");
-    write_devices("places.csv", "0,1,1");
-    char *words = output_of("simulate @/devices.ini --design @/words.csv --csv -"),
-         *places = output_of("simulate @/devices.ini --design @/places.csv --csv -");
-    assert_string_equal(strchr(words, '\n'), strchr(places, '\n'));
-    free(words);
-    free(places);
-    write_devices("wrong.csv", "gap,lnk,none");
-    expect(65, "wrong.csv:2: device_zone_2: lnk is no device; did you mean link?",
-           "simulate @/devices.ini --design @/wrong.csv");
-    write_devices("wrong.csv", "gap,3,none");
-    expect(65, "wrong.csv:2: device_zone_2: 3 is no device", "simulate @/devices.ini --design @/wrong.csv");
-}
-
-TEST(a_start_is_refused_by_file_line_and_what_would_fit)
-{
-    write_in_place("fit.ini",
-                   "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nkinds = int, choice:oak|steel\n");
-    write_in_place("half.csv", "x1,x2\n1,oak\n3.5,oak\n");
-    write_in_place("elm.csv", "x1,x2\n1,elm\n");
-    write_in_place("two.csv", "x1,x2\n1,2\n");
-    expect(65, "half.csv:3: x1 is 3.5; it is a whole number (problem.kinds)",
-           "optimize @/fit.ini --out @/no --set search.start=@/half.csv");
-    expect(65, "elm.csv:2: x2 is 'elm'; it is one of oak, steel",
-           "optimize @/fit.ini --out @/no --set search.start=@/elm.csv");
-    expect(65, "two.csv:2: x2 is '2'; it is one of oak, steel",
-           "optimize @/fit.ini --out @/no --set search.start=@/two.csv");
-}
-
 TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
 {
     write_in_place("words.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh words\nvariables = 2\n"
@@ -305,7 +252,7 @@ TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
     free(front);
     free(all);
     free(output_of("optimize @/words.ini --out @/again --set search.start=@/words/front.csv"));
-    Run run = run_of("again");
+    Run run = run_in("again");
     assert_true(run_x(&run, 0)[1] == 0.0 && run_x(&run, 1)[1] == 0.0);
     assert_true(run_x(&run, 0)[0] + run_x(&run, 1)[0] == 1.0);
     run_free(&run);

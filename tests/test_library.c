@@ -59,11 +59,8 @@ TEST(a_design_has_the_numbers_of_imtet_simulate)
     write_in_place("d.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                             "0.003,0.004,0.005,0.006,0.007,0.008,0.02,0.01\n");
     for (size_t k = 0; k < N_OF(KINDS); k++) {
-        char command[512];
         imtet_result *r = response(scene, KINDS[k].kind);
-        snprintf(command, sizeof command, "simulate configs/quick.ini %s " SIX_FLOORS "--csv @/table.csv",
-                 KINDS[k].options);
-        free(output_of(command));
+        free(output_of("simulate configs/quick.ini %s " SIX_FLOORS "--csv @/table.csv", KINDS[k].options));
         char *table = read_in_place("table.csv"), *names = table, *cells = strchr(table, '\n') + 1, *name;
         size_t known = 0;
         cells[-1] = 0;

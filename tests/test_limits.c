@@ -20,10 +20,6 @@ static double missed(const double f[])
 TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
 {
     Said s;
-    Table nearest;
-    Run all;
-    Err err = {0};
-    char path[PATH_MAX];
     write_in_place("unmet.ini", UNMET);
     run(&s, "optimize @/unmet.ini --out @/unmet");
     assert_int_equal(s.code, 69);
@@ -31,8 +27,8 @@ TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
     assert_non_null(strstr(s.out, "nearest.csv"));
     forget(&s);
 
-    CHECK_OK(table_read(&nearest, path_of("unmet/nearest.csv", path), 1, &err), &err);
-    CHECK_OK(run_read(&all, path_of("unmet", path), &err), &err);
+    Table nearest = table_of("unmet/nearest.csv");
+    Run all = run_in("unmet");
     assert_int_equal(nearest.n_rows, NEAREST_MAX);
     assert_int_equal(all.table.n, 40);
     double last = 0.0;
@@ -59,17 +55,6 @@ TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
     }
 }
 
-TEST(a_run_that_keeps_its_limits_has_no_nearest_designs)
-{
-    write_in_place("met.ini", TEXTBOOK);
-    free(output_of("optimize @/met.ini --out @/met --threads 1"));
-    write_in_place("met/nearest.csv", "of an earlier session");
-    free(output_of("optimize @/met"));
-    char *path = in_place("met/nearest.csv");
-    assert_int_not_equal(access(path, F_OK), 0);
-    free(path);
-}
-
 TEST(the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones)
 {
     static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
@@ -90,27 +75,6 @@ TEST(the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_
     assert_int_equal(run_nearest(&few, rows), 3);
     assert_int_equal(rows[0], 1);
     assert_int_equal(rows[2], 2);
-}
-
-TEST(limits_that_contradict_each_other_are_refused_before_anything_is_simulated)
-{
-    write_in_place("both.ini", UNMET);
-    expect(65, "search.limits: f1<=5 and >=7 contradict each other",
-           "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
-    expect(65, "f1<=5 and >=7", "optimize @/both.ini --out @/both --set 'search.limits=f1<=5,f2<=1,f1>=7'");
-    free(output_of("check @/both.ini --set 'search.limits=f1<=5,f1>=5,f2<=7'"));
-    expect(65, "search.limits: f2<= is given twice", "check @/both.ini --set 'search.limits=f2<=5,f1<=7,f2<=6'");
-    expect(
-        65,
-        "search.limits: f1>=7 excludes what is better: of f1 less is better; write <=, or give a limit on both sides",
-        "check @/both.ini --set 'search.limits=f1>=7'");
-    expect(65, "search.limits: edcs_pct<=20 excludes what is better: of edcs_pct more is better; write >=",
-           "check configs/quick.ini --set 'search.limits=edcs_pct<=20'");
-    expect(65, "p(j3_g>1)<=2: this is a share of 1, no per cent; write 0.02 for 2 %",
-           "check configs/quick.ini --set 'search.limits=p(j3_g>1)<=2'");
-    expect(65, "search.limits: drift_ratio<=1.5: this is a share of 1, no per cent; write 0.015 for 1.5 %",
-           "optimize configs/quick.ini --out @/share --set 'search.limits=drift_ratio<=1.5'");
-    expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");
 }
 
 /* Lets `left` questions pass, then stops. */

@@ -9,9 +9,8 @@ TEST(every_command_has_a_page_with_all_its_options)
 {
     for (int i = 0; command_at(i); i++) {
         const Command *c = command_at(i);
-        char arguments[64], option[64];
-        snprintf(arguments, sizeof arguments, "--man %s", c->name);
-        char *page = output_of(arguments);
+        char option[64];
+        char *page = output_of("--man %s", c->name);
         assert_int_equal(strncmp(page, ".TH \"imtet-", 11), 0);
         for (const ArgOption *o = c->options; o->name; o++) {
             snprintf(option, sizeof option, "  \\-\\-%s", o->name + 2);
@@ -54,34 +53,7 @@ TEST(the_version_says_what_the_program_was_built_from)
     free(line);
     expect(2, "nothing but --json", "--version --jsn");
     expect(2, "did you mean --version?", "--versoin");
-    char *first = output_of("--version --json"), *second = output_of("--json --version");
-    assert_string_equal(first, second);
-    free(first);
-    free(second);
-}
-
-TEST(the_nearest_is_suggested_everywhere)
-{
-    expect(65, "did you mean builtin:kobe-like?", "spectrum builtin:koobe-like");
-    expect(66, "did you mean builtin:kobe-like?", "spectrum bulitin:kobe-like");
-    expect(65, "did you mean cvode?", "building configs/quick.ini --set sim.engine=cvodee");
-    expect(65, "did you mean search.limits?", "building configs/quick.ini --set search.limit=none");
-    expect(65, "did you mean f1?", "optimize @/two.ini --out @/no --set 'search.limits=f11<=3'");
-    expect(65, "there are f1, f2", "optimize @/two.ini --out @/no --set 'search.limits=displacement<=3'");
-    free(output_of("optimize @/two.ini --out @/two"));
-    expect(2, "did you mean f2?", "choose @/two --max f22=3");
-    expect(65, "did you mean knee, or best_f1?", "evaluate @/two --design kneee --record builtin:kobe-like");
-    expect(65, "has no design 999; the nearest id is", "polish @/two --design 999 --improve f2");
-    expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
-}
-
-TEST(an_empty_front_is_refused_with_its_reason_everywhere)
-{
-    static const char WHY[] = "search.limits: none of ";
-    expect(69, WHY, "optimize @/two.ini --out @/hollow --set 'search.limits=f1<=-1'");
-    expect(69, WHY, "choose @/hollow");
-    expect(69, WHY, "polish @/hollow --design knee");
-    expect(69, WHY, "evaluate @/hollow --design knee --record builtin:kobe-like");
+    assert_same_output("--version --json", "--json --version");
 }
 
 static char *shell(const char *format, ...)
@@ -192,20 +164,4 @@ TEST(the_exit_codes_are_those_of_the_documentation)
     free(page);
 }
 
-TEST(a_study_without_one_good_simulation_ends_with_70)
-{
-    expect(70, "none of 8 simulations succeeded", "optimize @/fails.ini --out @/fails --threads 1");
-}
-
-static int make_studies(void **state)
-{
-    if (make_place(state) != 0)
-        return -1;
-    write_in_place("two.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n[search]\npopulation = 8\n"
-                              "initial = 8\nmax_evals = 16\n");
-    write_in_place("fails.ini", "[problem]\nkind = external\ncommand = sh -c 'exit 1'\nvariables = 2\nobjectives = 2\n"
-                                "[search]\npopulation = 4\ninitial = 8\nmax_evals = 8\n");
-    return 0;
-}
-
-SUITE(make_studies, clear_place)
+SUITE(make_place, clear_place)

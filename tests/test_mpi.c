@@ -152,7 +152,7 @@ static char *front_of(const char *run)
     return read_in_place(name);
 }
 
-static void assert_same_files(const char *a, const char *b)
+static void assert_same_evaluations(const char *a, const char *b)
 {
     assert_same_text(all_of(a), all_of(b), a, b, "evaluations");
     assert_same_text(front_of(a), front_of(b), a, b, "front.csv");
@@ -210,7 +210,7 @@ TEST(a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads)
             char run_name[32];
             snprintf(run_name, sizeof run_name, "on-%d-%d", RANKS[i], threads);
             expect_code(launch(RANKS[i], "optimize @/tower.ini --out @/%s --threads %d", run_name, threads), 0);
-            assert_same_files("alone", run_name);
+            assert_same_evaluations("alone", run_name);
         }
 }
 
@@ -224,7 +224,7 @@ TEST(a_race_over_a_suite_has_the_same_bytes_at_any_number_of_ranks)
         char run_name[32];
         snprintf(run_name, sizeof run_name, "race-on-%d", RANKS[i]);
         expect_code(launch(RANKS[i], "optimize @/race.ini --out @/%s", run_name), 0);
-        assert_same_files("race", run_name);
+        assert_same_evaluations("race", run_name);
     }
 }
 
@@ -235,11 +235,9 @@ TEST(polishing_goes_over_the_ranks)
                    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\nreplicates = 4\n"
                    "[search]\ninitial = 30\npopulation = 16\nmax_evals = 100\nsurrogate = off\n"
                    "polish = 1\nthreads = 1\n");
-    char *said = output_of("optimize @/polish.ini --out @/polished");
-    assert_non_null(strstr(said, "polished: "));
-    free(said);
+    expect_output("polished: ", "optimize @/polish.ini --out @/polished");
     expect_code(launch(3, "optimize @/polish.ini --out @/polished-on-3"), 0);
-    assert_same_files("polished", "polished-on-3");
+    assert_same_evaluations("polished", "polished-on-3");
 }
 
 TEST(an_external_simulator_runs_beside_every_rank)
@@ -248,7 +246,7 @@ TEST(an_external_simulator_runs_beside_every_rank)
     write_in_place("steady.ini", STEADY);
     free(output_of("optimize @/steady.ini --out @/steady --threads 3"));
     expect_code(launch(4, "optimize @/steady.ini --out @/spread"), 0);
-    assert_same_files("steady", "spread");
+    assert_same_evaluations("steady", "spread");
 }
 
 TEST(constraints_whole_numbers_and_words_have_the_same_bytes_over_ranks)
@@ -260,7 +258,7 @@ TEST(constraints_whole_numbers_and_words_have_the_same_bytes_over_ranks)
                    "max_evals = 60\nthreads = 1\n");
     free(output_of("optimize @/bounded.ini --out @/bounded"));
     expect_code(launch(3, "optimize @/bounded.ini --out @/bounded-on-3"), 0);
-    assert_same_files("bounded", "bounded-on-3");
+    assert_same_evaluations("bounded", "bounded-on-3");
 }
 
 TEST(devices_have_the_same_bytes_over_ranks)
@@ -273,7 +271,7 @@ TEST(devices_have_the_same_bytes_over_ranks)
         "device_zones = 2\n[search]\ninitial = 12\npopulation = 12\nmax_evals = 24\npolish = 0\nthreads = 1\n");
     free(output_of("optimize @/devices.ini --out @/devices"));
     expect_code(launch(3, "optimize @/devices.ini --out @/devices-on-3"), 0);
-    assert_same_files("devices", "devices-on-3");
+    assert_same_evaluations("devices", "devices-on-3");
 }
 
 TEST(isolated_simulations_have_the_same_bytes_over_ranks)
@@ -282,7 +280,7 @@ TEST(isolated_simulations_have_the_same_bytes_over_ranks)
     write_in_place("isolated.ini", ISOLATED);
     free(output_of("optimize @/isolated.ini --out @/isolated --set run.isolate=no"));
     expect_code(launch(3, "optimize @/isolated.ini --out @/isolated-on-3"), 0);
-    assert_same_files("isolated", "isolated-on-3");
+    assert_same_evaluations("isolated", "isolated-on-3");
 }
 
 /* Three processes that simulate for ranks are shot while they run. */
@@ -310,7 +308,7 @@ TEST(asynchronous_with_one_worker_is_the_run_in_batches)
     write_in_place("steady.ini", STEADY);
     free(output_of("optimize @/steady.ini --out @/batches --threads 1 --set search.asynchronous=on"));
     expect_code(launch(2, "optimize @/steady.ini --out @/one --set search.asynchronous=on"), 0);
-    assert_same_files("batches", "one");
+    assert_same_evaluations("batches", "one");
     expect_code(launch(4, "optimize @/steady.ini --out @/several --set search.asynchronous=on"), 0);
     assert_int_equal(finished_in("several"), 150);
 }
@@ -382,7 +380,7 @@ static void kill_and_resume(const char *study, int rank, int code)
     expect_not_said("stopped on request");
     expect_code(launch(3, "optimize @/killed"), 0);
     free(output_of("optimize @/killed.ini --out @/whole --threads 3"));
-    assert_same_files("whole", "killed");
+    assert_same_evaluations("whole", "killed");
 }
 
 TEST(a_killed_rank_is_named_and_the_same_command_goes_on)
@@ -419,12 +417,12 @@ TEST(a_race_that_is_killed_at_random_moments_ends_with_the_same_bytes)
             n_killed++;
             continue;
         }
-        assert_same_files("race-on-3", "killed");
+        assert_same_evaluations("race-on-3", "killed");
         remove_run("killed");
     }
     assert_less(0, n_killed);
     expect_code(launch(4, "%s", START), 0);
-    assert_same_files("race-on-3", "killed");
+    assert_same_evaluations("race-on-3", "killed");
 }
 
 TEST(a_killed_rank_0_loses_nothing)
@@ -476,7 +474,7 @@ TEST(a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on)
     expect_said("Resume it with");
     expect_code(launch(2, "optimize @/stopped"), 0);
     free(output_of("optimize @/steady.ini --out @/never-stopped"));
-    assert_same_files("never-stopped", "stopped");
+    assert_same_evaluations("never-stopped", "stopped");
 }
 
 static pid_t child_of(pid_t parent)

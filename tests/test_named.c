@@ -18,15 +18,6 @@ static int make_run(void **state)
     return 0;
 }
 
-static Run run_here(void)
-{
-    Run run;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
-    return run;
-}
-
 static size_t named_of(const Run *run, size_t rows[])
 {
     size_t n = 0;
@@ -39,10 +30,7 @@ static size_t named_of(const Run *run, size_t rows[])
 /* J1, J2, J3 by the preset `accuracy`. */
 static void simulate(long id, const char *accuracy, double j[3])
 {
-    char words[300];
-    snprintf(words, sizeof words, "simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld",
-             accuracy, id);
-    json_t *o = json_of(words);
+    json_t *o = json_of("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
     j[0] = number(o, "j1_m");
     j[1] = number(o, "j2_m");
     j[2] = number(o, "j3_g");
@@ -52,7 +40,7 @@ static void simulate(long id, const char *accuracy, double j[3])
 /* At `coarse`, as the search took them, some of these designs miss what `standard` promises. */
 TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t all = named_of(&run, rows), n = SANITIZED ? 1 : 5; /* `fine` takes seconds */
     int missed_before = 0;
@@ -75,7 +63,7 @@ TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
 /* Unless the command line says by which accuracy. */
 TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     const Evaluation *e = run.finer.row;
     const double wanted = run_f(&run, run_find(&run, e->id))[2];
     char words[300];
@@ -93,7 +81,7 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
 
 TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     char *all = output_of("export @/run --all --csv -"), *front = read_in_place("run/front.csv"), head[64], *row;
     size_t n_known = 0;
     assert_non_null(strstr(front, ",err_j1_m,err_j2_m,err_j3_g,"));
@@ -116,7 +104,7 @@ TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 
 TEST(choose_marks_what_cannot_be_predicted)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     size_t n_marked = 0, n_reasons = 0, i;
     json_t *o = json_of("choose @/run --json"), *pick;
     char *said = output_of("choose @/run");
@@ -141,16 +129,15 @@ TEST(choose_marks_what_cannot_be_predicted)
 /* A simulation has five copies of the design, the run up to eight. */
 TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
 {
-    Run run = run_here();
+    Run run = run_in("run");
     int n_unpredictable = 0;
     for (size_t i = 0; i < run.finer.n; i++) {
         const size_t row = run_find(&run, run.finer.row[i].id);
-        char words[300];
         if (!run_is_unpredictable(&run, row))
             continue;
         n_unpredictable++;
-        snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
-        json_t *o = json_of(words), *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
+        json_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id),
+               *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
         for (size_t k = 0; k < run.schema.n_obj; k++)
             assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));
         json_decref(o);
@@ -195,7 +182,7 @@ TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_
 TEST(a_run_that_goes_on_names_anew)
 {
     char *said = output_of(STUDY "80"), wanted[64];
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     snprintf(wanted, sizeof wanted, "simulated with more steps: %zu designs (knee, the best, some", run.finer.n);
     assert_non_null(strstr(said, wanted));
@@ -216,7 +203,7 @@ TEST(a_run_that_goes_on_names_anew)
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
 {
     free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --evals 60"));
-    Run run = run_here();
+    Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t n = named_of(&run, rows);
     int has_joined = 0;
@@ -242,13 +229,11 @@ TEST(what_an_interrupted_study_names_is_known_too)
                                 "[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\nthreads = 2\n";
     const Settings s = settings_of(SHORT, "run-cut");
     StudySummary summary;
-    Run run;
     Err err = {0};
-    char path[PATH_MAX];
     int left = 40;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    CHECK_OK(run_read(&run, path_of("run-cut", path), &err), &err);
+    Run run = run_in("run-cut");
     assert_non_null(run.table.row[run_knee(&run)].err);
     assert_non_null(run.table.row[run_best(&run, 0)].err);
     run_free(&run);

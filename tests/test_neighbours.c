@@ -9,8 +9,7 @@
 #include "base/units.h"
 #include "program.h"
 #include "scene/neighbour.h"
-#include "scene_options.h"
-#include "sim/sim.h"
+#include "one_scene.h"
 
 #define HEAD "height_m,mass_kg,stiffness_n_m\n"
 
@@ -41,22 +40,6 @@ static SceneOptions pair_of(const char *building, const char *neighbour, Engine 
     o.sim.accuracy = ACCURACY_FINE;
     o.sim.forces = FORCES_YES;
     return o;
-}
-
-static SimResult simulate(const SceneOptions *o, SceneKind kind, const Motion *motion, const double x[])
-{
-    Err err = {0};
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
-    CHECK_OK(scene_create(&scene, o, motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    sim_worker_device(worker, &(LinearDevice){1, 0.1, 0});
-    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
-    scene_free(scene);
-    return r;
 }
 
 /* A constant force F on the first mass of frequency w from rest: at u = F / k it has the speed v = w F / k and meets the

@@ -1,8 +1,6 @@
 /* search.objectives and search.limits on any result: what is searched for, what is computed, and what the files say. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "base/figure.h"
 #include "study/front_review.h"
 
@@ -14,17 +12,8 @@ static const char TOWER[] = SIX_FLOORS_INI "[sim]\nduration_s = 8\naccuracy = co
 
 static void optimize(const char *name, const char *more)
 {
-    char arguments[1024];
     write_in_place("tower.ini", TOWER);
-    snprintf(arguments, sizeof arguments, "optimize @/tower.ini --out @/%s %s", name, more);
-    free(output_of(arguments));
-}
-
-static void read_run(const char *name, Run *run)
-{
-    char path[PATH_MAX];
-    Err err = {0};
-    CHECK_OK(run_read(run, path_of(name, path), &err), &err);
+    free(output_of("optimize @/tower.ini --out @/%s %s", name, more));
 }
 
 /* The further measure of that name; NAN where the cell is empty. */
@@ -39,9 +28,8 @@ static double extra_of(const Run *run, size_t row, const char *name)
 
 TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
 {
-    Run run;
     optimize("plain", "");
-    read_run("plain", &run);
+    Run run = run_in("plain");
     assert_int_equal(run.schema.n_obj, 7);
     for (size_t i = 0; i < run.table.n; i++) {
         assert_true(isnan(extra_of(&run, i, "contact_force_max_n")) && isnan(extra_of(&run, i, "core_stress_pa")));
@@ -52,9 +40,8 @@ TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
     }
     run_free(&run);
     optimize("forces", "--set sim.forces=yes");
-    Run forces;
-    read_run("forces", &forces);
-    read_run("plain", &run);
+    Run forces = run_in("forces");
+    run = run_in("plain");
     assert_memory_equal(forces.F, run.F, run.table.n * 7 * sizeof *run.F);
     for (size_t i = 0; i < forces.table.n; i++)
         assert_true(extra_of(&forces, i, "core_stress_pa") > 0.0 && extra_of(&forces, i, "base_shear_n") > 0.0);
@@ -64,14 +51,11 @@ TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
 
 TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
 {
-    Run run;
-    char arguments[128];
     optimize("other", "--set 'search.objectives=core_stress_pa, impacts , j1_m'");
-    read_run("other", &run);
+    Run run = run_in("other");
     assert_int_equal(run.schema.n_obj, 3);
     const size_t row = run.front[0];
-    snprintf(arguments, sizeof arguments, "simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
-    json_t *o = json_of(arguments);
+    json_t *o = json_of("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
     assert_same_number(number(o, "core_stress_pa"), run_f(&run, row)[0]);
     assert_same_number(number(o, "impacts"), run_f(&run, row)[1]);
     assert_same_number(number(o, "j1_m"), run_f(&run, row)[2]);
@@ -123,9 +107,8 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     assert_true(error > 0.0 && error < 0.1 * before);
     table_free(&polished);
     free(output_of("optimize @/other"));
-    char *said = output_of("optimize @/other --max-evals 34 --force-settings");
-    assert_non_null(strstr(said, "largest bending stress of the core [Pa], lower is better"));
-    free(said);
+    expect_output("largest bending stress of the core [Pa], lower is better",
+                  "optimize @/other --max-evals 34 --force-settings");
     expect(65, "search.objectives is core_stress_pa, impacts , j1_m there, now auto",
            "optimize @/tower.ini --out @/other");
 }
@@ -134,14 +117,14 @@ TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
 {
     Run free_of, run;
     char more[128];
-    read_run("forces", &free_of);
+    free_of = run_in("forces");
     double limit = 0.0;
     for (size_t i = 0; i < free_of.n_front; i++)
         limit += extra_of(&free_of, free_of.front[i], "contact_force_max_n") / (double)free_of.n_front;
     run_free(&free_of);
     snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=0.9'", limit);
     optimize("limited", more);
-    read_run("limited", &run);
+    run = run_in("limited");
     size_t beyond = 0;
     for (size_t i = 0; i < run.table.n; i++) {
         const double force = extra_of(&run, i, "contact_force_max_n");
@@ -155,9 +138,8 @@ TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
 
 static void expect_limited_in(const char *name)
 {
-    Run run;
     Table front = table_of(name);
-    read_run("limited", &run);
+    Run run = run_in("limited");
     const size_t at = 1 + run.schema.n_var + run.schema.n_obj;
     assert_int_equal(front.n_cols, at + 2 + run.schema.n_obj); /* the last ones: likely errors */
     assert_int_equal(front.n_rows, run.n_front);
@@ -178,74 +160,12 @@ TEST(limited_results_stand_beside_the_objectives)
     expect_limited_in("exported.csv");
     json_t *o = json_of("choose @/limited --json");
     const json_t *knee = json_array_get(json_object_get(o, "designs"), 0);
-    Run run;
-    read_run("limited", &run);
+    Run run = run_in("limited");
     assert_same_number(number(json_object_get(knee, "limited"), "contact_force_max_n"),
                        extra_of(&run, run_knee(&run), "contact_force_max_n"));
     run_free(&run);
     json_decref(o);
-    char *said = output_of("choose @/limited");
-    assert_non_null(strstr(said, "  drift_ratio  contact_force_max_n\n"));
-    free(said);
-}
-
-TEST(names_that_are_no_results_are_refused_with_the_words_there_are)
-{
-    write_in_place("tower.ini", TOWER);
-    expect(65, "search.objectives: core_stres_pa is no result; did you mean core_stress_pa?",
-           "check @/tower.ini --set search.objectives=j1_m,core_stres_pa");
-    expect(65, "search.objectives: nonsense_of_sorts is no result; there are j1_m, j2_m",
-           "check @/tower.ini --set search.objectives=nonsense_of_sorts");
-    write_in_place("alike.ini", "[search]\nfidelity = records\nobjectives = j1_m, p(drift_ratio>-0.02)\n");
-    expect(65, "alike.ini:2:12: search.fidelity: records needs several", "check @/alike.ini");
-    expect(65, "search.fidelity: replicates needs several of them: set sim.replicates to 2",
-           "check @/tower.ini --set search.fidelity=replicates");
-    expect(65, "alike.ini:3:14: search.objectives: p(drift_ratio>-0.02) is the same for all", "check @/alike.ini");
-    expect(65, "search.objectives: all designs have the same devices: set design.devices",
-           "check @/tower.ini --set search.objectives=j1_m,devices");
-    expect(65, "search.objectives: j1_m stands there twice",
-           "check @/tower.ini --set search.objectives=j1_m,j2_m,j1_m");
-    expect(65, "search.limits: drift_ration is no result; did you mean drift_ratio?",
-           "check @/tower.ini --set 'search.limits=drift_ration<=0.02'");
-    expect(65, "search.limits: drift_ratio<=0.01 and >=0.02 contradict each other",
-           "check @/tower.ini --set 'search.limits=drift_ratio<=0.01,drift_ratio>=0.02'");
-}
-
-TEST(four_storeys_are_not_searched_for_modes_that_they_do_not_have)
-{
-    char *folder = in_place("four");
-    assert_int_equal(mkdir(folder, 0777), 0);
-    free(folder);
-    write_in_place("tower.ini", TOWER);
-    write_in_place("four/storeys.csv",
-                   "height_m,mass_t,stiffness_kn_m\n4,200,200000\n4,200,200000\n4,200,150000\n4,200,150000\n");
-    static const char OPTIONS[] = "--set building.model=@/four --set sim.duration_s=6";
-    char command[512];
-    snprintf(command, sizeof command, "check @/tower.ini %s", OPTIONS);
-    char *said = output_of(command);
-    assert_non_null(strstr(said, " j1_m j2_m j3_g ed1_pct edcs_pct mcore_kg\n"));
-    assert_non_null(strstr(said, "ed5_10_pct is no objective: the building has no modes 5 to 10"));
-    free(said);
-    snprintf(command, sizeof command, "optimize @/tower.ini --out @/of-four %s", OPTIONS);
-    said = output_of(command);
-    assert_non_null(strstr(said, "ed5_10_pct is no objective"));
-    free(said);
-    Table front = table_of("of-four/front.csv");
-    assert_int_equal(front.n_cols, 1 + 6 + 6 + 6);
-    table_free(&front);
-    snprintf(command, sizeof command, "check @/tower.ini %s --set search.objectives=paper --json", OPTIONS);
-    json_t *o = json_of(command);
-    assert_int_equal(json_array_size(json_object_get(o, "objectives")), 7);
-    json_decref(o);
-    snprintf(command, sizeof command, "check @/tower.ini %s --set search.objectives=j1_m,ed5_10_pct", OPTIONS);
-    expect(0, "warning: search.objectives: ed5_10_pct is 0 for every design", command);
-    write_in_place("four.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
-    snprintf(command, sizeof command,
-             "simulate @/tower.ini %s --set search.objectives=paper --set design.gap_zones=1 --design @/four.csv",
-             OPTIONS);
-    said = output_of(command);
-    assert_non_null(strstr(said, "ed5_10_pct is 0 for every design"));
-    free(said);
+    expect_output("  drift_ratio  contact_force_max_n\n", "choose @/limited");
 }
 
 /* The n-th line behind the first that begins with `from`, NULL: none. */

@@ -320,61 +320,13 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
            "spectrum builtin:kobe-like --set motion.highpass_hz=5 --set motion.lowpass_hz=2");
 }
 
-#define PADDED "simulate configs/quick.ini --design none --set sim.duration_s=1 --set motion.highpass_hz=0.2 "
-
-TEST(a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused)
-{
-    static const char GONE[] = "--set motion.lowpass_hz=0.0001 --set motion.pga_g=0.3";
-    static const char *const COMMANDS[] = {"simulate configs/quick.ini --design none", "check configs/quick.ini",
-                                           "optimize configs/quick.ini --out @/gone", "spectrum builtin:kobe-like"};
-    char arguments[256];
-    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
-        snprintf(arguments, sizeof arguments, "%s %s", COMMANDS[i], GONE);
-        expect(65, "motion.pga_g = 0.3 would multiply it by ", arguments);
-    }
-    char *text = output_of("simulate configs/quick.ini --design none --set sim.duration_s=1 --pga 12");
-    assert_non_null(strstr(text, "  warning: scaled by 14.4; records are scaled by 0.1 to 10 as a rule\n"));
-    free(text);
-    expect(0, "warning: motion.record: scaled by 14.4", "check configs/quick.ini --pga 12");
-    expect(0, "warning: scaled by 14.4",
-           "simulate configs/quick.ini --design none --set sim.duration_s=1 --pga 12 --json");
-    free(output_of("spectrum builtin:kobe-like --set motion.factor=1e-4")); /* of one's own */
-}
-
-TEST(what_is_done_to_a_record_stands_below_its_line)
-{
-    char *text = output_of(PADDED);
-    assert_non_null(
-        strstr(text, "  high-pass 0.2 Hz (4th order Butterworth, zero phase), 15 s of zeros added at both ends\n"));
-    free(text);
-    json_t *o = json_of(PADDED "--json");
-    assert_non_null(strstr(json_string_value(json_object_get(o, "processed")), "15 s of zeros"));
-    json_decref(o);
-}
-
 /* ---- as printed -------------------------------------------------------------------------------------------------- */
-
-TEST(an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures)
-{
-    char *text = output_of("spectrum builtin:elcentro-like");
-    assert_non_null(strstr(text, "uncorrected"));
-    free(text);
-    text = output_of("spectrum builtin:elcentro-like --set motion.highpass_hz=0.1 --set motion.lowpass_hz=20");
-    assert_null(strstr(text, "uncorrected"));
-    assert_non_null(strstr(text, "high-pass 0.1 Hz"));
-    assert_non_null(strstr(text, "low-pass 20 Hz"));
-    assert_non_null(strstr(text, "\n  recorded\n"));
-    free(text);
-}
 
 TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale)
 {
     json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
            *r = json_object_get(a, "recorded");
-    char arguments[128];
-    snprintf(arguments, sizeof arguments, "spectrum builtin:sylmar-like --json --set motion.factor=%.17g",
-             number(a, "scale"));
-    json_t *b = json_of(arguments);
+    json_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
     assert_true(json_is_true(json_object_get(a, "corrected")));
     assert_true(json_is_false(json_object_get(b, "corrected")));
     assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);
@@ -387,14 +339,8 @@ TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale
 TEST(several_motions_are_shown_with_their_mean_and_the_target)
 {
     static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
-    char arguments[256];
-    snprintf(arguments, sizeof arguments, "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv",
-             ALL);
-    free(output_of(arguments));
-    Err err = {0};
-    Table t;
-    char *path = in_place("all.csv");
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv", ALL));
+    Table t = table_of("all.csv");
     assert_int_equal(t.n_cols, 6);
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *row = t.values + i * t.n_cols;
@@ -402,11 +348,8 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
         assert_less(0, row[2]);
     }
     table_free(&t);
-    free(path);
     if (system("command -v gnuplot >/dev/null") == 0) {
-        snprintf(arguments, sizeof arguments,
-                 "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL);
-        free(output_of(arguments));
+        free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL));
         char *svg = read_in_place("all.svg");
         static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
         for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)

@@ -10,9 +10,8 @@
 #include "bench/stability/bob.h"
 #include "motion/forces.h"
 #include "program.h"
-#include "scene_options.h"
+#include "one_scene.h"
 #include "sim/engine.h"
-#include "sim/sim.h"
 
 /* A file of the test's folder; until the next call. */
 static const char *at(const char *name)
@@ -117,22 +116,6 @@ static SceneOptions three_storeys(Engine engine)
     o.sim.engine = engine;
     o.sim.accuracy = ACCURACY_FINE;
     return o;
-}
-
-static SimResult simulate(const SceneOptions *o, SceneKind kind, const Motion *motion, const double x[])
-{
-    Err err = {0};
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
-    CHECK_OK(scene_create(&scene, o, motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    sim_worker_device(worker, &(LinearDevice){1, 0.1, 0});
-    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
-    scene_free(scene);
-    return r;
 }
 
 /* Relative to the ground a shaken building is one that is pushed by -m a. */

@@ -31,15 +31,6 @@ static void study(const char *text, const char *out, long piece)
     CHECK_OK(status, &err);
 }
 
-static Run saved_of(const char *out)
-{
-    char path[PATH_MAX];
-    Run h;
-    Err err = {0};
-    CHECK_OK(run_read(&h, path_of(out, path), &err), &err);
-    return h;
-}
-
 TEST(a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped)
 {
     study(NOISY, "whole", 0);
@@ -49,7 +40,7 @@ TEST(a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stoppe
 
 TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
 {
-    Run h = saved_of("whole");
+    Run h = run_in("whole");
     size_t repeats = 0, confirmed = 0;
     assert_true(h.schema.has_spread && h.table.n == SIMULATIONS);
     for (size_t i = 0; i < h.table.n; i++) {
@@ -102,7 +93,7 @@ TEST(without_noise_nothing_is_repeated_and_the_tables_are_as_ever)
     char text[sizeof NOISY + 32];
     snprintf(text, sizeof text, "%s[problem]\nnoisy = no\n", NOISY);
     study(text, "quiet", 0);
-    Run h = saved_of("quiet");
+    Run h = run_in("quiet");
     char *front = read_in_place("quiet/front.csv");
     assert_true(!h.schema.has_spread && h.n_repeats == 0);
     assert_null(strstr(front, "replicates"));

@@ -339,10 +339,7 @@ static void write_design(void)
 /* Mean and deviation of every objective as `imtet simulate --replicates 6` has them. */
 static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[PAPER_OBJECTIVES])
 {
-    char words[500];
-    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s",
-             set);
-    char *text = output_of(words);
+    char *text = output_of("simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s", set);
     json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "replicates");
     assert_non_null(e);
     for (int k = 0; k < PAPER_OBJECTIVES; k++) {
@@ -357,9 +354,6 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
 {
     static const char TOLERANCE[] = "--set sim.gap_tolerance_m=0.02 --set motion.records=builtin:elcentro-like";
     double mean[3][PAPER_OBJECTIVES], sd[3][PAPER_OBJECTIVES];
-    char words[800], path[PATH_MAX];
-    Run h;
-    Err err = {0};
     write_design();
     simulated("--set sim.gap_tolerance_m=0", mean[0], sd[0]);
     simulated("--set sim.gap_tolerance_m=0.02", mean[1], sd[1]);
@@ -367,12 +361,11 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
     for (int k = 0; k < 6; k++)
         assert_true(sd[0][k] != sd[1][k] && mean[0][k] != mean[1][k]);
     assert_less(2.0 * sd[0][0], sd[1][0]);
-    snprintf(words, sizeof words,
-             "optimize configs/quick.ini --out @/study --threads 2 --set search.start=%s/design.csv --max-evals 4 "
-             "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",
-             place.folder, TOLERANCE);
-    free(output_of(words));
-    CHECK_OK(run_read(&h, path_of("study", path), &err), &err);
+    free(
+        output_of("optimize configs/quick.ini --out @/study --threads 2 --set search.start=%s/design.csv --max-evals 4 "
+                  "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",
+                  place.folder, TOLERANCE));
+    Run h = run_in("study");
     assert_memory_equal(h.F, mean[2], sizeof mean[2]);
     assert_memory_equal(h.table.sd, sd[2], sizeof sd[2]);
     run_free(&h);
@@ -381,9 +374,7 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
 /* The CSV of `imtet simulate` with these words. */
 static char *csv_of(const char *set)
 {
-    char words[700];
-    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --csv - " SHORT "%s", set);
-    return output_of(words);
+    return output_of("simulate configs/quick.ini --design @/design.csv --csv - " SHORT "%s", set);
 }
 
 TEST(replicates_and_records_follow_one_rule_however_they_are_asked_for)

@@ -77,16 +77,13 @@ TEST(standard_errors_are_those_of_the_closed_forms_where_there_are_some)
 
 TEST(a_study_minimises_and_limits_probabilities)
 {
-    Run run;
-    Err err = {0};
-    char path[PATH_MAX];
     write_in_place("tower.ini", SIX_FLOORS_INI
                    "record = builtin:elcentro-like\nrecords = builtin:sylmar-like,builtin:suite-03,builtin:suite-04\n"
                    "[sim]\nduration_s = 4\naccuracy = coarse\nrobust = cvar\n"
                    "[search]\nobjectives = p(drift_ratio>0.012), j3_g\nlimits = p(j1_m>0.1)<=0.75\n"
                    "initial = 8\npopulation = 8\nmax_evals = 12\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/tower.ini --out @/chance"));
-    CHECK_OK(run_read(&run, path_of("chance", path), &err), &err);
+    Run run = run_in("chance");
     const Schema *s = &run.schema;
     assert_string_equal(schema_objective(s, 0)->name, "p(drift_ratio>0.012)");
     assert_int_equal(s->n_limited, 1);
@@ -105,23 +102,6 @@ TEST(a_study_minimises_and_limits_probabilities)
            "optimize @/tower.ini --set 'search.objectives=p(drift_ratio>)' --out @/no");
     expect(65, "more than 4 probabilities",
            "optimize @/tower.ini --out @/no --set 'search.objectives=p(j1_m>1),p(j1_m>2),p(j1_m>3),p(j1_m>4)'");
-}
-
-TEST(a_probability_is_refused_where_a_plain_limit_is)
-{
-    expect(65, "search.objectives: drift_rato is no result; did you mean drift_ratio?",
-           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_rato>0.02)'");
-    expect(65, "search.limits: drift_rato is no result; did you mean drift_ratio?",
-           "check @/tower.ini --set 'search.limits=p(drift_rato>0.02)<=0.1'");
-    expect(65, "search.objectives: p(drift_ratio>2): this is a share of 1, no per cent; write 0.02 for 2 %",
-           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_ratio>2)'");
-    expect(65, "p(drift_ratio<0.02) prefers what is worse: of drift_ratio less is better; write p(drift_ratio>0.02)",
-           "check @/tower.ini --set 'search.objectives=j1_m,p(drift_ratio<0.02)'");
-    expect(65, "p(edcs_pct>20) prefers what is worse: of edcs_pct more is better; write p(edcs_pct<20)",
-           "check @/tower.ini --set 'search.limits=p(edcs_pct>20)<=0.1'");
-    MeasureOrder order;
-    Err err = {0};
-    CHECK_OK(measures_order(&order, "p(edcs_pct<20),p(j3_g>2)", "none", 0, &err), &err);
 }
 
 /* -- fragility ----------------------------------------------------------------------------------------------------- */
@@ -447,9 +427,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
 /* So begins the row of the building alone, whose rate is not known. */
 static void expect_alone(const char *words, const char *range, const char *limit)
 {
-    char command[300];
-    snprintf(command, sizeof command, ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
-    char *said = output_of(command);
+    char *said = output_of(ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
     const char *row = strstr(said, "no core");
     char *end = row ? strchr(row, '\n') : NULL;
     assert_non_null(end);
@@ -539,17 +517,15 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
                                          "builtin:sylmar-like"};
     static const double RATE[] = {0.02, 0.003, 0.0007};
     double sum = 0;
-    char command[400];
     write_in_place("year_list.txt", "builtin:elcentro-like factor=0.5 rate=0.02\n# rarer\n"
                                     "builtin:elcentro-like factor=1.5 rate=0.003\nbuiltin:sylmar-like rate=7e-4\n");
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {
-        snprintf(command, sizeof command,
-                 "simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
-                 "--set 'motion.record=%s'",
-                 SOURCE[i]);
-        json_t *o = json_of(command);
+        json_t *o =
+            json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
+                    "--set 'motion.record=%s'",
+                    SOURCE[i]);
         assert_true(json_is_null(json_object_get(o, "annual_loss")));
         sum += RATE[i] * number(o, "loss");
         json_decref(o);
@@ -687,10 +663,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     assert_int_equal(*row, 0);
     free(text);
     free(output_of(SUITE_LIST "--pga 0.3 --pelicun @/response.csv"));
-    Table t;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(table_read(&t, path_of("response.csv", path), TABLE_HEADED, &err), &err);
+    Table t = table_of("response.csv");
     const json_t *third = json_object_get(json_array_get(json_object_get(o, "records"), 2), "with_core");
     assert_int_equal(t.n_rows, 3);
     assert_int_equal(t.n_cols, 2 + 3 * 6 + 1);
@@ -720,13 +693,6 @@ TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
         assert_true(fabs(again.accel[i] - m.accel[i] * 0.3 * 9.81 / motion_peak(&m)) < 1e-12);
     motion_free(&m);
     motion_free(&again);
-}
-
-TEST(the_settings_of_the_page_on_risk_have_no_fault)
-{
-    char *said = output_of("check configs/risk.ini");
-    assert_non_null(strstr(said, "configs/risk.ini: no fault"));
-    free(said);
 }
 
 SUITE(make_place, clear_place)

@@ -2,7 +2,6 @@
 #include "runs.h"
 
 #include <sqlite3.h>
-#include <sys/stat.h>
 
 #include "store/run.h"
 #include "base/dominance.h"
@@ -82,12 +81,10 @@ TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 {
     Err err = {0};
-    char folder[PATH_MAX];
     FILE *full = fopen("/dev/full", "we");
     assert_non_null(full);
     setvbuf(full, NULL, _IONBF, 0);
-    Run run;
-    CHECK_OK(run_read(&run, path_of("sound", folder), &err), &err);
+    Run run = run_in("sound");
     assert_int_equal(export_json(full, &run, &err), STATUS_IO);
     run_free(&run);
     assert_string_equal(err.text, "standard output: cannot be written");
@@ -97,10 +94,7 @@ TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 /* With three replicates; of the last generation, which is not finished, one row is whole but for its cheap part. */
 TEST(rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them)
 {
-    Run h;
-    Err err = {0};
-    char folder[PATH_MAX];
-    CHECK_OK(run_read(&h, path_of("sound", folder), &err), &err);
+    Run h = run_in("sound");
     const size_t n = run_first_polished(&h), open = n - 9;
     assert_less(11, n);
     for (size_t i = 0; i < n; i++) {
@@ -149,7 +143,7 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
     Run sound, h;
     Err err = {0};
     char folder[PATH_MAX];
-    CHECK_OK(run_read(&sound, path_of("sound", folder), &err), &err);
+    sound = run_in("sound");
     CHECK_OK(add_to_run(changed("SELECT 1", folder), 6, designs, NULL, &err), &err);
     CHECK_OK(run_read(&h, folder, &err), &err);
     assert_int_equal(h.table.n, sound.table.n + 6);
@@ -229,24 +223,6 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     run_free(&a);
     run_free(&b);
     run_free(&both);
-}
-
-TEST(runs_of_two_problems_are_not_merged)
-{
-    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
-    free(output_of("optimize @/plain.ini --max-evals 40 --out @/one"));
-    free(output_of("optimize @/plain.ini --max-evals 40 --set problem.kind=wfg4 --out @/wfg"));
-    free(output_of("optimize @/plain.ini --max-evals 40 --set search.limits='f1<=1' --out @/limited"));
-    expect(65, "are runs of two problems: problem.kind dtlz2 and wfg4", "export @/one @/wfg --csv -");
-    expect(65, "search.limits none and f1<=1", "choose @/one @/limited");
-    expect(2, "--out FILE is missing", "report @/one @/one");
-    expect(66, "holds no run", "export @/one @ --csv -");
-    free(output_of("export @/one @/one --csv @/twice.csv"));
-    free(output_of("export @/one --csv @/once.csv"));
-    char path[PATH_MAX], *once = text_of(path_of("once.csv", path)), *twice = text_of(path_of("twice.csv", path));
-    assert_string_equal(once, twice);
-    free(once);
-    free(twice);
 }
 
 TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)

@@ -53,19 +53,6 @@ TEST(a_run_may_go_on_where_its_own_settings_lie)
     assert_int_equal(output_place_check(place.folder, file, &err), STATUS_BAD_DATA);
 }
 
-TEST(a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user)
-{
-    static const char STUDY[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\npopulation = 8\n"
-                                "initial = 8\nmax_evals = 8\n[run]\nout = ../../etc/x\n";
-    write_in_place("foreign.ini", STUDY);
-    expect(65, "foreign.ini: run.out: ../../etc/x is not below results/", "optimize @/foreign.ini");
-    free(output_of("optimize @/foreign.ini --out @/mine"));
-    free(output_of("optimize @/foreign.ini --set run.out=@/mine-too"));
-    char *front = read_in_place("mine-too/front.csv");
-    assert_int_equal(strncmp(front, "id,", 3), 0);
-    free(front);
-}
-
 /* ---- cells ----------------------------------------------------------------------------------------------------- */
 
 TEST(no_text_begins_a_cell_like_a_formula)
@@ -136,23 +123,6 @@ TEST(names_and_reasons_of_users_are_harmless_in_every_table)
 }
 
 /* ---- commands -------------------------------------------------------------------------------------------------- */
-
-TEST(the_command_of_a_worker_sees_no_shell_unless_it_names_one)
-{
-    char path[128], text[1024];
-    snprintf(path, sizeof path, "%s/touched", place.folder);
-    for (int with_shell = 0; with_shell < 2; with_shell++) {
-        snprintf(text, sizeof text,
-                 "[problem]\nkind = external\ncommand = %s\nvariables = 2\nobjectives = 2\n"
-                 "[search]\ninitial = 4\npopulation = 4\nmax_evals = 4\n",
-                 with_shell ? "sh -c 'touch $FILE; sh tests/worker.sh good'"
-                            : "sh tests/worker.sh good ; touch $FILE `touch $FILE` && touch $FILE");
-        write_in_place("command.ini", text);
-        setenv("FILE", path, 1);
-        free(output_of(with_shell ? "optimize @/command.ini --out @/with" : "optimize @/command.ini --out @/without"));
-        assert_int_equal(access(path, F_OK) == 0, with_shell);
-    }
-}
 
 static int count_files(const char *folder)
 {

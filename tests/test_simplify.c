@@ -19,9 +19,7 @@ static int make_run(void **state)
         "[motion]\nrecord = builtin:elcentro-like\npga_g = 0.3\n[sim]\nduration_s = 4\n"
         "accuracy = coarse\n[search]\ninitial = 20\npopulation = 12\nmax_evals = 40\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/s.ini --out @/run"));
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&study, path_of("run", path), &err), &err);
+    study = run_in("run");
     row = run_knee(&study);
     return 0;
 }
@@ -116,9 +114,8 @@ TEST(limits_are_kept_or_nothing_is_stored)
 
 TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
 {
-    char *said = output_of("simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%");
-    assert_non_null(strstr(said, "stored in the run as design 41"));
-    free(said);
+    expect_output("stored in the run as design 41",
+                  "simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%");
     free(output_of("simulate @/s.ini --design @/run:41"));
     expect(2, "--plates: '0.00001' is no length in mm, as 5 or 5mm, from 0.1 to 10000",
            "simplify @/run --plates 0.00001");
@@ -130,11 +127,8 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
 TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept_within_2_percent)
 {
     static const double SOLD[] = {0.008, 0.010, 0.012, 0.015, 0.020, 0.025, 0.030, 0.040, 0.050};
-    free(output_of("simplify @/run --design knee --gap-step 5mm --plates 8,10,12,15,20,25,30,40,50 --keep j1_m=2%"));
-    Run now;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&now, path_of("run", path), &err), &err);
+    free(output_of("simplify @/run --design knee --gap-step 5mm --plates 8,10,12,15,20,25,30,40,50 --keep j1_m=2%%"));
+    Run now = run_in("run");
     size_t pair[2], n_stops = 0, n_sold = 0;
     assert_false(run_simplified(&now, row + 1, pair));
     assert_true(run_simplified(&now, now.table.n - 1, pair) && pair[0] == row && pair[1] == now.table.n - 1);
@@ -186,7 +180,7 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
                             "device_zone_1,device_zone_2,device_zone_3,device_zone_4,device_roof\n"
                             "9,0.02,0.02,7e5,10,0.3,0.1,gap,link,link,link,tuned_mass\n");
     free(output_of("optimize @/d.ini --out @/d --set search.start=@/d.csv"));
-    char *said = output_of("simplify @/d --design 1 --keep j1_m=10%");
+    char *said = output_of("simplify @/d --design 1 --keep j1_m=10%%");
     assert_non_null(strstr(said, "as it is: 21, "));
     assert_non_null(strstr(said, "idle ones gone: 16, "));
     const char *fewer = strstr(said, "fewer devices: ");
@@ -204,7 +198,7 @@ TEST(a_second_time_it_is_the_design_of_the_first)
                                         "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0"};
     char *before = all_of("run");
     for (size_t i = 0; i < N_OF(AGAIN); i++) {
-        char *said = output_of(AGAIN[i]);
+        char *said = output_of("%s", AGAIN[i]);
         assert_non_null(strstr(said, "it is design 41 of the run: nothing new to store"));
         free(said);
     }

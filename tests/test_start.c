@@ -12,10 +12,9 @@ static void check_start(const char *asynchronous)
 {
     Run h;
     Err err = {0};
-    char arguments[256], path[PATH_MAX];
-    snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
-             strrchr(asynchronous, '=') + 1, place.folder, asynchronous);
-    free(output_of(arguments));
+    char path[PATH_MAX];
+    free(output_of("optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
+                   strrchr(asynchronous, '=') + 1, place.folder, asynchronous));
     CHECK_OK(run_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
     assert_int_equal(h.table.n, 30);
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
@@ -40,53 +39,25 @@ TEST(given_designs_come_first_inside_the_box_and_once)
 
 TEST(several_starts_are_taken_one_behind_the_other)
 {
-    Run h;
-    Err err = {0};
-    char path[PATH_MAX], arguments[512];
     write_in_place("begin.ini", BEGIN);
     write_in_place("given.csv", GIVEN);
     write_in_place("more.csv", "x1,x2,x3,x4\n0.9,0.8,0.7,0.6\n0.1,0.2,0.3,0.4\n");
     free(output_of("optimize @/begin.ini --out @/earlier --seed 2"));
-    snprintf(arguments, sizeof arguments,
-             "optimize @/begin.ini --out @/both --set search.start=%s/given.csv,%s/more.csv", place.folder,
-             place.folder);
-    free(output_of(arguments));
-    CHECK_OK(run_read(&h, path_of("both", path), &err), &err);
+    free(output_of("optimize @/begin.ini --out @/both --set search.start=%s/given.csv,%s/more.csv", place.folder,
+                   place.folder));
+    Run h = run_in("both");
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
     assert_memory_equal(h.table.x + 12, ((double[]){0.9, 0.8, 0.7, 0.6}), 4 * sizeof(double));
     run_free(&h);
-    snprintf(arguments, sizeof arguments,
-             "optimize @/begin.ini --out @/after --set search.start=%s/more.csv,%s/earlier", place.folder,
-             place.folder);
-    free(output_of(arguments));
-    Run earlier;
-    CHECK_OK(run_read(&h, path_of("after", path), &err), &err);
-    CHECK_OK(run_read(&earlier, path_of("earlier", path), &err), &err);
+    free(output_of("optimize @/begin.ini --out @/after --set search.start=%s/more.csv,%s/earlier", place.folder,
+                   place.folder));
+    h = run_in("after");
+    Run earlier = run_in("earlier");
     assert_less(0, earlier.n_front);
     for (size_t i = 0; i < earlier.n_front && i < 10; i++)
         assert_memory_equal(run_x(&h, 2 + i), run_x(&earlier, earlier.front[i]), 4 * sizeof(double));
     run_free(&h);
     run_free(&earlier);
-}
-
-TEST(a_start_that_is_refused_leaves_nothing_behind)
-{
-    static const char *const REFUSED[] = {"search.start=@/short.csv", "search.start=@/given.csv,@/not-there.csv",
-                                          "search.start=@/other"};
-    char path[PATH_MAX], arguments[512];
-    write_in_place("begin.ini", BEGIN);
-    write_in_place("given.csv", GIVEN);
-    write_in_place("short.csv", "x1,x2,x4\n0,0,0\n");
-    free(output_of("optimize @/begin.ini --out @/other --set problem.variables=5"));
-    for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; i++) {
-        Said said;
-        snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/refused --set %s", REFUSED[i]);
-        run(&said, "%s", arguments);
-        assert_int_equal(said.code, i == 1 ? 66 : 65);
-        assert_non_null(strstr(said.err, "search.start: "));
-        forget(&said);
-        assert_int_not_equal(access(path_of("refused", path), F_OK), 0);
-    }
 }
 
 /* Only the first sample: the same designs in either mode, whatever their order. */
@@ -97,13 +68,11 @@ static const char TOWER[] = SIX_FLOORS_INI "record = builtin:elcentro-like\nreco
 TEST(a_design_of_the_tower_has_the_same_objectives_in_either_mode)
 {
     Run batches, turns;
-    Err err = {0};
-    char path[PATH_MAX];
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/batches --threads 1"));
     free(output_of("optimize @/tower.ini --out @/turns --threads 3 --set search.asynchronous=on"));
-    CHECK_OK(run_read(&batches, path_of("batches", path), &err), &err);
-    CHECK_OK(run_read(&turns, path_of("turns", path), &err), &err);
+    batches = run_in("batches");
+    turns = run_in("turns");
     const size_t n_var = batches.schema.n_var, m = batches.schema.n_obj;
     assert_int_equal(batches.table.n, 12);
     assert_int_equal(turns.table.n, 12);

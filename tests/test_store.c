@@ -159,8 +159,7 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     const Settings s = settings_of(TEXTBOOK, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    Run stopped;
-    CHECK_OK(run_read(&stopped, path_of("version", path), &err), &err);
+    Run stopped = run_in("version");
     snprintf(command, sizeof command, "UPDATE state SET bytes = x'0100000000000000', digest = %ld",
              state_digest(stopped.generation[stopped.n_generations - 1].number, "\1\0\0\0\0\0\0", 8));
     run_free(&stopped);
@@ -234,22 +233,18 @@ static void wait_for(const char *out, size_t n)
 /* What `status` counts is in both exports, also of the generation that was cut short. */
 static void check_unfinished_is_exported(const char *out)
 {
-    char command[128];
     size_t n = 0, n_unfinished = 0;
-    snprintf(command, sizeof command, "status @/%s --json", out);
-    json_t *o = json_of(command);
+    json_t *o = json_of("status @/%s --json", out);
     const double simulated = number(o, "simulated");
     json_decref(o);
-    snprintf(command, sizeof command, "export @/%s --all --csv -", out);
-    char *all = output_of(command);
+    char *all = output_of("export @/%s --all --csv -", out);
     for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
         n++;
     for (const char *word = all; (word = strstr(word, ",unfinished,ok,,")) != NULL; word++)
         n_unfinished++;
     free(all);
     assert_true((double)n == simulated && n_unfinished > 0);
-    snprintf(command, sizeof command, "export @/%s --json", out);
-    o = json_of(command);
+    o = json_of("export @/%s --json", out);
     assert_same_number((double)json_array_size(json_object_get(o, "evaluations")), simulated);
     json_decref(o);
 }
@@ -257,9 +252,7 @@ static void check_unfinished_is_exported(const char *out)
 /* Nothing is known of the front yet; the pace comes from what was simulated. */
 static void check_status_has_no_nan(const char *out)
 {
-    char command[128];
-    snprintf(command, sizeof command, "status @/%s", out);
-    char *said = output_of(command), *list = output_of("status @");
+    char *said = output_of("status @/%s", out), *list = output_of("status @");
     assert_null(strstr(said, "nan"));
     assert_null(strstr(said, "- simulations/s"));
     assert_null(strstr(list, "nan"));
@@ -371,10 +364,7 @@ TEST(hours_are_obeyed_within_a_batch)
     s.search.max_hours = 0;
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 40);
-    char *a = read_in_place("hours/front.csv"), *b = read_in_place("interrupted/front.csv");
-    assert_string_equal(a, b);
-    free(a);
-    free(b);
+    assert_same_files("hours/front.csv", "interrupted/front.csv");
 }
 
 /* -- readers, designs from outside, failures ----------------------------------------------------------------------- */
@@ -382,11 +372,7 @@ TEST(hours_are_obeyed_within_a_batch)
 /* The designs of two searches are the same; the first has n_polished more, with ids of their own. */
 static void assert_searched_as(const char *a, const char *b, size_t n_polished)
 {
-    Run first, second;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&first, path_of(a, path), &err), &err);
-    CHECK_OK(run_read(&second, path_of(b, path), &err), &err);
+    Run first = run_in(a), second = run_in(b);
     const size_t n = run_first_polished(&first), polished = first.table.n - n;
     assert_int_equal(polished, n_polished);
     assert_int_equal(n, first.n_finished);
@@ -408,7 +394,6 @@ TEST(polished_designs_join_the_front_but_not_the_search)
 {
     char path[PATH_MAX], id[24];
     long first;
-    Run saved;
     Err err = {0};
     StudySummary summary;
     int left = 20;
@@ -422,10 +407,10 @@ TEST(polished_designs_join_the_front_but_not_the_search)
         {.x = x, .f = worse, .outcome = OUTCOME_OK},
         {.x = x, .outcome = OUTCOME_DEAD, .reason = "it died"},
     };
-    CHECK_OK(run_read(&saved, path_of("polished", path), &err), &err);
+    Run saved = run_in("polished");
     const long last = saved.table.row[saved.table.n - 1].id;
     run_free(&saved);
-    CHECK_OK(add_to_run(path, 3, designs, &first, &err), &err);
+    CHECK_OK(add_to_run(path_of("polished", path), 3, designs, &first, &err), &err);
     assert_int_equal(first, last + 1);
     char *front = output_of("export @/polished --csv -");
     snprintf(id, sizeof id, "\n%ld,", first);
@@ -460,10 +445,8 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
                                 "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
                                 "threads = 2\n");
     free(output_of("optimize @/tenth.ini --out @/tenth"));
-    Run saved;
-    Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(run_read(&saved, path_of("tenth", path), &err), &err);
+    Run saved = run_in("tenth");
     assert_int_equal(saved.table.n, 100);
     assert_int_equal(saved.n_failed, 10);
     assert_less(0, saved.n_front);
@@ -487,7 +470,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
     o = json_of("status @ --json");
     int found = 0;
     for (size_t i = 0; i < json_array_size(o); i++)
-        found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path) == 0;
+        found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path_of("tenth", path)) == 0;
     assert_int_equal(found, 1);
     json_decref(o);
 }
@@ -496,10 +479,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
  */
 TEST(the_front_of_every_generation_can_be_told)
 {
-    Run s;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&s, path_of("tower-whole", path), &err), &err);
+    Run s = run_in("tower-whole");
     const size_t m = s.schema.n_obj;
     for (size_t g = 0; g < s.n_generations; g++) {
         long on_front = 0;

@@ -1,17 +1,8 @@
 /* Studies as a person makes them: runs $IMTET in the repository's root and looks at what a run leaves behind. */
-#include "check.h"
-
-#include <dirent.h>
-#include <jansson.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-
 #include "program.h"
 
-/* ------------------------------------------------------------------------------------------------------- the study ---
- */
+#include <dirent.h>
+#include <sys/stat.h>
 
 #define SMALL_STUDY_OF(max_evals)                                                                                      \
     "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=4 --set search.initial=28 "                         \
@@ -21,10 +12,9 @@
 TEST(the_front_has_the_same_bytes_at_any_number_of_threads)
 {
     static const int THREADS[] = {1, 2, 5};
-    char arguments[512], name[64], *front[3], *all[3];
+    char name[64], *front[3], *all[3];
     for (int i = 0; i < 3; i++) {
-        snprintf(arguments, sizeof arguments, SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]);
-        free(output_of(arguments));
+        free(output_of(SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]));
         snprintf(name, sizeof name, "threads-%d/front.csv", THREADS[i]);
         front[i] = read_in_place(name);
         snprintf(name, sizeof name, "threads-%d", THREADS[i]);
@@ -43,10 +33,7 @@ TEST(the_front_has_the_same_bytes_at_any_number_of_threads)
 TEST(a_run_is_repeated_from_its_own_folder)
 {
     free(output_of("optimize @/threads-2/settings.ini --out @/again"));
-    char *first = read_in_place("threads-2/front.csv"), *second = read_in_place("again/front.csv");
-    assert_string_equal(first, second);
-    free(first);
-    free(second);
+    assert_same_files("threads-2/front.csv", "again/front.csv");
     char *path = in_place("again/provenance.json");
     json_t *o = json_load_file(path, 0, NULL);
     assert_non_null(o);
@@ -71,10 +58,7 @@ static int dominates(const double a[7], const double b[7])
 
 TEST(the_front_holds_nondominated_designs_in_the_search_box)
 {
-    Err err = {0};
-    Table t;
-    char *path = in_place("threads-1/front.csv");
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    Table t = table_of("threads-1/front.csv");
     assert_int_equal(t.n_cols, 1 + 8 + 7 + 7); /* the last ones: likely errors */
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *a = t.values + i * t.n_cols;
@@ -85,7 +69,6 @@ TEST(the_front_holds_nondominated_designs_in_the_search_box)
             assert_false(dominates(t.values + l * t.n_cols + 9, a + 9));
     }
     table_free(&t);
-    free(path);
 }
 
 TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
@@ -109,10 +92,7 @@ TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 TEST(the_export_is_the_front)
 {
     free(output_of("export @/threads-1 --csv @/exported.csv"));
-    char *front = read_in_place("threads-1/front.csv"), *exported = read_in_place("exported.csv");
-    assert_string_equal(front, exported);
-    free(front);
-    free(exported);
+    assert_same_files("threads-1/front.csv", "exported.csv");
 }
 
 static long first_id(const char *front)
@@ -122,11 +102,10 @@ static long first_id(const char *front)
 
 TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
-    char *front = read_in_place("threads-1/front.csv"), arguments[256];
-    snprintf(arguments, sizeof arguments,
-             "evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
-             first_id(front));
-    json_t *o = json_of(arguments);
+    char *front = read_in_place("threads-1/front.csv");
+    json_t *o =
+        json_of("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
+                first_id(front));
     const json_t *records = json_object_get(o, "records");
     assert_int_equal(json_array_size(records), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(records, 1), "record")),
@@ -142,9 +121,7 @@ TEST(a_design_of_the_front_is_evaluated_on_other_motions)
     json_decref(o);
     free(front);
     expect(65, "has no design 123456", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
-    char *table = output_of("evaluate @/threads-1 --design knee --record builtin:sylmar-like");
-    assert_non_null(strstr(table, "no core"));
-    free(table);
+    expect_output("no core", "evaluate @/threads-1 --design knee --record builtin:sylmar-like");
 }
 
 TEST(status_tells_a_run_from_a_folder_of_runs)
@@ -251,107 +228,6 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
     free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --set sim.duration_s=4"));
 }
 
-/* ------------------------------------------------------------------------------------------- problems of others ---
- */
-
-static const char EXTERNAL_INI[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh dies\nvariables = 3\n"
-                                   "objectives = 2\nsenses = min,max\n[search]\nmax_evals = 45\ninitial = 30\n"
-                                   "population = 12\n";
-
-TEST(an_external_simulator_is_searched_and_every_design_exported)
-{
-    Table t;
-    Err err = {0};
-    write_in_place("external.ini", EXTERNAL_INI);
-    free(output_of("check @/external.ini"));
-    char *said = output_of("optimize @/external.ini --out @/external --threads 2");
-    assert_non_null(strstr(said, "best f2"));
-    free(said);
-    free(output_of("export @/external --csv @/front.csv"));
-    free(output_of("export @/external --all --csv @/all.csv"));
-    char *path = in_place("front.csv"), *all = read_in_place("all.csv");
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
-    for (size_t i = 0; i < t.n_rows; i++) {
-        const double *row = t.values + i * t.n_cols;
-        assert_true(row[1] == row[4] && row[2] == row[5]); /* f = (x1, x2) */
-    }
-    int lines = 0, dead = 0;
-    for (char *line = all; *line; line = strchr(line, '\n') + 1)
-        lines++;
-    for (char *at = all; (at = strstr(at, ",dead,the worker ended")); at++)
-        dead++;
-    assert_int_equal(lines, 46);
-    assert_int_equal(dead, 15); /* every third of 45 */
-    table_free(&t);
-    free(path);
-    free(all);
-    expect(65, "another problem", "evaluate @/external --design knee --record builtin:kobe-like");
-    expect(65, "no-such-program", "optimize @/external.ini --out @/none --set problem.command=no-such-program");
-    expect(65, "problem.command", "optimize @/external.ini --out @/none --set problem.command=none");
-    free(output_of(
-        "optimize @/external.ini --out @/none")); /* nothing was simulated: no run yet, and no other settings */
-}
-
-/* The external run of the test before: f = (x1 min, x2 max). */
-TEST(designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished)
-{
-    free(output_of("optimize @/external.ini --out @/kind --set 'problem.command=sh tests/worker.sh good'"));
-    char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --reference f1=0,f2=1");
-    assert_non_null(strstr(said, "knee"));
-    assert_non_null(strstr(said, "weighted"));
-    assert_non_null(strstr(said, "nearest to reference"));
-    free(said);
-    expect(69, "no design of the front is within the limits", "choose @/kind --max f1=-5");
-    expect(2, "speed is no objective", "choose @/kind --max speed=5");
-    expect(2, "is not NAME=NUMBER", "choose @/kind --weights f1");
-    expect(2, "--weights: f2=-1 is negative", "choose @/kind --weights f1=1,f2=-1");
-    expect(2, "all of them are 0", "choose @/kind --weights f1=0");
-
-    /* With nothing kept x1 = 0 is the best there is; with all kept nothing may change on this front. */
-    said = output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv");
-    assert_non_null(strstr(said, "designs tried in"));
-    free(said);
-    Table t;
-    Err err = {0};
-    char *path = in_place("polished.csv");
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
-    assert_true(t.values[4] < 0.01 && t.values[4] == t.values[1]);
-    table_free(&t);
-    free(path);
-    expect(65, "has no design 999999", "polish @/kind --design 999999");
-    expect(2, "--evals: '0' is no number from 1", "polish @/kind --design knee --evals 0");
-    expect(2, "both designs at the end take 4 simulations", "polish @/kind --design knee --evals 3");
-    expect(2, "--replicates: 2.5 is no whole number", "polish @/kind --design knee --replicates 2.5");
-}
-
-/* A plain search of 400 is far from the front; with noise nothing is polished. */
-TEST(a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy)
-{
-    write_in_place("textbook.ini", "[problem]\nkind = dtlz2\nvariables = 5\nobjectives = 2\n[search]\nmax_evals = 400\n"
-                                   "population = 40\nsurrogate = off\npolish = 1\nseed = 2\n");
-    char *said = output_of("optimize @/textbook.ini --out @/exact"),
-         *noisy = output_of("optimize @/textbook.ini --out @/noisy-end --set problem.noise=0.01");
-    assert_non_null(strstr(said, "polished: 1 of 1 designs became better"));
-    assert_null(strstr(noisy, "polished: "));
-    free(said);
-    free(noisy);
-}
-
-/* The simulator answers until there is a file beside it. */
-TEST(a_design_that_fails_when_it_is_polished_is_named_with_its_reason)
-{
-    write_in_place("tired.sh", "while read -r line; do id=${line#*:}; id=${id%%,*}\n"
-                               "if [ -e \"$0.off\" ]; then echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"no licence\\\"}\"\n"
-                               "else echo \"{\\\"id\\\":$id,\\\"f\\\":[$id,1]}\"; fi; done\n");
-    char *path = in_place("tired.sh"), command[400];
-    snprintf(command, sizeof command,
-             "optimize @/external.ini --out @/tired --max-evals 8 --set 'problem.command=sh %s'", path);
-    free(output_of(command));
-    write_in_place("tired.sh.off", "");
-    expect(65, "simulated again, 1 times (error: no licence)", "polish @/tired --design knee");
-    free(path);
-}
-
 /* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
 TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
 {
@@ -382,9 +258,7 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     assert_non_null(strstr(said, knee));
     free(output_of("polish @/earlier --design knee --improve f1 --keep f1 --evals 60")); /* a gain enters the archive */
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
-    char *with_polished = read_in_place("polished-too.csv");
-    assert_non_null(strstr(with_polished, ",polished,ok,"));
-    free(with_polished);
+    expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
     expect(2, "--select: 'many' is no number from 1", "export @/earlier --select many --csv -");
     free(said);

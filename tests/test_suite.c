@@ -157,47 +157,6 @@ TEST(a_factor_and_a_component_belong_to_their_record_alone)
     motion_free(&scaled);
 }
 
-TEST(what_is_wrong_in_a_suite_is_said_with_its_file_and_line)
-{
-    char out[512];
-    write_in_place("bad_list.txt", "builtin:kobe-like\nbuiltin:suite-02 factor=-1\n");
-    expect(65, "bad_list.txt:2: builtin:suite-02: 'factor=-1': a factor is a number above 0",
-           "spectrum @/bad_list.txt");
-    write_in_place("odd_list.txt", "builtin:kobe-like factor=1 twice\n");
-    expect(65, "'twice' is neither channel=NAME, factor=NUMBER nor rate=NUMBER", "spectrum @/odd_list.txt");
-    write_in_place("misspelt_list.txt", "builtin:kobe-like\nshort.csv facter=2\n");
-    expect(65, "short.csv: 'facter=2' is neither channel=NAME, factor=NUMBER nor rate=NUMBER",
-           "spectrum @/misspelt_list.txt");
-    write_in_place("twice_list.txt", "builtin:kobe-like factor=2 factor=3\n");
-    expect(65, "twice_list.txt:1: builtin:kobe-like: 'factor=3': give it once", "spectrum @/twice_list.txt");
-    write_in_place("rate_list.txt", "builtin:kobe-like rate=0.01 # fine\nbuiltin:suite-02 rate=0\n");
-    expect(65, "rate_list.txt:2: builtin:suite-02: 'rate=0': a rate of events in a year is a number above 0",
-           "spectrum @/rate_list.txt");
-    expect(65, "'rate=-0.1': a rate of events", "spectrum 'builtin:suite-02 rate=-0.1'");
-    expect(65, "'rate=nan': a rate of events", "spectrum 'builtin:suite-02 rate=nan'");
-    expect(65, "'rate=0.1/a': a rate of events", "spectrum 'builtin:suite-02 rate=0.1/a'");
-    expect(65, "'rate=' is neither", "spectrum 'builtin:suite-02 rate='");
-    write_in_place("missing_list.txt", "builtin:suite-02\n# next\nnowhere.csv factor=2\n");
-    expect(66, "missing_list.txt:3: motion.records: ",
-           "optimize configs/risk.ini --set motion.records=@/missing_list.txt --out @/no");
-    expect(65, "/nowhere.csv: there is no such file or folder",
-           "check configs/risk.ini --set motion.records=@/missing_list.txt");
-    expect(65, "did you mean builtin:suite?", "simulate configs/quick.ini --design none --record builtin:suit");
-    expect(65, "did you mean builtin:kobe-like?", "simulate configs/quick.ini --design none --record builtin:kobe");
-    expect(66, "kobe.ini:25:10: motion.record: kobe_jma_ns.csv: there is no such file or folder; give one by --record",
-           "simulate configs/kobe.ini --design none");
-    write_in_place("empty_list.txt", "# nothing\n");
-    expect(65, "empty_list.txt: names no record", "spectrum @/empty_list.txt");
-    expect(66, "list.txt: there is no folder", "spectrum @/none/list.txt");
-    expect(65, "builtin:suite is a suite of motion.records",
-           "simulate configs/quick.ini --design none --set motion.record=builtin:suite");
-    snprintf(out, sizeof out, "spectrum builtin:suite --csv @/suite.csv");
-    free(output_of(out));
-    char *text = read_in_place("suite.csv");
-    assert_non_null(strstr(text, "builtin:suite-22 psa_m_s2"));
-    free(text);
-}
-
 TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_list)
 {
     write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.5\n");

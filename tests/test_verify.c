@@ -74,21 +74,4 @@ TEST(fixed_interface_modes_are_verified_as_the_reduced_model)
     json_decref(v);
 }
 
-TEST(the_table_names_both_models)
-{
-    char *text = output_of("evaluate --full-model configs/quick.ini --design none --set sim.duration_s=5");
-    assert_non_null(strstr(text, "no core, full (106)"));
-    assert_non_null(strstr(text, "no core, reduced (20)"));
-    free(text);
-}
-
-TEST(what_has_no_full_model_is_refused)
-{
-    write_design("d.csv");
-    expect(2, "--design is missing", "evaluate --full-model configs/quick.ini");
-    expect(65, "building.model: appendix has no degrees of freedom besides its floors to compare with",
-           "evaluate --full-model configs/quick.ini --design none --set building.model=appendix");
-    expect(66, "nowhere", "evaluate --full-model nowhere --design none");
-}
-
 SUITE(make_place, clear_place)

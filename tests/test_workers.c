@@ -2,7 +2,6 @@
 #include "runs.h"
 
 #include <signal.h>
-#include <sys/stat.h>
 
 static void write_external(const char *name, const char *command, const char *search)
 {
@@ -62,41 +61,6 @@ TEST(names_that_are_no_utf_8_are_shown)
     json_decref(all);
 }
 
-TEST(a_run_whose_workers_all_fail_stops_after_some_with_the_reason)
-{
-    write_external("dead.ini", "true", "max_evals = 4000\nfailures_max = 20\n");
-    expect(70, "the last 20 of 20 simulations failed (search.failures_max), the last one as dead: the worker ended",
-           "optimize @/dead.ini --threads 1 --out @/dead");
-    json_t *status = json_of("status @/dead --json");
-    assert_string_equal(json_string_value(json_object_get(status, "state")), "stopped");
-    json_decref(status);
-    expect(70, "of 40 simulations failed", "optimize @/dead --threads 1");
-    expect(70, "none of 60 simulations succeeded",
-           "optimize @/dead.ini --set search.failures_max=0 --max-evals 60 --out @/all");
-    write_external("third.ini", "sh tests/worker.sh error",
-                   "max_evals = 60\nfailures_max = 5\n"); /* never 5 in a row */
-    free(output_of("optimize @/third.ini --out @/third"));
-}
-
-/* -- a motion that is still at rest -------------------------------------------------------------------------------- */
-
-/* All designs have the same objectives; shares of the energy that went in are undefined. */
-TEST(a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason)
-{
-    static const char AT_REST[] = "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=2 "
-                                  "--set search.population=24 --set search.polish=0 --max-evals 240 --threads 1";
-    char command[512];
-    for (int seed = 1; seed <= 2; seed++) {
-        snprintf(command, sizeof command, "%s --seed %d --set search.objectives=j1_m,j2_m,j3_g --out @/rest%d", AT_REST,
-                 seed, seed);
-        char *out = output_of(command);
-        assert_non_null(strstr(out, " of 240 simulated designs, 0 simulations failed"));
-        free(out);
-    }
-    snprintf(command, sizeof command, "%s --out @/shares", AT_REST);
-    expect(70, "the motion puts in no net energy; so shares of it are undefined", command);
-}
-
 /* -- the system ---------------------------------------------------------------------------------------------------- */
 
 /* As a shell starts what stands before `&`. */
@@ -112,34 +76,6 @@ TEST(a_signal_that_was_ignored_at_the_start_stays_ignored)
     kill(pid, SIGINT);
     status = wait_end(pid);
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-}
-
-TEST(a_building_beyond_all_buildings_is_refused_whatever_its_units)
-{
-    char path[PATH_MAX];
-    assert_int_equal(mkdir(path_of("stiff", path), 0777), 0);
-    write_in_place("stiff/K.csv", "2e300,-1e300\n-1e300,1e300\n");
-    write_in_place("stiff/M.csv", "1e5,0\n0,1e5\n");
-    expect(65, "the first period is ",
-           "simulate configs/quick.ini --design none --set building.model=@/stiff --set building.units=N_m_kg");
-}
-
-/* The motion is still at rest: a search has no shares of energy to go by, and a single simulation says the same. */
-TEST(a_design_without_input_fails_in_a_search_and_in_a_simulation_alike)
-{
-#define AT_REST "configs/quick.ini " SIX_FLOORS "--set sim.duration_s=2 "
-    write_in_place("zones.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
-    expect(70, "no net energy",
-           "optimize " AT_REST "--max-evals 8 --set search.initial=8 --set search.population=4 "
-           "--out @/rest");
-    expect(70, "no net energy", "simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv");
-    Said s;
-    run(&s, "simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv --json");
-    assert_int_equal(s.code, 70);
-    assert_non_null(strstr(s.out, "\"outcome\": \"not_finite\""));
-    forget(&s);
-    free(output_of("simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv "
-                   "--set search.objectives=j1_m,j3_g")); /* known at rest */
 }
 
 /* Designs that end the worker, keep it too long or have no result fail alone, as they do one by one. */
@@ -173,10 +109,7 @@ TEST(processes_of_their_own_change_no_byte)
     write_in_place("isolated.ini", ISOLATED);
     free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/apart"));
     free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/here --set run.isolate=no --threads 1"));
-    char *apart = read_in_place("apart/front.csv"), *here = read_in_place("here/front.csv");
-    assert_string_equal(apart, here);
-    free(apart);
-    free(here);
+    assert_same_files("apart/front.csv", "here/front.csv");
 }
 
 /* Processes are shot from the start to the end: they begin, simulate, or have just done so, and then another one gets

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "scene_options.h"
+#include "one_scene.h"
 #include "sim/engine.h"
 
 /* ---- one storey ------------------------------------------------------------------------------------------------- */
@@ -215,35 +215,6 @@ TEST(the_largest_acceleration_is_known_where_a_storey_begins_to_yield)
 
 /* ---- the tower -------------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    Settings settings;
-    Motion motion;
-    Scene *scene;
-    SimWorker *worker;
-    double x[22];
-} Tower;
-
-static void tower_open(Tower *t)
-{
-    Err err = {0};
-    const SceneOptions options = settings_scene(&t->settings);
-    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
-    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
-    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
-    for (int j = 0; j < 20; j++)
-        t->x[j] = 0.008 * (j + 1);
-    t->x[20] = 0.030;
-    t->x[21] = 0.0216;
-}
-
-static void tower_close(Tower *t)
-{
-    sim_worker_free(t->worker);
-    scene_free(t->scene);
-    motion_free(&t->motion);
-}
-
 static SimResult tower_run(const Tower *t, SceneKind kind)
 {
     SimResult r;
@@ -271,7 +242,7 @@ static void early_window(Tower *t, Engine engine)
     t->settings.sim.forces = FORCES_YES;
     t->settings.sim.engine = engine;
     t->settings.building.yield_drift = 0.006;
-    tower_open(t);
+    tower_open(t, 0.030, 0.0216);
 }
 
 /* cvode takes long over impacts: it is compared with `fast` on six floors below. */
@@ -341,7 +312,7 @@ static void builtin_tower(Tower *t, Engine engine, double yield_drift)
 
 static SimResult builtin_run(Tower *t, SceneKind kind)
 {
-    tower_open(t);
+    tower_open(t, 0.030, 0.0216);
     const SimResult r = tower_run(t, kind);
     tower_close(t);
     return r;
@@ -404,7 +375,7 @@ static SimResult run_few(Engine engine, SceneKind kind, double yield_drift, doub
     six_floors(&t.settings.building, &t.settings.core);
     t.settings.motion.stretch = 1;
     t.settings.sim.duration_s = seconds;
-    tower_open(&t);
+    tower_open(&t, 0.030, 0.0216);
     for (int j = 0; j < 6; j++)
         t.x[j] = 0.003 * (j + 1);
     t.x[6] = t.x[7] = 0.02;
@@ -476,7 +447,7 @@ TEST(links_that_do_nothing_leave_the_yielding_building_alone)
     SimResult links;
     builtin_tower(&t, ENGINE_FAST, 0.004);
     const SimResult bare = builtin_run(&t, SCENE_NO_CORE);
-    tower_open(&t);
+    tower_open(&t, 0.030, 0.0216);
     sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 1e-3});
     CHECK_OK(sim_run(t.worker, SCENE_LINKS, t.x, &links, &err), &err);
     tower_close(&t);
@@ -514,7 +485,7 @@ TEST(very_weak_storeys_under_strong_shaking_stay_stable)
         t.settings.sim.accuracy = ACCURACY_STANDARD;
         t.settings.sim.duration_s = 8;
         t.settings.motion.pga_g = 10 / 9.81;
-        tower_open(&t);
+        tower_open(&t, 0.030, 0.0216);
         const SimResult r = tower_run(&t, SCENE_IMPACT);
         for (size_t i = 0; i < t.motion.n; i++)
             t.motion.accel[i] = -t.motion.accel[i];
