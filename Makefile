@@ -251,13 +251,14 @@ tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $
 
 # A file of tests runs in the mode that it belongs to, or in that which the command gives.
 modes = $(if $(filter command line,$(origin MODE)),$(MODE),$(foreach mode,release asan,$(if $(filter $(T),$(NAMES.$(mode))),$(mode))))
+names_in = $(if $(filter command line,$(origin MODE)),$(T),$(filter $(T),$(NAMES.$(mode))))
+test_in = { $(MAKE) --no-print-directory -j$(JOBS) MODE=$(1) T="$(2)" tests && $(MAKE) --no-print-directory MODE=$(1) T="$(2)" run_tests; }
 run_tests:
 	@printf '%s\n' $(JOBS_OF) | scripts/run-tests $(TEST_JOBS)
 
 ifdef T
 test: ## every test of physics, search and numbers; T="moga rbf": these files of any kind; CASE=front: their tests so named
-	@code=0; for mode in $(modes); do $(MAKE) --no-print-directory -j$(JOBS) MODE=$$mode tests && \
-	    $(MAKE) --no-print-directory MODE=$$mode run_tests || code=1; done; exit $$code
+	@code=0; $(foreach mode,$(modes),$(call test_in,$(mode),$(names_in)) || code=1;) exit $$code
 else
 test: setup
 	@$(MAKE) --no-print-directory -j$(JOBS) tests
