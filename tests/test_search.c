@@ -24,6 +24,7 @@ typedef struct {
     Function function;
     double lower[VAR_MAX], upper[VAR_MAX];
     int fail_share_percent, all_alike_noise, waves;
+    int has_no_bound; /* the constraint, where x1 > 0.9 */
     size_t n_rows, n_repeated;
     double seen[ROWS_MAX][VAR_MAX];
 } World;
@@ -80,7 +81,7 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
             for (size_t k = 0; k < m; k++)
                 F[i * m + k] = -1e9; /* would dominate everything */
         if (w->problem.n_con > 0)
-            G[i] = 0.3 - x[0];
+            G[i] = w->has_no_bound && x[1] > 0.9 ? 1e308 : 0.3 - x[0];
     }
     return STATUS_OK;
 }
@@ -319,6 +320,19 @@ TEST(constraints_hold_on_the_front)
         feasible += i >= 40 && seen.G[i] <= 0.0;
     }
     assert_less(60, feasible); /* of 80: the search knows where not to look */
+}
+
+/* One such number among the centres would leave nothing of the others. */
+TEST(a_constraint_beyond_all_bounds_takes_no_part_in_the_surrogate)
+{
+    world_with_limits(&here, 8, 3, 1);
+    here.has_no_bound = 1;
+    const SearchConfig c = config(40, 120);
+    run(&here, &c, &seen);
+    size_t feasible = 0;
+    for (size_t i = 40; i < seen.n; i++)
+        feasible += seen.G[i] <= 0.0;
+    assert_less(50, feasible); /* of 80 */
 }
 
 TEST(a_start_without_a_feasible_design_finds_the_feasible_region)

@@ -525,6 +525,21 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
     hypervolume_free(h);
 }
 
+/* Tables are written in blocks of some thousand rows. */
+TEST(an_export_of_thousands_has_every_design_in_its_order)
+{
+    enum { DESIGNS = 4200 };
+    write_in_place("large.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nsurrogate = off\n"
+                                "generations = 1000000\nstop_after = 0\nmax_evals = 4200\n");
+    free(output_of("optimize @/large.ini --out @/large"));
+    char *all = all_of("large");
+    long n = 0;
+    for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
+        assert_int_equal(strtol(line + 1, NULL, 10), ++n);
+    assert_int_equal(n, DESIGNS);
+    free(all);
+}
+
 /* Kernels as the program has them, whose runs are compared with those of this process. */
 static int prepare_pinned(void **state)
 {
