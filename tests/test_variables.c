@@ -169,13 +169,36 @@ TEST(a_design_is_simulated_the_same_by_any_variables)
 #define SHORT SIX_FLOORS "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 --set sim.accuracy=coarse "
 #define WIDE  "--set design.variables=gaps,thickness,bumper,side --set design.gap_zones=3 "
 
+static char *said; /* by the search */
+
 static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
-                   "--set search.population=12 --set search.polish=0 " WIDE SHORT));
+    said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                     "--set search.population=12 --set search.polish=0 " WIDE SHORT);
     return 0;
+}
+
+static int end_run(void **state)
+{
+    free(said);
+    return clear_place(state);
+}
+
+TEST(a_named_design_that_cannot_be_predicted_is_said_to_be_so)
+{
+    Run run;
+    Err err = {0};
+    char path[PATH_MAX];
+    long n = 0;
+    CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
+    for (size_t k = 0; k <= run.schema.n_obj; k++)
+        n += run_is_unpredictable(&run, k < run.schema.n_obj ? run_best(&run, k) : run_knee(&run));
+    run_free(&run);
+    for (const char *at = said; (at = strstr(at, "  unpredictable\n")); at++)
+        n--;
+    assert_int_equal(n, 0);
 }
 
 TEST(every_command_follows_the_variables_of_a_run)
@@ -221,4 +244,4 @@ TEST(designs_of_other_variables_are_refused)
     forget(&s);
 }
 
-SUITE(make_run, clear_place)
+SUITE(make_run, end_run)

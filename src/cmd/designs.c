@@ -413,5 +413,5 @@ void figures_of_run(json_t *table, const Run *run, const char *label, size_t row
     run_likely(run, row, error);
     json_t *shown = figures_design(table, label, e->id, &run->schema, run_f(run, row), error, e->sd, e->extra);
     if (run_is_unpredictable(run, row))
-        json_put(shown, " =unpredictable");
+        json_put(shown, " =%s", "unpredictable");
 }

@@ -82,6 +82,8 @@ double device_strong_part(const Motion *m, double period)
 {
     double whole = 0, sum = 0;
     size_t k = 0;
+    if (m->n_force > 0) /* they may come late, on a ground that is at rest */
+        return motion_duration(m);
     for (size_t i = 0; i < m->n; i++)
         whole += m->accel[i] * m->accel[i];
     for (; k < m->n && sum < ARIAS * whole; k++)

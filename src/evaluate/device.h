@@ -24,7 +24,8 @@ typedef struct {
 Status device_find(const ReplicatePlan *plan, size_t n, const Shaken at[], SceneKind kind, const double x[],
                    LinearDevice *device, Err *err);
 
-/* [s] Until ARIAS of int a^2 dt has passed, and PERIODS of the building, whose first is `period`. */
+/* [s] Until ARIAS of int a^2 dt has passed, and PERIODS of the building, whose first is `period`. All of a motion with
+ * forces on floors. */
 double device_strong_part(const Motion *m, double period);
 
 /* f1 and damping of a tuned mass on an undamped structure of frequency hz under white noise at the base; mu: ratio of
