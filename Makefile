@@ -239,7 +239,7 @@ BESIDE.faults  := $(BUILD)/tests/fault/nomem.so
 BESIDE.library := $(if $(filter release,$(MODE)),$(SHARED) $(CORE) $(EXAMPLES))
 
 # One line per job: mode, name, command.
-JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) $(CASE)')
+JOBS_OF = $(foreach name,$(IN_MODE),'$(MODE) $(name) $(TEST_PROGRAM) $(name) "$(CASE)"')
 ifeq ($(MODE)$(T),release)
 BESIDE.release := $(BENCH)
 JOBS_OF += $(foreach e,$(STABILITY),'release stability_$(e) $(BENCH) stability --quick --seconds 3 --engine $(e)') 'release laws $(BENCH) laws'
@@ -250,14 +250,17 @@ endif
 tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
 
 # A file of tests runs in the mode that it belongs to, or in that which the command gives.
-modes = $(if $(filter command line,$(origin MODE)),$(MODE),$(foreach mode,release asan,$(if $(filter $(T),$(NAMES.$(mode))),$(mode))))
-names_in = $(if $(filter command line,$(origin MODE)),$(T),$(filter $(T),$(NAMES.$(mode))))
+GIVEN := $(filter command environment,$(origin MODE))
+modes = $(if $(GIVEN),$(MODE),$(foreach mode,release asan,$(if $(filter $(T),$(NAMES.$(mode))),$(mode))))
+names_in = $(if $(GIVEN),$(T),$(filter $(T),$(NAMES.$(mode))))
 test_in = { $(MAKE) --no-print-directory -j$(JOBS) MODE=$(1) T="$(2)" tests && $(MAKE) --no-print-directory MODE=$(1) T="$(2)" run_tests; }
 run_tests:
 	@printf '%s\n' $(JOBS_OF) | scripts/run-tests $(TEST_JOBS)
 
+UNKNOWN := $(filter-out $(NAMES),$(T))
 ifdef T
 test: ## every test of physics, search and numbers; T="moga rbf": these files of any kind; CASE=front: their tests so named
+	$(if $(UNKNOWN),$(error T=$(UNKNOWN): there is no tests/test_$(firstword $(UNKNOWN)).c that `make test` runs))
 	@code=0; $(foreach mode,$(modes),$(call test_in,$(mode),$(names_in)) || code=1;) exit $$code
 else
 test: setup

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <time.h>
 #include <cmocka.h>
 
@@ -28,6 +29,8 @@ static size_t n_tests __attribute__((unused));
     static void test_##name(void **state);                                                                             \
     __attribute__((constructor(200 + __LINE__))) static void add_##name(void)                                          \
     {                                                                                                                  \
+        if (n_tests == TESTS_MAX)                                                                                      \
+            abort(); /* too many in one file */                                                                        \
         all_tests[n_tests++] = (struct CMUnitTest){"test_" #name, test_##name, NULL, NULL, NULL};                      \
     }                                                                                                                  \
     static void test_##name(__attribute__((unused)) void **state)

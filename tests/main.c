@@ -1,9 +1,10 @@
 /* tests/main.c -- the program that the files of tests are linked into.
  *
- *   PROGRAM NAME [WORDS]     runs tests/test_NAME.c, of WORDS only the tests with these letters in their names
+ *   PROGRAM NAME [LETTERS]     runs tests/test_NAME.c, with LETTERS only the tests that have them in their names
  *
  * Behind cmocka's own lines it prints for every test `[ SECONDS  ] clock processor name`, the processor time with that
- * of the programs that the test has run. */
+ * of the programs that the test has run, and at the end `[ FINISHED ]`: a test that ends the process is no success. Exit
+ * status 3: no test has these letters. */
 #include "check.h"
 
 #include <stdio.h>
@@ -43,13 +44,15 @@ static double processor_s(void)
 /* The tests that run, in their order; each has a beginning and an end of ours. */
 static struct {
     struct CMUnitTest tests[TESTS_MAX];
-    CMFixtureFunction before_each;
-    size_t n, now;
+    CMFixtureFunction before_each, tear_down;
+    int tear_down_failed;
+    size_t n, now; /* now: one more than the test that runs */
     double clock, processor;
 } chosen;
 
 static int begin(void **state)
 {
+    chosen.now++;
     chosen.clock = now_s();
     chosen.processor = processor_s();
     return chosen.before_each ? chosen.before_each(state) : 0;
@@ -59,13 +62,19 @@ static int end(void **state)
 {
     (void)state;
     print_message("[ SECONDS  ] %.2f %.2f %s\n", now_s() - chosen.clock, processor_s() - chosen.processor,
-                  chosen.tests[chosen.now++].name);
+                  chosen.tests[chosen.now - 1].name);
     return 0;
+}
+
+static int tear_down(void **state)
+{
+    return chosen.tear_down_failed = chosen.tear_down && chosen.tear_down(state) != 0;
 }
 
 static void choose(const Suite *suite, const char *words)
 {
     chosen.before_each = suite->before_each;
+    chosen.tear_down = suite->tear_down;
     for (size_t i = 0; i < *suite->n; i++)
         if (strstr(suite->tests[i].name, words)) {
             chosen.tests[chosen.n] = suite->tests[i];
@@ -85,8 +94,10 @@ int main(int argc, char *argv[])
     }
     choose(suite, argc > 2 ? argv[2] : "");
     if (chosen.n == 0) {
-        fprintf(stderr, "%s: no test of %s has `%s` in its name\n", argv[0], suite->file, argv[2]);
-        return 2;
+        fprintf(stderr, "%s: no test of %s has `%s` in its name\n", argv[0], suite->file, argc > 2 ? argv[2] : "");
+        return argc > 2 && argv[2][0] ? 3 : 2;
     }
-    return _cmocka_run_group_tests(argv[1], chosen.tests, chosen.n, suite->set_up, suite->tear_down);
+    const int failed = _cmocka_run_group_tests(argv[1], chosen.tests, chosen.n, suite->set_up, tear_down);
+    print_message("[ FINISHED ]\n");
+    return failed || chosen.tear_down_failed;
 }

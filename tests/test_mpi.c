@@ -1,5 +1,5 @@
 /* Ranks of MPI: the bytes of one process, whoever evaluates; a rank that dies, hangs or is another program is named.
- * IMTET_MPI in the environment: the program; MPI_RANKS: how many at most, 4 if not given; MPI_TEST: these tests alone. */
+ * IMTET_MPI in the environment: the program; MPI_RANKS: how many at most, 4 if not given. */
 #include "program.h"
 
 #include <fcntl.h>

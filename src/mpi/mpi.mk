@@ -48,5 +48,5 @@ test-mpi: ## tests of imtet_mpi with RANKS=4 at most; skipped where there is no 
 tests-mpi: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
 
 test-mpi-here: tests-mpi
-	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi' | \
+	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi "$(CASE)"' | \
 	 IMTET_MPI=$(abspath $(MPI_PROGRAM)) IMTET_MPI_OTHER=$(abspath $(BUILD)/other/imtet_mpi) MPI_RANKS=$(RANKS) scripts/run-tests 1
