@@ -336,6 +336,9 @@ static void expect_key_above_the_panels(void)
     const double title = height_of(svg, "drift_ratio > 0.012");
     for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
         assert_less(height_of(svg, WORDS[i]), title - 10);
+    const char *height = strstr(svg, "height=\"");
+    assert_non_null(height);
+    assert_less(title + 300, strtod(height + 8, NULL)); /* [px] the panels are on the picture */
     free(svg);
 }
 
