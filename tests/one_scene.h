@@ -2,6 +2,7 @@
 #ifndef IMTET_TESTS_ONE_SCENE_H
 #define IMTET_TESTS_ONE_SCENE_H
 
+#include "check.h"
 #include "scene_options.h"
 #include "sim/sim.h"
 
