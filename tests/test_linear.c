@@ -542,9 +542,8 @@ static void find_devices(double yield_drift)
 TEST(the_strong_part_of_a_motion_ends_with_it_where_floors_are_pushed_and_behind_its_energy_elsewhere)
 {
     enum { SAMPLES = 1001 };
-    static double accel[SAMPLES], force[SAMPLES];
+    static double accel[SAMPLES] = {[100] = 1}, force[SAMPLES];
     Motion m = {.accel = accel, .n = SAMPLES, .dt_s = 0.01, .force = force};
-    accel[100] = 1;
     assert_close(device_strong_part(&m, 0.5), 1.01 + 3 * 0.5, 1e-12);
     m.n_force = 1;
     assert_close(device_strong_part(&m, 0.5), 10, 1e-12);

@@ -206,8 +206,9 @@ const tried = {
   },
   async "designs stand side by side with their differences"() {
     await click("#kept li button");
-    await click("#designs tbody td button", 1);
-    await until("document.getElementById('drawer').dataset.id");
+    const open = "document.getElementById('drawer').dataset.id"; // the table may move below the pointer as the list above it shrinks
+    for (let tries = 0; tries < 4 && !(await page.evaluate(open)); tries++) await click("#designs tbody td button", 1).then(() => until(open, 5)).catch(() => 0);
+    await until(open);
     await until("!document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
     await click("#drawer .bar + .bar button", 1);
     await until("document.querySelectorAll('#compared tbody tr').length === 2");
