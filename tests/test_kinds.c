@@ -51,6 +51,31 @@ TEST(a_choice_that_varies_becomes_any_other_word_with_equal_chance)
     }
 }
 
+/* From any place, of a box whose ends are 0 and 12 and of values that are sold every 2.5, 20 in all. */
+TEST(a_step_to_another_value_goes_to_a_neighbour_on_either_side_and_changes_nothing_else)
+{
+    static const double lower[] = {0, 0, 2.5}, upper[] = {1, 12, 50};
+    static const VariableKind kind[] = {VARIABLE_REAL, VARIABLE_WHOLE, VARIABLE_STEPPED};
+    static const Steps steps[3] = {[2] = {.n = 20, .first = 1, .step = 2.5}};
+    const Problem p = {.n_var = 3, .lower = lower, .upper = upper, .kind = kind, .steps = steps};
+    const double width[] = {0, 1, 2.5};
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    for (size_t d = 1; d < 3; d++)
+        for (double at = lower[d]; at <= upper[d]; at += width[d]) {
+            int n_below = 0, n_above = 0;
+            for (int i = 0; i < 100; i++) {
+                const double from[] = {0.3, d == 1 ? at : 4, d == 2 ? at : 10};
+                double x[3];
+                step_discrete(&r, &p, d, from, x);
+                assert_true(x[d] == at - width[d] || x[d] == at + width[d]);
+                assert_true(x[0] == from[0] && x[3 - d] == from[3 - d]);
+                n_below += x[d] < at;
+                n_above += x[d] > at;
+            }
+            assert_true((n_below > 0) == (at > lower[d]) && (n_above > 0) == (at < upper[d]));
+        }
+}
+
 TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");

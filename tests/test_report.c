@@ -733,6 +733,33 @@ TEST(pictures_are_drawn_as_svg_and_png_each)
     free(svg);
 }
 
+/* What gnuplot is told, by a program of its name that keeps it: [mm] gap and thickness, floor by floor. */
+TEST(the_picture_of_gaps_has_those_of_the_design_in_millimetres)
+{
+    char line[PATH_MAX + 64], path[PATH_MAX], *before = strdup(getenv("PATH"));
+    snprintf(line, sizeof line, "#!/bin/sh\ncat >> %s/told.txt\n", place.folder);
+    write_in_place("gnuplot", line);
+    assert_int_equal(chmod(path_of("gnuplot", path), 0700), 0);
+    snprintf(line, sizeof line, "%s:%s", place.folder, before);
+    setenv("PATH", line, 1);
+    expect(0, "", "report @/tower --pictures @/tower/none");
+    setenv("PATH", before, 1);
+    free(before);
+    char *told = read_in_place("told.txt"), *at = strstr(told, "; LOW = ");
+    assert_non_null(at);
+    *at = 0;
+    while (strncmp(at, "$D << EOD\n", 10) != 0)
+        at--;
+    at = strchr(at, '\n');
+    for (int j = 0; j < report.detail.n_floors; j++) {
+        assert_int_equal(strtol(at, &at, 10), j + 1);
+        assert_close(strtod(at, &at), 1e3 * report.detail.gap_side_m[0][j], 1e-5);
+        assert_close(strtod(at, &at), 1e3 * report.detail.thickness_m[j], 1e-5);
+        at = strchr(at, '\n');
+    }
+    free(told);
+}
+
 /* The bundle is what its sources make of the libraries; they are there after `make web`. */
 TEST(the_bundle_of_charts_is_what_its_sources_give)
 {

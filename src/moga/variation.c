@@ -112,3 +112,12 @@ void mutate_discrete(Random *r, const Problem *p, const double before[], double 
         else
             x[d] = other_number(p->lower[d], p->upper[d], before[d], x[d]);
 }
+
+void step_discrete(Random *r, const Problem *p, size_t d, const double from[], double x[])
+{
+    const double less = problem_kind(p, d) == VARIABLE_STEPPED ? 1e-9 * (p->upper[d] - p->lower[d]) : 1.0;
+    memcpy(x, from, p->n_var * sizeof *x);
+    x[d] += random_uniform(r) < 0.5 ? less : -less;
+    mutate_discrete(r, p, from, x);
+    problem_repair(p, x);
+}

@@ -33,3 +33,6 @@ void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const dou
 /* After mutation: what is not real and no longer what it was before moves by 1 at least, to another word, to another
  * value that is sold. */
 void mutate_discrete(Random *r, const Problem *p, const double before[], double x[]);
+
+/* x is `from` with variable d, which is not real, elsewhere: another word, the next whole number or value that is sold. */
+void step_discrete(Random *r, const Problem *p, size_t d, const double from[], double x[]);
