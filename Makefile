@@ -195,7 +195,7 @@ include bench/bench.mk src/mpi/mpi.mk
 # Every file of tests runs once, where it proves most: what reads foreign bytes, keeps runs, or talks to others under
 # AddressSanitizer and UBSan, on short runs; physics, search and numbers as users run them, where the sanitizers would find
 # little and take three times as long. The library's is run in both: what is installed is not sanitized. Longest first.
-NAMES.asan    := commands workers cli serve store asking damage disk async store_faults shared run_read manual \
+NAMES.asan    := commands workers cli serve store asking damage disk store_faults shared run_read manual \
                  import motion_formats motion queue library safety asked job_limit settings table fuzz_corpus
 NAMES.release := browser check resume torture
 OTHERS        := library $(filter-out mpi $(NAMES.asan) $(NAMES.release),$(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)))

@@ -106,7 +106,7 @@ static Status measure(Order o, Err *err)
     Queue *q;
     TRY(reopen(&p, &parts, sizeof parts, err));
     executor_choose(&p);
-    TRY(queue_open(&q, &p, is_batch ? QUEUE_AS_ASKED : QUEUE_AS_ARRIVED, 0, err));
+    TRY(queue_open(&q, &p, err));
     if (is_batch)
         o.n_tasks = (o.n_tasks + batch - 1) / batch * batch;
     Status status = keep_pending(q, &(Order){o.mode, o.task_s, 2 * p.n_workers}, p.n_workers, err); /* warm */

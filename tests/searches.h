@@ -13,7 +13,7 @@
 static inline SearchConfig search_config(uint32_t seed, size_t population, size_t surrogate_max)
 {
     return (SearchConfig){
-        .seed = seed, .population = population, .surrogate_max = surrogate_max, .nondominated_share = 1};
+        .seed = seed, .population = population, .surrogate_max = surrogate_max, .nondominated_share = 1, .ahead = -1};
 }
 
 enum { MOMENTS_MAX = 200 };
@@ -29,7 +29,7 @@ static inline void moments_note(Moments *m, const SearchView *v)
     assert_less(m->n, MOMENTS_MAX);
     assert_non_null(v->state);
     const size_t k = m->n++;
-    m->rows[k] = v->n;
+    m->rows[k] = v->all->n;
     m->n_state[k] = v->n_state;
     m->state[k] = malloc(v->n_state);
     assert_non_null(m->state[k]);

@@ -301,18 +301,6 @@ TEST(an_isolated_simulation_that_crashes_ends_its_design_alone_on_a_rank_too)
     free(all);
 }
 
-/* One other rank of one thread is one worker: then the order of arrival is that of asking. */
-TEST(asynchronous_with_one_worker_is_the_run_in_batches)
-{
-    program();
-    write_in_place("steady.ini", STEADY);
-    free(output_of("optimize @/steady.ini --out @/batches --threads 1 --set search.asynchronous=on"));
-    expect_code(launch(2, "optimize @/steady.ini --out @/one --set search.asynchronous=on"), 0);
-    assert_same_evaluations("batches", "one");
-    expect_code(launch(4, "optimize @/steady.ini --out @/several --set search.asynchronous=on"), 0);
-    assert_int_equal(finished_in("several"), 150);
-}
-
 TEST(other_commands_give_their_tasks_to_the_ranks)
 {
     program();

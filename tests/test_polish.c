@@ -60,7 +60,7 @@ static Status polish(Toy *w, const double weight[], const double bound[], size_t
     memcpy(x, START, sizeof x);
     evaluate(1, x, NULL, f, NULL, &ok, &exact, err);
     *r = (Polished){.x = x, .f = f};
-    CHECK_OK(queue_open(&q, &problem, QUEUE_AS_ASKED, 0, err), err);
+    CHECK_OK(queue_open(&q, &problem, err), err);
     const Status status = polish_run(q, &(PolishGoal){weight, scale, bound, evals, w->gain_min}, r, err);
     queue_close(q);
     return status;

@@ -165,7 +165,7 @@ static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
         a->X[i] = random_uniform(&r) - 0.5;
     CHECK_OK(external_open(&p, &options, workers, &err), &err);
     clock_gettime(CLOCK_MONOTONIC, &start);
-    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, &err), &err);
+    CHECK_OK(queue_open(&q, &p, &err), &err);
     for (size_t i = 0, came = 0; came < N; came++) {
         for (; i < N && i < came / (N / 2) * (N / 2) + N / 2; i++)
             CHECK_OK(queue_ask(q, &(Asked){.x = a->X + 3 * i}, &err), &err);
@@ -353,7 +353,7 @@ static pid_t start_with_workers(const char *command, int *end)
         dup2(ends[1], STDERR_FILENO);
         close(ends[1]);
         if (external_open(&p, &options, 2, &err) == STATUS_OK &&
-            queue_open(&q, &p, QUEUE_AS_ASKED, 0, &err) == STATUS_OK)
+            queue_open(&q, &p, &err) == STATUS_OK)
             queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
         _exit(1);
     }
@@ -412,7 +412,7 @@ TEST(a_command_that_does_not_exist_ends_the_search_by_name)
     unsigned char ok;
     const ProblemOptions options = command_of("no-such-simulator --fast", 1, 3);
     CHECK_OK(external_open(&p, &options, 1, &err), &err);
-    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, &err), &err);
+    CHECK_OK(queue_open(&q, &p, &err), &err);
     assert_int_equal(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "no-such-simulator"));
     queue_close(q);
@@ -477,14 +477,14 @@ TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
     Heard heard = {0};
     adapter_observe(adapter, &(Observer){.done = hear, .user = &heard});
     Queue *q;
-    CHECK_OK(queue_open(&q, p, QUEUE_AS_ASKED, 12, &err), &err);
+    CHECK_OK(queue_open(&q, p, &err), &err);
     CHECK_OK(queue_evaluate(q, 2, X, NULL, F, G, ok, &err), &err);
     queue_close(q);
     assert_true(ok[0] && ok[1] && F[0] == 0.75 && F[1] == 1 && F[2] == -0.25 && F[3] == 3);
     assert_close(G[0], 0.5, 1e-15); /* -0.5 - -0.75 of 0.5 */
     assert_true(G[1] == -0.5 && G[2] < 0);
     assert_close(G[3], 0.5, 1e-15);
-    assert_true(heard.n == 2 && heard.last_ok && heard.numbers == 13 + 14 && heard.violations > 0.0);
+    assert_true(heard.n == 2 && heard.last_ok && heard.numbers == 1 + 2 && heard.violations > 0.0);
     adapter_close(adapter);
 }
 
@@ -530,7 +530,7 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
         CHECK_OK(adapter_open(&adapter, &s, &err), &err);
         const Problem *p = adapter_problem(adapter);
         Queue *q;
-        CHECK_OK(queue_open(&q, p, QUEUE_AS_ASKED, 0, &err), &err);
+        CHECK_OK(queue_open(&q, p, &err), &err);
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;

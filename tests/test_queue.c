@@ -83,7 +83,7 @@ static double f_of(double x)
 
 static Bench bench;
 
-static Queue *open_queue(size_t workers, QueueOrder order)
+static Queue *open_queue(size_t workers)
 {
     Queue *q;
     Err err = {0};
@@ -96,7 +96,7 @@ static Queue *open_queue(size_t workers, QueueOrder order)
     bench.problem.n_parts = PARTS;
     bench.problem.part_size = sizeof(Part);
     bench.problem.n_workers = workers;
-    CHECK_OK(queue_open(&q, &bench.problem, order, 100, &err), &err);
+    CHECK_OK(queue_open(&q, &bench.problem, &err), &err);
     return q;
 }
 
@@ -110,11 +110,13 @@ static void ask(Queue *q, int n)
 {
     Err err = {0};
     for (int i = 0; i < n; i++)
-        CHECK_OK(
-            queue_ask(
-                q, &(Asked){.x = (double[]){i, i % 7 == 6 ? -1.0 : 1.0}, .repeat = (size_t)i % 3, .kind = KIND_INFILL},
-                &err),
-            &err);
+        CHECK_OK(queue_ask(q,
+                           &(Asked){.id = i == 0 ? 101 : 0,
+                                    .x = (double[]){i, i % 7 == 6 ? -1.0 : 1.0},
+                                    .repeat = (size_t)i % 3,
+                                    .kind = KIND_INFILL},
+                           &err),
+                 &err);
 }
 
 static Status note_done(const Evaluation *e, void *user, Err *err)
@@ -133,7 +135,7 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
         forget();
         bench.rests = 1;
         bench.problem.observer = (Observer){.done = note_done, .user = &bench};
-        Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+        Queue *q = open_queue(workers);
         ask(q, DESIGNS);
         assert_int_equal(queue_pending(q), DESIGNS);
         for (int i = 0; i < DESIGNS; i++) {
@@ -162,7 +164,7 @@ TEST(numbers_are_those_that_a_run_keeps)
     Err err = {0};
     double x[VAR] = {-0.0, 2.0};
     forget();
-    Queue *q = open_queue(1, QUEUE_AS_ASKED);
+    Queue *q = open_queue(1);
     problem_repair(&bench.problem, x);
     assert_int_equal(signbit(x[0]), 0);
     CHECK_OK(queue_ask(q, &(Asked){.x = x}, &err), &err);
@@ -178,40 +180,13 @@ TEST(a_single_design_keeps_as_many_workers_busy_as_it_has_parts)
     Err err = {0};
     forget();
     bench.rests = 1;
-    Queue *q = open_queue(PARTS, QUEUE_AS_ASKED);
+    Queue *q = open_queue(PARTS);
     for (int tries = 0; tries < 200 && bench.most_under_way < PARTS; tries++) {
         ask(q, 1);
         CHECK_OK(queue_next(q, &done, &err), &err);
     }
     queue_close(q);
     assert_int_equal(bench.most_under_way, PARTS);
-}
-
-TEST(as_arrived_every_design_comes_once_and_is_numbered_in_that_order)
-{
-    for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
-        Finished done;
-        Err err = {0};
-        int came[DESIGNS] = {0}, in_order = 1;
-        forget();
-        bench.rests = 1;
-        bench.problem.observer = (Observer){.done = note_done, .user = &bench};
-        Queue *q = open_queue(workers, QUEUE_AS_ARRIVED);
-        ask(q, DESIGNS);
-        for (int i = 0; i < DESIGNS; i++) {
-            CHECK_OK(queue_next(q, &done, &err), &err);
-            const int design = (int)done.evaluation->x[0];
-            assert_int_equal(done.evaluation->id, 101 + i);
-            assert_int_equal(bench.heard[i], 101 + i);
-            in_order &= design == i;
-            came[design]++;
-        }
-        queue_close(q);
-        for (int i = 0; i < DESIGNS; i++)
-            assert_int_equal(came[i], 1);
-        if (workers == 1)
-            assert_true(in_order);
-    }
 }
 
 /* Whichever worker is first, the fault of the design asked for first is the one that is told. */
@@ -226,7 +201,7 @@ TEST(of_several_faults_the_first_design_is_named)
             bench.rests = turn % 2;
             bench.fault_at[0] = 20;
             bench.fault_at[1] = 21;
-            Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+            Queue *q = open_queue(workers);
             ask(q, DESIGNS);
             while (status == STATUS_OK)
                 status = queue_next(q, &done, &err);
@@ -253,7 +228,7 @@ TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
         bench.rests = 1;
         bench.tasks_left = 10 * PARTS;
         bench.problem.observer = (Observer){some_more, note_done, &bench};
-        Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+        Queue *q = open_queue(workers);
         ask(q, DESIGNS);
         while (status == STATUS_OK)
             status = queue_next(q, &done, &err);
@@ -278,57 +253,13 @@ TEST(a_fault_of_the_observer_ends_everything)
     Status status = STATUS_OK;
     forget();
     bench.problem.observer = (Observer){.done = refuse_third, .user = &bench};
-    Queue *q = open_queue(2, QUEUE_AS_ARRIVED);
+    Queue *q = open_queue(2);
     ask(q, DESIGNS);
     while (status == STATUS_OK)
         status = queue_next(q, &done, &err);
     assert_int_equal(status, STATUS_IO);
     assert_string_equal(err.text, "the disk is full");
     queue_close(q);
-}
-
-TEST(known_evaluations_are_not_simulated_again)
-{
-    EvaluationTable known = evaluation_table(VAR, OBJ, 0);
-    Finished done;
-    Err err = {0};
-    for (int i = 0; i < 9;
-         i += 2) { /* of the designs 0, 2, ..., as an interrupted batch leaves them; 4 is another one */
-        Evaluation e = {
-            .id = 101 + i, .kind = KIND_UNFINISHED, .x = (double[]){i == 4 ? 77 : i, 1}, .f = (double[]){-i, 5}};
-        CHECK_OK(evaluation_table_append(&known, &e, &err), &err);
-    }
-    forget();
-    bench.problem.observer = (Observer){.done = note_done, .user = &bench};
-    Queue *q = open_queue(2, QUEUE_AS_ASKED);
-    queue_know(q, known.n, known.row);
-    ask(q, 10);
-    for (int i = 0; i < 10; i++) {
-        CHECK_OK(queue_next(q, &done, &err), &err);
-        const int is_known = i % 2 == 0 && i != 4;
-        assert_int_equal(done.evaluation->id, 101 + i);
-        assert_int_equal(done.evaluation->kind, KIND_INFILL);
-        if (i != 6)
-            assert_same_number(done.evaluation->f[0], (is_known ? -i : f_of(i)));
-    }
-    queue_close(q);
-    assert_int_equal(bench.n_tasks, 7 * PARTS);
-    assert_int_equal(bench.n_heard, 7);
-
-    forget(); /* as arrived: all of them first, the one that nobody asked for too */
-    q = open_queue(2, QUEUE_AS_ARRIVED);
-    queue_know(q, known.n, known.row);
-    ask(q, 6);
-    for (size_t i = 0; i < known.n; i++) {
-        CHECK_OK(queue_next(q, &done, &err), &err);
-        assert_true(done.evaluation->x[0] == known.row[i].x[0] && done.evaluation->f[0] == -2.0 * (double)i);
-    }
-    assert_int_equal(queue_pending(q), 4);
-    for (int i = 0; i < 4; i++)
-        CHECK_OK(queue_next(q, &done, &err), &err);
-    queue_close(q);
-    assert_int_equal(bench.n_tasks, 4 * PARTS);
-    evaluation_table_free(&known);
 }
 
 /* Without a worker of its own: tasks are taken and given here. */
@@ -346,30 +277,29 @@ static void stop_none(void *self)
 
 static const Executor NONE = {start_none, NULL, stop_none};
 
-TEST(what_nobody_has_taken_can_be_withdrawn)
+TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 {
     Finished done;
-    Task task[PARTS];
+    Task task[3 * PARTS];
     Err err = {0};
     forget();
     bench.problem.executor = &NONE;
-    Queue *q = open_queue(1, QUEUE_AS_ARRIVED);
+    Queue *q = open_queue(1);
     ask(q, 3);
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < 3 * PARTS; k++) {
         assert_int_equal(queue_take(q, 0, &task[k]), 1);
-        assert_true(task[k].x[0] == 0.0 && task[k].part == (size_t)k);
+        assert_true(task[k].x[0] == k / PARTS && task[k].part == (size_t)k % PARTS && task[k].id == 101 + k / PARTS);
     }
-    queue_withdraw(q);
-    assert_int_equal(queue_pending(q), 1);
-    assert_true(queue_has(q, (double[]){0, 1}) && !queue_has(q, (double[]){1, 1}));
-    assert_same_number(queue_design(q, 0).x[0], 0.0);
-    for (int k = PARTS; k-- > 0;) { /* the last part first */
+    assert_int_equal(queue_take(q, 0, &task[0]), 0);
+    for (int k = 3 * PARTS; k-- > 0;) { /* the last part first */
         CHECK_OK(simulate(&bench, 0, &task[k], &err), &err);
         queue_give(q, &task[k], STATUS_OK, &err);
     }
-    CHECK_OK(queue_next(q, &done, &err), &err);
-    assert_same_number(done.evaluation->f[0], f_of(0));
-    assert_int_equal(queue_take(q, 0, &task[0]), 0);
+    for (int i = 0; i < 3; i++) {
+        CHECK_OK(queue_next(q, &done, &err), &err);
+        assert_int_equal(done.evaluation->id, 101 + i);
+        assert_same_number(done.evaluation->f[0], f_of(i));
+    }
     assert_int_not_equal(queue_next(q, &done, &err), STATUS_OK);
     queue_close(q);
 }
@@ -379,7 +309,7 @@ TEST(designs_without_end_need_no_more_memory_than_those_pending)
     Finished done;
     Err err = {0};
     forget();
-    Queue *q = open_queue(3, QUEUE_AS_ARRIVED);
+    Queue *q = open_queue(3);
     ask(q, 20);
     for (int i = 0; i < 3000; i++) {
         CHECK_OK(queue_next(q, &done, &err), &err);

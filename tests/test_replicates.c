@@ -139,7 +139,7 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     Err err = {0};
     designs(X);
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
-    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, &err), &err);
+    CHECK_OK(queue_open(&q, &p, &err), &err);
     CHECK_OK(queue_ask(q, &(Asked){.x = X, .repeat = 1}, &err), &err);
     CHECK_OK(queue_next(q, &done, &err), &err);
     memcpy(first, X, sizeof first);

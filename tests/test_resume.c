@@ -8,7 +8,7 @@
 
 #include "base/pack.h"
 #include "check.h"
-#include "moga/search.h"
+#include "study/search_loop.h"
 #include "evaluate/textbook.h"
 #include "functions.h"
 #include "searches.h"
@@ -78,21 +78,22 @@ static SearchConfig config(size_t initial, size_t max_evals)
     return c;
 }
 
-static int observe(const SearchView *v, void *user)
+static int observe(const SearchView *v, const SearchTime *time, void *user)
 {
     Seen *s = user;
+    (void)time;
     if (s->moments.n == 0)
-        s->first_generation = v->generation_now;
-    assert_true(v->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
-    s->n = v->n;
-    s->last_generation = v->generation_now;
-    memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
-    memcpy(s->F, v->Y, v->n * v->n_obj * sizeof *v->Y);
-    memcpy(s->G, v->H, v->n * v->n_con * sizeof *v->H);
-    memcpy(s->ok, v->ok, v->n);
-    memcpy(s->kind, v->kind, v->n);
-    memcpy(s->on_front, v->on_front, v->n);
-    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+        s->first_generation = v->generation;
+    assert_true(v->all->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
+    s->n = v->all->n;
+    s->last_generation = v->generation;
+    memcpy(s->X, v->all->X, v->all->n * v->all->n_var * sizeof *v->all->X);
+    memcpy(s->F, v->all->Y, v->all->n * v->all->n_obj * sizeof *v->all->Y);
+    memcpy(s->G, v->all->H, v->all->n * v->all->n_con * sizeof *v->all->H);
+    memcpy(s->ok, v->all->ok, v->all->n);
+    memcpy(s->kind, v->all->kind, v->all->n);
+    memcpy(s->on_front, v->all->on_front, v->all->n);
+    memcpy(s->generation, v->all->generation, v->all->n * sizeof *v->all->generation);
     moments_note(&s->moments, v);
     return 0;
 }
@@ -308,16 +309,14 @@ TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
     forget(&whole);
 }
 
-/* Every eight bytes of it in turn; of an asynchronous search also what is known of the designs that it waits for. */
-static void check_this_is_refused_everywhere(double number, int asynchronous)
+/* Every eight bytes of it in turn, what is known of the designs that it waits for too. */
+static void check_this_is_refused_everywhere(double number)
 {
     world(&here, 3, 2, 0);
-    SearchConfig c = config(12, 44);
-    here.problem.n_workers = asynchronous ? 3 : here.problem.n_workers;
-    c.asynchronous = asynchronous;
+    const SearchConfig c = config(12, 44);
     run(&here, &c, NULL, &whole);
     memset(&resumed, 0, sizeof resumed);
-    SearchStart start = moment(&whole, 3);
+    SearchStart start = moment(&whole, whole.moments.n / 2);
     unsigned char *forged = malloc(start.n_state);
     assert_non_null(forged);
     for (size_t at = 0; at + sizeof number <= start.n_state; at += sizeof number) {
@@ -334,8 +333,8 @@ static void check_this_is_refused_everywhere(double number, int asynchronous)
 TEST(a_state_with_a_number_anywhere_that_is_not_finite_is_refused)
 {
     static const double NUMBERS[] = {NAN, INFINITY, -INFINITY};
-    for (size_t i = 0; i < 6; i++)
-        check_this_is_refused_everywhere(NUMBERS[i / 2], i % 2);
+    for (size_t i = 0; i < N_OF(NUMBERS); i++)
+        check_this_is_refused_everywhere(NUMBERS[i]);
 }
 
 /* What a Pack reads is what it wrote; a fault stops it before anything is changed. */

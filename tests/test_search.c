@@ -12,7 +12,7 @@
 #include "base/hypervolume.h"
 #include "moga/constants.h"
 #include "moga/convergence.h"
-#include "moga/search.h"
+#include "study/search_loop.h"
 #include "moga/surrogate.h"
 #include "moga/variation.h"
 
@@ -108,21 +108,22 @@ static SearchConfig config(size_t initial, size_t max_evals)
     return c;
 }
 
-static int observe(const SearchView *v, void *user)
+static int observe(const SearchView *v, const SearchTime *time, void *user)
 {
     Seen *s = user;
-    s->n = v->n;
-    s->n_front = v->n_front;
-    s->n_failed = v->n_failed;
+    (void)time;
+    s->n = v->all->n;
+    s->n_front = v->all->n_front;
+    s->n_failed = v->all->n_failed;
     s->error = v->surrogate_error;
-    s->last_generation = v->generation_now;
-    memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
-    memcpy(s->F, v->Y, v->n * v->n_obj * sizeof *v->Y);
-    memcpy(s->G, v->H, v->n * v->n_con * sizeof *v->H);
-    memcpy(s->ok, v->ok, v->n);
-    memcpy(s->kind, v->kind, v->n);
-    memcpy(s->on_front, v->on_front, v->n);
-    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+    s->last_generation = v->generation;
+    memcpy(s->X, v->all->X, v->all->n * v->all->n_var * sizeof *v->all->X);
+    memcpy(s->F, v->all->Y, v->all->n * v->all->n_obj * sizeof *v->all->Y);
+    memcpy(s->G, v->all->H, v->all->n * v->all->n_con * sizeof *v->all->H);
+    memcpy(s->ok, v->all->ok, v->all->n);
+    memcpy(s->kind, v->all->kind, v->all->n);
+    memcpy(s->on_front, v->all->on_front, v->all->n);
+    memcpy(s->generation, v->all->generation, v->all->n * sizeof *v->all->generation);
     return ++s->views == s->stop_at_view;
 }
 

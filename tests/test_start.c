@@ -1,4 +1,4 @@
-/* Where a search begins: with designs that somebody has, none of them twice; and the same answers in either mode. */
+/* Where a search begins: with designs that somebody has, none of them twice. */
 #include "runs.h"
 
 static const char BEGIN[] = "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n"
@@ -8,28 +8,18 @@ static const char BEGIN[] = "[problem]\nkind = dtlz2\nvariables = 4\nobjectives 
 static const char GIVEN[] = "x2,x1,comment,x4,x3\n0.2,0.1,7,0.4,0.3\n-3,0.5,7,0.5,9\n0.2,0.1,8,0.4,0.3\n1,1,7,1,1\n";
 static const double WANTED[3][4] = {{0.1, 0.2, 0.3, 0.4}, {0.5, 0, 1, 0.5}, {1, 1, 1, 1}};
 
-static void check_start(const char *asynchronous)
+TEST(given_designs_come_first_inside_the_box_and_once)
 {
-    Run h;
-    Err err = {0};
-    char path[PATH_MAX];
-    free(output_of("optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
-                   strrchr(asynchronous, '=') + 1, place.folder, asynchronous));
-    CHECK_OK(run_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
+    write_in_place("begin.ini", BEGIN);
+    write_in_place("given.csv", GIVEN);
+    free(output_of("optimize @/begin.ini --out @/off --set search.start=%s/given.csv", place.folder));
+    Run h = run_in("off");
     assert_int_equal(h.table.n, 30);
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
     for (size_t i = 0; i < h.table.n; i++)
         for (size_t j = 0; j < i; j++)
             assert_memory_not_equal(h.table.x + i * 4, h.table.x + j * 4, 4 * sizeof *h.table.x);
     run_free(&h);
-}
-
-TEST(given_designs_come_first_inside_the_box_and_once)
-{
-    write_in_place("begin.ini", BEGIN);
-    write_in_place("given.csv", GIVEN);
-    check_start("search.asynchronous=off");
-    check_start("search.asynchronous=on");
     write_in_place("short.csv", "x1,x2,x4\n0,0,0\n");
     char arguments[256];
     snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/no --set search.start=%s/short.csv",
@@ -60,32 +50,24 @@ TEST(several_starts_are_taken_one_behind_the_other)
     run_free(&earlier);
 }
 
-/* Only the first sample: the same designs in either mode, whatever their order. */
 static const char TOWER[] = SIX_FLOORS_INI "record = builtin:elcentro-like\nrecords = builtin:sylmar-like\n"
                                            "[sim]\nreplicates = 2\nduration_s = 4\n"
-                                           "[search]\ninitial = 12\npopulation = 12\nmax_evals = 12\npolish = 0\n";
+                                           "[search]\ninitial = 12\npopulation = 12\nmax_evals = 45\npolish = 0\n";
 
-TEST(a_design_of_the_tower_has_the_same_objectives_in_either_mode)
+TEST(a_tower_under_records_with_replicates_has_the_same_rows_at_any_number_of_threads)
 {
-    Run batches, turns;
     write_in_place("tower.ini", TOWER);
-    free(output_of("optimize @/tower.ini --out @/batches --threads 1"));
-    free(output_of("optimize @/tower.ini --out @/turns --threads 3 --set search.asynchronous=on"));
-    batches = run_in("batches");
-    turns = run_in("turns");
-    const size_t n_var = batches.schema.n_var, m = batches.schema.n_obj;
-    assert_int_equal(batches.table.n, 12);
-    assert_int_equal(turns.table.n, 12);
-    for (size_t i = 0; i < 12; i++) {
-        size_t j = 0;
-        while (j < 12 && memcmp(batches.table.x + i * n_var, turns.table.x + j * n_var, n_var * sizeof(double)) != 0)
-            j++;
-        assert_less(j, 12);
-        assert_memory_equal(batches.F + i * m, turns.F + j * m, m * sizeof(double));
-        assert_memory_equal(batches.table.sd + i * m, turns.table.sd + j * m, m * sizeof(double));
-    }
-    run_free(&batches);
-    run_free(&turns);
+    free(output_of("optimize @/tower.ini --out @/one --threads 1"));
+    free(output_of("optimize @/tower.ini --out @/three --threads 3"));
+    Run one = run_in("one"), three = run_in("three");
+    const size_t n = one.table.n, n_var = one.schema.n_var, m = one.schema.n_obj;
+    assert_int_equal(n, 45);
+    assert_int_equal(three.table.n, 45);
+    assert_memory_equal(one.table.x, three.table.x, n * n_var * sizeof(double));
+    assert_memory_equal(one.F, three.F, n * m * sizeof(double));
+    assert_memory_equal(one.table.sd, three.table.sd, n * m * sizeof(double));
+    run_free(&one);
+    run_free(&three);
 }
 
 SUITE(prepare, clear_place)

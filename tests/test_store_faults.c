@@ -217,22 +217,26 @@ static const unsigned char OK[N_DESIGNS] = {0, 0, 1, 1, 0, 1}, KIND[N_DESIGNS] =
 static const size_t REPLICATES[N_DESIGNS] = {1, 1, 1, 1, 1, 1};
 static const unsigned char FRONT[N_GENERATIONS][N_DESIGNS] = {{0}, {0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
 
+static Archive rows_of_view; /* at the moment of the view */
+
 static SearchView view_of(size_t g)
 {
-    return (SearchView){.n = UNTIL[g],
-                        .n_var = 3,
-                        .n_obj = 2,
-                        .X = X[0],
-                        .F = F[0],
-                        .Y = F[0],
-                        .ok = OK,
-                        .kind = KIND,
-                        .generation = GENERATION,
-                        .replicates = REPLICATES,
-                        .on_front = FRONT[g],
-                        .n_front = g > 0,
-                        .n_failed = g > 0 ? 3 : 2,
-                        .generation_now = g,
+    rows_of_view = (Archive){.n = UNTIL[g],
+                             .n_var = 3,
+                             .n_obj = 2,
+                             .X = (double *)X[0],
+                             .F = (double *)F[0],
+                             .Y = (double *)F[0],
+                             .ok = (unsigned char *)OK,
+                             .kind = (unsigned char *)KIND,
+                             .generation = (size_t *)GENERATION,
+                             .replicates = (size_t *)REPLICATES,
+                             .on_front = (unsigned char *)FRONT[g],
+                             .n_front = g > 0,
+                             .n_failed = g > 0 ? 3 : 2};
+    return (SearchView){.all = &rows_of_view,
+                        .generation = g,
+                        .reason = g + 1 == N_GENERATIONS ? STOP_EVALUATIONS : STOP_NONE,
                         .surrogate_error = NAN,
                         .state = "state",
                         .n_state = 5};
@@ -257,7 +261,7 @@ static Status generation(RunStore *store, size_t g, Err *err)
     const SearchView v = view_of(g);
     for (size_t i = g > 0 ? UNTIL[g - 1] : 0; i < UNTIL[g]; i++)
         TRY(simulate(store, i, err));
-    TRY(store_generation(store, &v, 1.0, 1.0, err));
+    TRY(store_generation(store, &v, &(SessionTimes){.run = 1.0, .session = 1.0}, err));
     TRY(store_event(store, json_pack("{s:s, s:i}", "event", "generation", "number", (int)g), err));
     return store_event(store, json_pack("{s:I}", "generation", (json_int_t)g), err);
 }
@@ -507,10 +511,10 @@ TEST(a_generation_that_was_not_simulated_is_refused)
     CHECK_OK(store_open(&store, folder, 0, &err), &err);
     CHECK_OK(store_resume(store, &schema, &s, 0, &err), &err);
     SearchView v = view_of(0);
-    assert_int_equal(store_generation(store, &v, 0, 0, &err), STATUS_INTERNAL);
+    assert_int_equal(store_generation(store, &v, &(SessionTimes){0}, &err), STATUS_INTERNAL);
     assert_non_null(strstr(err.text, "the search knows of evaluation 1, which is not stored"));
     v.state = NULL;
-    assert_int_equal(store_generation(store, &v, 0, 0, &err), STATUS_NO_MEMORY);
+    assert_int_equal(store_generation(store, &v, &(SessionTimes){0}, &err), STATUS_NO_MEMORY);
     store_free(store);
     schema_free(&schema);
 }

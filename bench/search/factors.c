@@ -11,7 +11,7 @@
 #include "bench/search/reference.h"
 #include "base/dominance.h"
 #include "base/hypervolume.h"
-#include "study/study.h"
+#include "study/search_loop.h"
 #include "api/search_config.h"
 
 static const double FACTOR_MAX = 20.0;
@@ -45,11 +45,13 @@ static size_t n_budgets(const FactorPlan *plan)
 
 /* -- courses ------------------------------------------------------------------------------------------------------- */
 
-static int note(const SearchView *v, void *user)
+static int note(const SearchView *v, const SearchTime *time, void *user)
 {
     Course *c = user;
-    for (size_t i = c->n; i < v->n && c->n < c->n_max; i++)
-        course_add(c, v->Y + i * c->n_obj, v->ok[i] && violation_of(v->n_con, v->H + i * v->n_con) == 0.0);
+    const Archive *a = v->all;
+    (void)time;
+    for (size_t i = c->n; i < a->n && c->n < c->n_max; i++)
+        course_add(c, a->Y + i * c->n_obj, a->ok[i] && violation_of(a->n_con, a->H + i * a->n_con) == 0.0);
     return 0;
 }
 

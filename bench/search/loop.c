@@ -10,7 +10,7 @@
 #include "base/stat.h"
 #include "evaluate/adapter.h"
 #include "moga/population.h"
-#include "moga/search.h"
+#include "study/search_loop.h"
 #include "moga/selection.h"
 #include "moga/variation.h"
 #include "rbf/rbf.h"
@@ -302,12 +302,14 @@ static Status run_loop(Loop *l, Err *err)
 
 /* -- the search beside it ------------------------------------------------------------------------------------------ */
 
-static int note(const SearchView *v, void *user)
+static int note(const SearchView *v, const SearchTime *time, void *user)
 {
     Curve *c = user;
-    for (size_t i = c->n; i < v->n; i++)
-        curve_add(c, v->Y + i * v->n_obj, v->ok[i]);
-    curve_write(c, v->generation_now, NAN, v->surrogate_error, NAN, 0);
+    const Archive *a = v->all;
+    (void)time;
+    for (size_t i = c->n; i < a->n; i++)
+        curve_add(c, a->Y + i * a->n_obj, a->ok[i]);
+    curve_write(c, v->generation, NAN, v->surrogate_error, NAN, 0);
     return 0;
 }
 
@@ -348,7 +350,7 @@ static Status loop_open(Loop *l, Err *err)
     if (!l->store)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", l->n_max);
     set_start(p, l->start);
-    TRY(queue_open(&l->queue, p, QUEUE_AS_ASKED, 0, err));
+    TRY(queue_open(&l->queue, p, err));
     TRY(population_create(&l->members, 2 * MAX_OF(l->size, INITIAL), p->n_var, p->n_obj, err));
     directions_choose(p->n_obj, l->size, &outer, &inner);
     TRY(directions_create(&l->directions, p->n_obj, outer, inner, err));

@@ -1,19 +1,12 @@
-/* api/asking.h -- a search that stops wherever it needs evaluations, for who asks and tells.
+/* api/asking.h -- a search for who asks and tells: its designs, and which of them are told.
  *
- * The search (moga/search.h) runs in a thread of its own, in turns with the caller's: an executor takes the tasks of a
- * batch from its queue and gives the turn back; when every design is told the next turn begins. Of the two threads one
- * runs at a time, so that nothing here needs a lock.
+ *   designs   row i of the table has id i + 1, its number in the search: what was ever asked for, with the answer where
+ *             it is told
  *
- *   designs    row i of the table has id i + 1: what the search has ever asked for, with the answer where it is told
- *   state      of the last generation's end, with the rows that were finished then: from both it can be resumed
- *
- * Life cycle  asking_open -> asking_advance, answers into the table ... -> asking_close
- * Threads     one, and the process that opened it */
+ * Life cycle  asking_init -> asking_open -> asking_advance, asking_tell ... -> asking_close
+ * Threads     one at a time */
 #pragma once
 
-#include <semaphore.h>
-
-#include "evaluate/queue.h"
 #include "moga/search.h"
 
 typedef enum { DESIGN_FREE, DESIGN_OUT, DESIGN_TOLD } DesignPlace;
@@ -21,35 +14,34 @@ typedef enum { DESIGN_FREE, DESIGN_OUT, DESIGN_TOLD } DesignPlace;
 typedef struct {
     DesignPlace place;
     int is_named; /* in the answers at hand */
-    int is_due;   /* the search waits for it, */
-    size_t slot;  /* in this slot of its queue */
 } AskedDesign;
 
 typedef struct {
     Problem problem;
     SearchConfig config;
+    Search *search;
     EvaluationTable table; /* extra: the constraint values */
     AskedDesign *design;   /* (table.n) */
     size_t room, n_told;
-    size_t n_finished, n_state; /* rows at the end of the generation whose state is */
-    unsigned char *state;       /* (n_state); NULL: none is finished */
-    EvaluationTable known;      /* rows that it was resumed from */
-    Queue *queue;
-    pthread_t thread;
-    sem_t go, back;
-    size_t threads; /* of the search's own work */
-    int is_running, is_closing, is_over;
+    size_t n_entered, n_state; /* of a saved one: rows that have entered its search, whose state is */
+    unsigned char *state;      /* (n_state), until it is open */
+    size_t threads;            /* of the search's own work */
+    double began;              /* [s] of the clock */
+    int is_over;
     StopReason reason;
-    Status status; /* that it ended with */
-    Err why;
 } Asking;
 
-/* Nothing is asked yet; the shape of the problem is set. Its bounds, kinds and judge, config, threads, and of a search
- * that is resumed table, designs and state, before the first turn. */
-void asking_open(Asking *a);
+/* Nothing is asked yet; the shape of the problem is set. */
+void asking_init(Asking *a);
 
-/* Where every design is told: the search goes on until it asks for others, or ends. */
+/* Bounds, kinds and judge of the problem, config and threads are set, and of a saved search designs and state. */
+Status asking_open(Asking *a, Err *err);
+
+/* The search goes on until it waits for answers, or ends: what may be asked for now is in the table. */
 Status asking_advance(Asking *a, Err *err);
+
+/* The answer is in this row. */
+Status asking_tell(Asking *a, size_t row, Err *err);
 
 void asking_close(Asking *a); /* the arrays of config and problem are the caller's */
 

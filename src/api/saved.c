@@ -7,7 +7,7 @@
 #include "base/pack.h"
 
 /* A file: the mark, everything of walk, and the hash of what stands before it. */
-enum { SAVED_VERSION = 1 };
+enum { SAVED_VERSION = 2 };
 static const char MARK[8] = "imtetask";
 enum { TEXT_MAX = 1 << 20, COUNT_MAX = 1 << 30 };
 
@@ -63,18 +63,19 @@ static void walk_rows(Pack *p, Asking *a, Err *err)
     free(zero);
 }
 
+/* What has entered is told; a search that has asked for anything has a state. */
 static void walk_state(Pack *p, Asking *a)
 {
-    pack_size(p, &a->n_finished, a->table.n);
+    pack_size(p, &a->n_entered, a->table.n);
     pack_size(p, &a->n_state, p->reading ? p->n - p->at : SIZE_MAX);
     if (p->reading && !p->faulty && a->n_state > 0) {
         a->state = malloc(a->n_state);
         p->faulty = !a->state;
     }
     pack(p, a->state, a->n_state);
-    for (size_t i = 0; i < a->n_finished && !p->faulty; i++)
+    for (size_t i = 0; i < a->n_entered && !p->faulty; i++)
         p->faulty = a->design[i].place != DESIGN_TOLD;
-    p->faulty = p->faulty || (a->n_finished > 0) != (a->n_state > 0);
+    p->faulty = p->faulty || a->n_state == 0;
 }
 
 static void walk(Pack *p, imtet_search *s, Err *err)
@@ -105,9 +106,28 @@ static Status replace(const char *path, const Pack *p, Err *err)
     return status;
 }
 
+/* The search as it is now, with the rows as it has taken them. */
+static Status take_state(Asking *a, Err *err)
+{
+    const SearchView v = search_look(a->search);
+    for (size_t i = 0; i < v.all->n; i++) {
+        a->table.row[i].kind = (EvaluationKind)v.all->kind[i];
+        a->table.row[i].generation = (long)v.all->generation[i];
+    }
+    a->n_entered = v.all->n;
+    a->n_state = v.n_state;
+    free(a->state);
+    a->state = malloc(v.n_state + 1);
+    if (!v.state || !a->state)
+        return fail_memory(err, 1, "the state of the search");
+    memcpy(a->state, v.state, v.n_state);
+    return STATUS_OK;
+}
+
 Status saved_write(imtet_search *s, const char *path, Err *err)
 {
     Pack p = {0};
+    TRY(take_state(&s->asking, err));
     char *text = settings_text(&s->settings);
     size_t n_con = s->schema.n_extra;
     pack(&p, (void *)(uintptr_t)MARK, sizeof MARK);

@@ -42,7 +42,7 @@ Status handle_create(imtet_search **out, const Settings *settings, size_t n_give
     pthread_mutex_init(&s->lock, NULL);
     s->asking.problem =
         (Problem){.n_var = o->variables, .n_obj = o->objectives, .n_con = o->constraints, .n_extra = o->constraints};
-    asking_open(&s->asking);
+    asking_init(&s->asking);
     const Status status = make_room(s, err);
     if (status == STATUS_OK)
         *out = s;
@@ -70,7 +70,7 @@ Status handle_open(imtet_search *s, Err *err)
     a->problem.kind = kinds_are_real(s->settings.problem.kinds) ? NULL : s->kind;
     a->problem.judge = judge;
     a->problem.user = s;
-    return STATUS_OK;
+    return asking_open(a, err);
 }
 
 void handle_free(imtet_search *s)
@@ -294,7 +294,7 @@ static Status check_answer(imtet_search *s, const Answers *t, size_t i, Err *err
     return n_con > 0 ? api_check_finite(what, n_con, t->G + i * n_con, CURE, err) : STATUS_OK;
 }
 
-static void store_answer(imtet_search *s, const Answers *t, size_t i)
+static Status store_answer(imtet_search *s, const Answers *t, size_t i, Err *err)
 {
     Asking *a = &s->asking;
     const size_t n_obj = s->schema.n_obj, n_con = s->schema.n_extra, row = (size_t)t->ids[i] - 1;
@@ -310,6 +310,7 @@ static void store_answer(imtet_search *s, const Answers *t, size_t i)
     a->n_told++;
     s->failing = failed ? s->failing + 1 : 0;
     s->failed = row;
+    return asking_tell(a, row, err);
 }
 
 static Status tell(imtet_search *s, const void *arguments, Err *err)
@@ -323,7 +324,7 @@ static Status tell(imtet_search *s, const void *arguments, Err *err)
         if (is_design(s, t->ids[i]))
             s->asking.design[t->ids[i] - 1].is_named = 0;
     for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        store_answer(s, t, i);
+        status = store_answer(s, t, i, err);
     return status;
 }
 
@@ -338,7 +339,7 @@ imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[],
 static size_t number_out(const Asking *a)
 {
     size_t n = 0;
-    for (size_t i = a->n_finished; i < a->table.n; i++)
+    for (size_t i = 0; i < a->table.n; i++)
         n += a->design[i].place == DESIGN_OUT;
     return n;
 }

@@ -13,7 +13,7 @@ SearchConfig search_config_of(const Settings *s)
         .surrogate_max = SEARCH_CENTRES,
         .surrogate = s->search.surrogate,
         .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
-        .asynchronous = s->search.asynchronous == SWITCH_ON,
+        .ahead = s->search.ahead,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,

@@ -26,7 +26,7 @@ static Status ask(Adapter *a, size_t n, const double X[], EvaluationTable *out, 
     p.executor = NULL;
     p.n_workers = MIN_OF(n, p.n_workers);
     *out = evaluation_table(p.n_var, p.n_obj, p.n_extra);
-    TRY(queue_open(&q, &p, QUEUE_AS_ASKED, 0, err));
+    TRY(queue_open(&q, &p, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         status = queue_ask(q, &(Asked){.x = X + i * p.n_var}, err);

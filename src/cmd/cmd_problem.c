@@ -4,7 +4,7 @@
 #include "api/search_config.h"
 #include "evaluate/textbook.h"
 #include "store/output.h"
-#include "study/study.h"
+#include "study/search_loop.h"
 #include "evaluate/adapter.h"
 #include "settings/settings.h"
 
@@ -41,14 +41,15 @@ static void write_header(const Writing *w)
     fputc('\n', w->f);
 }
 
-static int write_new(const SearchView *view, void *user)
+static int write_new(const SearchView *view, const SearchTime *time, void *user)
 {
     Writing *w = user;
-    for (size_t i = w->n; i < view->n; i++)
-        write_row(w, view->X + i * view->n_var, view->Y + i * view->n_obj);
-    w->n = view->n;
-    w->n_front = view->n_front;
-    w->seconds = view->seconds;
+    const Archive *a = view->all;
+    for (size_t i = w->n; i < a->n; i++)
+        write_row(w, a->X + i * a->n_var, a->Y + i * a->n_obj);
+    w->n = a->n;
+    w->n_front = a->n_front;
+    w->seconds = time->all;
     return 0;
 }
 

@@ -10,7 +10,7 @@
 #include "evaluate/measures.h"
 #include "evaluate/adapter.h"
 #include "evaluate/tower.h"
-#include "study/study.h"
+#include "study/search_loop.h"
 
 typedef struct {
     int as_json, n, n_wrong;
@@ -149,32 +149,33 @@ static Status check_tower(Selftest *t, Err *err)
 
 enum { N_DTLZ2 = 3 };
 
-static double distance_to(const SearchView *view, const double w[N_DTLZ2])
+static double distance_to(const Archive *all, const double w[N_DTLZ2])
 {
     double least = INFINITY, norm = 0;
     for (int k = 0; k < N_DTLZ2; k++)
         norm += w[k] * w[k];
-    for (size_t i = 0; i < view->n; i++) {
+    for (size_t i = 0; i < all->n; i++) {
         double square = 0;
         for (int k = 0; k < N_DTLZ2; k++) {
-            const double worse = fmax(view->F[i * N_DTLZ2 + k] - w[k] / sqrt(norm), 0);
+            const double worse = fmax(all->F[i * N_DTLZ2 + k] - w[k] / sqrt(norm), 0);
             square += worse * worse;
         }
-        if (view->on_front[i])
+        if (all->on_front[i])
             least = fmin(least, sqrt(square));
     }
     return least;
 }
 
 /* IGD+ of the front against 91 directions on the sphere |f| = 1, the front of DTLZ2. */
-static int measure_front(const SearchView *view, void *user)
+static int measure_front(const SearchView *view, const SearchTime *time, void *user)
 {
     enum { DIVISIONS = 12, N = (DIVISIONS + 1) * (DIVISIONS + 2) / 2 };
     double *igd = user;
+    (void)time;
     *igd = 0;
     for (int a = 0; a <= DIVISIONS; a++)
         for (int b = 0; a + b <= DIVISIONS; b++)
-            *igd += distance_to(view, (const double[N_DTLZ2]){a, b, DIVISIONS - a - b}) / N;
+            *igd += distance_to(view->all, (const double[N_DTLZ2]){a, b, DIVISIONS - a - b}) / N;
     return 0;
 }
 

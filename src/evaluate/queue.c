@@ -6,16 +6,12 @@
 #include "base/carve.h"
 #include "evaluate/cluster.h"
 
-typedef enum { PENDING, FINISHED, KNOWN } Place; /* KNOWN: as arrived, its evaluation is among those from before */
-
 typedef struct {
     Evaluation e;
-    Place place;
+    int is_finished;
     size_t index; /* of Queue.pool */
-    size_t repeat, sequence, arrival;
+    size_t repeat, sequence;
     size_t n_parts, n_taken, n_given;
-    int was_known;
-    long request;
     Variant variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
     char *parts;   /* in the order in which they are taken */
@@ -30,7 +26,6 @@ typedef struct {
 
 struct Queue {
     const Problem *problem;
-    QueueOrder order;
     Slot **pool; /* (n_pool) every slot that was ever needed, and room for n_max */
     Slot **idle; /* (n_idle) */
     Slot **line; /* (head..head+n) pending designs in the order of asking, room for n_max */
@@ -38,12 +33,8 @@ struct Queue {
     size_t n_pool, n_idle, n_max, head, n;
     size_t next;    /* before it, counted from head, every design has all its parts taken */
     size_t n_asked; /* ever */
-    size_t n_arrived, n_under_way;
-    long last_request, last_id;
-    struct {
-        size_t n, at;
-        const Evaluation *rows;
-    } known;
+    size_t n_under_way;
+    long last_id;
     int closed;
     Status status;
     size_t rank; /* of the task that ended it */
@@ -132,20 +123,6 @@ static Status slot_get(Queue *q, Slot **out, Err *err)
     return STATUS_OK;
 }
 
-static void copy(double to[], const double from[], size_t n)
-{
-    if (n > 0 && from)
-        memcpy(to, from, n * sizeof *to);
-}
-
-/* Evaluation of before, with the kind that it was asked for. */
-static void take_known(const Queue *q, Slot *s, const Evaluation *row, EvaluationKind kind)
-{
-    evaluation_copy(&s->e, row, q->problem->n_var, q->problem->n_obj, q->problem->n_extra);
-    s->e.kind = kind;
-    problem_judge(q->problem, &s->e, s->f, s->g);
-}
-
 /* -- the line ------------------------------------------------------------------------------------------------------ */
 
 static Slot *in_line(const Queue *q, size_t i)
@@ -162,75 +139,32 @@ static void append(Queue *q, Slot *s)
     q->line[q->head + q->n++] = s;
 }
 
-static Slot *remove_at(Queue *q, size_t i)
+static Slot *remove_first(Queue *q)
 {
-    Slot *s = in_line(q, i);
+    Slot *s = in_line(q, 0);
     q->n--;
-    if (i == 0)
-        q->head++;
-    else
-        memmove(q->line + q->head + i, q->line + q->head + i + 1, (q->n - i) * sizeof *q->line);
-    q->next -= i < q->next;
+    q->head++;
+    q->next -= q->next > 0;
     return s;
-}
-
-/* The pending design that is x, or n. */
-static size_t find(const Queue *q, const double x[])
-{
-    size_t i = 0;
-    while (i < q->n && memcmp(in_line(q, i)->e.x, x, q->problem->n_var * sizeof *x) != 0)
-        i++;
-    return i;
 }
 
 /* -- the client ---------------------------------------------------------------------------------------------------- */
 
-static int is_same_design(const Queue *q, const Evaluation *row, const double x[])
-{
-    return memcmp(row->x, x, q->problem->n_var * sizeof *x) == 0;
-}
-
-/* Row of before that is this design, to come yet; known.n: none. As asked, its number must be `id`. */
-static size_t find_known(Queue *q, long id, const double x[])
-{
-    size_t i = q->known.at;
-    if (q->order == QUEUE_AS_ARRIVED) {
-        while (i < q->known.n && !is_same_design(q, &q->known.rows[i], x))
-            i++;
-        return i;
-    }
-    while (i < q->known.n && q->known.rows[i].id < id)
-        i++;
-    q->known.at = i;
-    return i < q->known.n && q->known.rows[i].id == id && is_same_design(q, &q->known.rows[i], x) ? i : q->known.n;
-}
-
 static void fill(Queue *q, Slot *s, const Asked *asked)
 {
-    const size_t row = find_known(q, q->last_request + 1, asked->x);
-    const int is_known = row < q->known.n;
-    copy(s->e.x, asked->x, q->problem->n_var);
+    const Problem *p = q->problem;
+    if (asked->x)
+        memcpy(s->e.x, asked->x, p->n_var * sizeof *asked->x);
     s->e.kind = asked->kind;
+    s->e.id = q->last_id = asked->id > 0 ? asked->id : q->last_id + 1;
     s->repeat = asked->repeat;
     s->variant = asked->variant;
-    s->was_known = is_known;
-    s->n_parts = asked->n_parts > 0 ? asked->n_parts : q->problem->n_parts;
+    s->n_parts = asked->n_parts > 0 ? asked->n_parts : p->n_parts;
     s->sequence = q->n_asked++;
-    s->place = PENDING;
-    if (!is_known || q->order == QUEUE_AS_ASKED)
-        s->request = s->e.id = ++q->last_request;
-    if (!is_known && asked->cheap_parts)
-        memcpy(s->parts, asked->cheap_parts, q->problem->n_cheap * q->problem->part_size);
-    if (asked->cheap_parts)
-        s->n_taken = s->n_given = q->problem->n_cheap;
-    if (!is_known)
+    if (!asked->cheap_parts)
         return;
-    s->n_taken = s->n_given = s->n_parts;
-    s->place = KNOWN;
-    if (q->order == QUEUE_AS_ASKED) {
-        take_known(q, s, &q->known.rows[row], asked->kind);
-        s->place = FINISHED;
-    }
+    memcpy(s->parts, asked->cheap_parts, p->n_cheap * p->part_size);
+    s->n_taken = s->n_given = p->n_cheap;
 }
 
 static void release_given(Queue *q)
@@ -258,56 +192,10 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err)
     return status;
 }
 
-/* The client alone adds and removes designs, so that it may count and read them without the lock. */
+/* The client alone adds and removes designs, so that it may count them without the lock. */
 size_t queue_pending(const Queue *q)
 {
     return q->n;
-}
-
-int queue_has(const Queue *q, const double x[])
-{
-    return find(q, x) < q->n;
-}
-
-Asked queue_design(const Queue *q, size_t i)
-{
-    const Slot *s = in_line(q, i);
-    return (Asked){s->e.x, s->repeat, s->e.kind, s->n_parts, s->variant, NULL};
-}
-
-static void give_out(Queue *q, Slot *s, Finished *out)
-{
-    q->given = s;
-    *out = (Finished){&s->e, s->f, s->g, s->was_known ? NULL : s->parts};
-}
-
-/* The next of before, whether asked for or not. */
-static Status next_known(Queue *q, Finished *out, Err *err)
-{
-    const Evaluation *row = &q->known.rows[q->known.at++];
-    const size_t i = find(q, row->x);
-    const int was_asked = i < q->n;
-    Slot *s;
-    if (was_asked)
-        s = remove_at(q, i);
-    else
-        TRY(slot_get(q, &s, err));
-    s->was_known = 1;
-    take_known(q, s, row, was_asked ? s->e.kind : row->kind == KIND_UNFINISHED ? KIND_INFILL : row->kind);
-    give_out(q, s, out);
-    return STATUS_OK;
-}
-
-/* The design that is next in this queue's order, or n: it is not finished yet. */
-static size_t find_next(const Queue *q)
-{
-    size_t first = q->n;
-    if (q->order == QUEUE_AS_ASKED)
-        return q->n > 0 && in_line(q, 0)->place == FINISHED ? 0 : q->n;
-    for (size_t i = 0; i < q->n; i++)
-        if (in_line(q, i)->place == FINISHED && (first == q->n || in_line(q, i)->arrival < in_line(q, first)->arrival))
-            first = i;
-    return first;
 }
 
 /* One, or as many of those that wait as the worker wants. */
@@ -346,15 +234,14 @@ static void wait_for_news(Queue *q)
 
 static Status next_finished(Queue *q, Finished *out, Err *err)
 {
-    if (q->order == QUEUE_AS_ARRIVED && q->known.at < q->known.n)
-        return next_known(q, out, err);
     if (q->n == 0)
         return fail(err, STATUS_INTERNAL, "a result is waited for, but no design was asked for");
-    while (q->status != STATUS_OK ? q->n_under_way > 0 : find_next(q) == q->n)
+    while (q->status != STATUS_OK ? q->n_under_way > 0 : !in_line(q, 0)->is_finished)
         wait_for_news(q);
     if (q->status != STATUS_OK)
         return fail(err, q->status, "%s", q->why.text);
-    give_out(q, remove_at(q, find_next(q)), out);
+    Slot *s = q->given = remove_first(q);
+    *out = (Finished){&s->e, s->f, s->g, s->parts};
     return STATUS_OK;
 }
 
@@ -365,24 +252,6 @@ Status queue_next(Queue *q, Finished *out, Err *err)
     const Status status = next_finished(q, out, err);
     pthread_mutex_unlock(&q->lock);
     return status;
-}
-
-void queue_withdraw(Queue *q)
-{
-    pthread_mutex_lock(&q->lock);
-    for (size_t i = q->n; i-- > 0;)
-        if (in_line(q, i)->place == PENDING && in_line(q, i)->n_taken == 0)
-            q->idle[q->n_idle++] = remove_at(q, i);
-    pthread_mutex_unlock(&q->lock);
-}
-
-void queue_know(Queue *q, size_t n, const Evaluation rows[])
-{
-    pthread_mutex_lock(&q->lock);
-    q->known.n = n;
-    q->known.at = 0;
-    q->known.rows = rows;
-    pthread_mutex_unlock(&q->lock);
 }
 
 Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
@@ -397,8 +266,9 @@ Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[
     for (size_t i = 0; i < n; i++) {
         TRY(queue_next(q, &done, err));
         ok[i] = done.evaluation->outcome == OUTCOME_OK;
-        copy(F + i * p->n_obj, done.f, p->n_obj);
-        copy(p->n_con > 0 ? G + i * p->n_con : NULL, done.g, p->n_con);
+        memcpy(F + i * p->n_obj, done.f, p->n_obj * sizeof *F);
+        if (G && p->n_con > 0)
+            memcpy(G + i * p->n_con, done.g, p->n_con * sizeof *G);
     }
     return STATUS_OK;
 }
@@ -428,7 +298,7 @@ static void hand_out(Queue *q, Slot *s, Task *task)
 {
     const Problem *p = q->problem;
     const size_t i = s->n_taken++;
-    *task = (Task){.id = s->request,
+    *task = (Task){.id = s->e.id,
                    .part = p->order ? p->order[i] : i,
                    .repeat = s->repeat,
                    .variant = s->variant,
@@ -497,12 +367,9 @@ static void finish(Queue *q, Slot *s)
     Err why = {0};
     complete(q, s);
     pthread_mutex_lock(&q->finishing);
-    if (q->order == QUEUE_AS_ARRIVED)
-        s->e.id = ++q->last_id;
     const Status status = o->done ? o->done(&s->e, o->user, &why) : STATUS_OK;
     pthread_mutex_lock(&q->lock);
-    s->place = FINISHED;
-    s->arrival = q->n_arrived++;
+    s->is_finished = 1;
     if (status != STATUS_OK)
         end(q, SIZE_MAX, status, why.text);
     pthread_cond_signal(&q->news);
@@ -570,14 +437,12 @@ static Status start(Queue *q, Err *err)
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-Status queue_open(Queue **out, const Problem *problem, QueueOrder order, long n_before, Err *err)
+Status queue_open(Queue **out, const Problem *problem, Err *err)
 {
     *out = NULL;
     Queue *q;
     TRY_ROOM(q, 1, "a queue", err);
     q->problem = problem;
-    q->order = order;
-    q->last_request = q->last_id = n_before;
     pthread_mutex_init(&q->lock, NULL);
     pthread_mutex_init(&q->finishing, NULL);
     pthread_cond_init(&q->work, NULL);

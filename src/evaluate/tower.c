@@ -710,7 +710,7 @@ static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult r
     own.n_workers = MIN_OF(n_simulations, own.n_workers);
     if (own.n_workers < 2)
         own.executor = NULL;
-    TRY(queue_open(&q, &own, QUEUE_AS_ASKED, 0, err));
+    TRY(queue_open(&q, &own, err));
     const Status status = run_all(q, n, tasks, results, tell, user, err);
     queue_close(q);
     return status;

@@ -8,8 +8,11 @@ size_t batch_size_max(const SearchConfig *c)
 size_t batch_size(const Common *c)
 {
     const size_t min = c->config->population / BATCH_POPULATION_SHARE + 1, max = batch_size_max(c->config),
-                 grown = c->archive.n / BATCH_ARCHIVE_SHARE;
-    return grown < min ? min : grown < max ? grown : max;
+                 grown = c->archive.n / BATCH_ARCHIVE_SHARE,
+                 size = grown < min   ? min
+                        : grown < max ? grown
+                                      : max;
+    return c->config->ahead < 0 ? size : MIN_OF(size, (size_t)c->config->ahead + 1);
 }
 
 static int is_there(const Batch *b, size_t n_var, size_t n, const double x[])
@@ -24,7 +27,7 @@ size_t batch_add(Batch *b, const Common *c, size_t n, const double x[], Evaluati
 {
     const size_t n_var = c->problem->n_var;
     if (n >= b->size_max || n >= b->room || is_there(b, n_var, n, x) ||
-        pareto_archive_find(&c->archive, x) < c->archive.n || queue_has(c->queue, x))
+        pareto_archive_find(&c->archive, x) < c->archive.n || pending_has(&c->pending, x))
         return n;
     memcpy(b->X + n * n_var, x, n_var * sizeof *x);
     b->repeat[n] = 0;

@@ -13,7 +13,8 @@ typedef struct {
     size_t *repeat;      /* (size_max) replicates that the design has already */
 } Batch;
 
-/* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates. */
+/* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates; no more
+ * than a look-ahead that is given, and one. */
 size_t batch_size(const Common *c);
 size_t batch_size_max(const SearchConfig *c);
 

@@ -1,22 +1,22 @@
-/* moga/common.h -- what all parts of a search read: problem, configuration, queue and every evaluation so far.
+/* moga/common.h -- what all parts of a search read: problem, configuration, what is under way, every evaluation so far.
  *
- * The loop changes it (search.c, generation.c); of the archive screening changes what is predicted in it.
+ * The steps change it (search.c, generation.c); of the archive screening changes what is predicted in it.
  *
  * Threads  one */
 #pragma once
 
 #include "evaluate/problem.h"
-#include "evaluate/queue.h"
 #include "moga/archive.h"
 #include "moga/config.h"
 #include "moga/constants.h"
 #include "moga/convergence.h"
 #include "moga/infill.h"
+#include "moga/pending.h"
 
 typedef struct {
     const Problem *problem;
     const SearchConfig *config;
-    Queue *queue;
+    Pending pending;
     Archive archive;
     size_t generation;
     Convergence convergence;
@@ -36,9 +36,22 @@ static inline size_t common_end(const Common *c)
     return end > 0 && end < max ? end : max;
 }
 
+/* Questions so far. */
+static inline size_t common_asked(const Common *c)
+{
+    return c->archive.n + c->pending.n;
+}
+
+/* Designs that may be under way when the next group is made. */
+static inline size_t common_ahead(const SearchConfig *c, size_t asked)
+{
+    const size_t share = asked / AHEAD_SHARE, most = MIN_OF(share, AHEAD_MAX);
+    return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, AHEAD_MIN);
+}
+
 /* Evaluations that are left to be asked for. */
 static inline size_t common_left(const Common *c)
 {
-    const size_t asked = c->archive.n + queue_pending(c->queue), end = common_end(c);
+    const size_t asked = common_asked(c), end = common_end(c);
     return end > asked ? end - asked : 0;
 }

@@ -20,10 +20,10 @@ typedef struct {
     size_t n_given;
     SurrogateUse surrogate;
     Fidelity fidelity;
-    int asynchronous;
+    long ahead; /* designs that may be under way when the next ones are chosen; -1: by their number (common_ahead) */
     double replicate_share;    /* noisy: share of max_evals for further replicates */
     size_t replicates_max;     /* ... of each design */
-    double max_seconds;        /* 0: no limit */
+    double max_seconds;        /* of the client's clock; 0: no limit */
     size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
 } SearchConfig;
@@ -31,7 +31,7 @@ typedef struct {
 /* Where a search is resumed: the evaluations at the end of a generation, in the order of the view, and its state. Only
  * read. */
 typedef struct {
-    size_t n, n_later; /* n_later: rows behind the n that came after the state was saved (evaluate/queue.h: known) */
+    size_t n, n_later; /* n_later: rows, by ascending id, that had been told when it ended and had not entered yet */
     const Evaluation *row; /* (n + n_later); with `each` the last n_later alone */
     const void *state;     /* NULL: n is 0, none was saved */
     size_t n_state;

@@ -14,7 +14,10 @@ enum { INITIAL_OFFSET = 12 };      /* ... */
 
 enum { BATCH_POPULATION_SHARE = 8 }; /* population / this + 1 at least */
 enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more */
-enum { LOOK_AHEAD_SHARE = 4 };       /* asynchronous: batch / this designs wait while the next batch is selected */
+
+/* -- common.h: look-ahead: questions whose answers are not known yet when the next ones are made ------------------- */
+
+enum { AHEAD_MIN = 24, AHEAD_SHARE = 24, AHEAD_MAX = 240 }; /* questions / share, within these bounds */
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 

@@ -28,64 +28,55 @@ size_t generation_samples(const Search *s)
     return given < initial / 2 ? initial - given : initial - initial / 2;
 }
 
-/* -- step 5: evaluation, the only way into the archive ------------------------------------------------------------- */
+/* -- step 5: evaluation: what is asked, and the answers, the only way into the archive ----------------------------- */
 
-/* Designs from n_new on are in the archive already. */
+/* How many may be under way when the next group is made: of the initial sample half at most, always one less than now,
+ * none where nothing is left to be asked. */
+static size_t allowed_now(const Search *s)
+{
+    const Common *c = &s->common;
+    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)),
+                 most = c->generation == 0 ? now / 2
+                        : now > 0          ? now - 1
+                                           : 0;
+    const int is_last =
+        s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0 || c->generation >= c->config->generations;
+    return is_last ? 0 : MIN_OF(ahead, most);
+}
+
+/* A group of n questions; designs from n_new on are in the archive already. */
 static Status ask(Search *s, size_t n_new, size_t n, Err *err)
 {
-    const Problem *p = s->common.problem;
+    Common *c = &s->common;
     const Batch *b = &s->batch;
     const EvaluationKind again = s->screening.cost.whole > 1 ? KIND_FINISHED : KIND_REPEAT;
     for (size_t i = 0; i < n; i++) {
-        Asked asked = {
-            .x = b->X + i * p->n_var, .repeat = b->repeat[i], .kind = i < n_new ? (EvaluationKind)b->kind[i] : again};
-        if (asked.kind == KIND_FINISHED)
-            asked.cheap_parts = screening_parts(&s->screening, &s->common, asked.x);
-        else if (s->screening.is_on) {
-            asked.n_parts = p->n_cheap;
-            asked.kind = KIND_SCREENED;
+        Question q = {.x = b->X + i * c->problem->n_var,
+                      .repeat = b->repeat[i],
+                      .kind = i < n_new ? (EvaluationKind)b->kind[i] : again,
+                      .generation = c->generation};
+        if (s->screening.is_on && q.kind != KIND_FINISHED) {
+            q.n_parts = c->problem->n_cheap;
+            q.kind = KIND_SCREENED;
         }
-        TRY(queue_ask(s->common.queue, &asked, err));
+        TRY(pending_add(&c->pending, &q, err));
     }
+    s->allowed = allowed_now(s);
     return STATUS_OK;
 }
 
-/* All but the last `pending` of what is asked for. */
-static Status take_results(Search *s, size_t pending, Err *err)
+static Status enter_first(Search *s, Err *err)
 {
     Common *c = &s->common;
-    Finished done;
-    for (size_t n = s->batch.size_max + s->offspring.pending_max; queue_pending(c->queue) > pending && n > 0; n--) {
-        TRY(queue_next(c->queue, &done, err));
-        TRY(screening_take(&s->screening, c, &done, err));
-        const Evaluation *e = done.evaluation;
-        const unsigned char ok = e->outcome == OUTCOME_OK;
-        TRY(pareto_archive_insert(&c->archive, 1, e->x, done.f, c->problem->n_con > 0 ? done.g : NULL, &ok, e->kind,
-                                  c->generation, err));
-    }
-    pareto_archive_update_noise(&c->archive);
-    return screening_update(&s->screening, &c->archive, err);
-}
-
-/* Designs that may be pending when the next batch is selected: none in batches; asynchronous, so many that no worker
- * waits meanwhile, but at least one result is taken where no design is new (n = 0). */
-static size_t pending_wanted(const Common *c, size_t n)
-{
-    const size_t workers = c->problem->n_workers, pending = queue_pending(c->queue);
-    const int is_last = c->archive.n + pending >= common_end(c) || c->generation >= c->config->generations;
-    const size_t max = n == 0 && pending > 0 ? pending - 1 : pending;
-    const size_t wanted = workers < 2 || is_last ? 0 : workers + batch_size(c) / LOOK_AHEAD_SHARE;
-    return !c->config->asynchronous ? 0 : wanted < max ? wanted : max;
-}
-
-/* Asks for n designs and takes the results that come. */
-static Status evaluate(Search *s, size_t n_new, size_t n, Err *err)
-{
-    const double before = search_seconds(s);
-    TRY(ask(s, n_new, n, err));
-    const Status status = take_results(s, pending_wanted(&s->common, n), err);
-    s->waited_s += search_seconds(s) - before;
-    return status;
+    const Place *place = pending_at(&c->pending, 0);
+    const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
+    const EvaluationKind kind = place->q.kind;
+    const size_t generation = place->q.generation;
+    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, kind, place->ok, place->parts}, err));
+    TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok, (unsigned char)kind,
+                              generation, err));
+    pending_enter(&c->pending);
+    return STATUS_OK;
 }
 
 /* Evaluated designs of the rows first.. join; failed ones and further replicates do not. */
@@ -170,27 +161,20 @@ static size_t add_given(Search *s)
     return n;
 }
 
-Status generation_first(Search *s, Err *err)
+static Status ask_first(Search *s, Err *err)
 {
     s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
     const size_t n = add_samples(s, add_given(s), generation_samples(s));
-    TRY(evaluate(s, n, n, err));
-    renew_population(s, 0);
-    return STATUS_OK;
+    return ask(s, n, n, err);
 }
 
 /* No parents (every evaluation failed so far) or no new design: another Latin hypercube. */
 static Status sample_again(Search *s, Err *err)
 {
     s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
-    const size_t first = s->common.archive.n, n = add_samples(s, 0, s->common.config->population);
+    const size_t n = add_samples(s, 0, s->common.config->population);
     surrogate_drop(s->surrogate); /* a resumed search has none here either */
-    TRY(evaluate(s, n, n, err));
-    if (s->population.n < 2)
-        join(&s->population, &s->common.archive, first);
-    else
-        renew_population(s, first);
-    return STATUS_OK;
+    return ask(s, n, n, err);
 }
 
 /* -- step 2: surrogate --------------------------------------------------------------------------------------------- */
@@ -217,12 +201,9 @@ static void measure_front(Search *s)
 
 static Status fit_surrogate(Search *s, Err *err)
 {
-    const double before = search_seconds(s);
     if (s->common.config->surrogate == SURROGATE_ON)
-        TRY(surrogate_fit(s->surrogate, &s->common.archive, s->criteria.select[INFILL_PBI], err));
-    else
-        surrogate_drop(s->surrogate);
-    s->surrogate_s += search_seconds(s) - before;
+        return surrogate_fit(s->surrogate, &s->common.archive, s->criteria.select[INFILL_PBI], err);
+    surrogate_drop(s->surrogate);
     return STATUS_OK;
 }
 
@@ -232,9 +213,7 @@ static Status fit_surrogate(Search *s, Err *err)
 static size_t choose_batch(Search *s)
 {
     Breeding w = breeding(s);
-    const double before = search_seconds(s);
     offspring_make(&s->offspring, &w);
-    s->surrogate_s += w.with_surrogate ? search_seconds(s) - before : 0.0;
     const size_t n = offspring_select(&s->offspring, &w, &s->batch);
     if (n > 0 || !w.with_surrogate)
         return n;
@@ -243,36 +222,47 @@ static size_t choose_batch(Search *s)
     return offspring_select(&s->offspring, &w, &s->batch);
 }
 
-Status generation_next(Search *s, Err *err)
+/* Where no evaluation is left, designs that were screened may still be finished. */
+static Status ask_next(Search *s, Err *err)
 {
     Common *c = &s->common;
-    const size_t first_new = c->archive.n;
     size_t n_new = 0, n = 0;
-    if (s->population.n < 2)
-        return sample_again(s, err);
     measure_front(s);
     TRY(screening_last(&s->screening, c, &s->batch, &n, err));
-    if (n > 0) {
+    s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
+    if (n > 0 || s->batch.room == 0) {
         surrogate_drop(s->surrogate);
     } else {
-        TRY(fit_surrogate(s, err)); /* 2 */
-        s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
+        TRY(fit_surrogate(s, err));  /* 2 */
         n = n_new = choose_batch(s); /* 3, 4 */
-        if (n == 0 && queue_pending(c->queue) == 0)
+        if (n == 0 && c->pending.n == 0)
             return sample_again(s, err);
         n = replication_add(c, &s->criteria, &s->batch, n);
         TRY(screening_finish(&s->screening, c, &s->batch, &n, err));
     }
-    TRY(evaluate(s, n_new, n, err)); /* 5 */
-    renew_population(s, first_new);  /* 6 */
-    return STATUS_OK;
+    return ask(s, n_new, n, err); /* 5 */
 }
 
-Status generation_last(Search *s, Err *err)
+Status generation_ask(Search *s, Err *err)
 {
-    const size_t first_new = s->common.archive.n;
-    queue_withdraw(s->common.queue);
-    TRY(take_results(s, 0, err));
-    renew_population(s, first_new);
+    const Common *c = &s->common;
+    if (s->reason != STOP_NONE)
+        return ask(s, 0, 0, err);
+    if (c->generation == 0)
+        return ask_first(s, err);
+    if (s->population.n < 2)
+        return c->pending.n > 0 ? ask(s, 0, 0, err) : sample_again(s, err);
+    return ask_next(s, err);
+}
+
+Status generation_enter(Search *s, Err *err)
+{
+    Common *c = &s->common;
+    const size_t first = s->n_before = c->archive.n;
+    while (c->pending.n > s->allowed)
+        TRY(enter_first(s, err));
+    pareto_archive_update_noise(&c->archive);
+    TRY(screening_update(&s->screening, c, err));
+    renew_population(s, first); /* 6 */
     return STATUS_OK;
 }

@@ -136,18 +136,30 @@ static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[
         const size_t d = (first + i) % p->n_var;
         if (!problem_is_discrete(p, d) || !(p->upper[d] > p->lower[d]))
             continue;
-        memcpy(y, x, p->n_var * sizeof *y);
-        const double less = problem_kind(p, d) == VARIABLE_STEPPED ? 1e-9 * (p->upper[d] - p->lower[d]) : 1.0;
-        y[d] += random_uniform(r) < 0.5 ? less : -less;
-        mutate_discrete(r, p, x, y);
-        problem_repair(p, y);
+        step_discrete(r, p, d, x, y);
         population_add(&o->members, y);
         n++;
     }
 }
 
-/* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the
- * criteria share them. */
+/* The next n reference vectors: all of them in turn, each time in another order, so that those of designs under way
+ * are not dealt once more. */
+static void deal_vectors(Offspring *o, const Common *c, size_t n_vectors, size_t n)
+{
+    size_t *deck = o->descent_vector + n_vectors;
+    for (size_t i = 0; i < n; i++, o->n_dealt++) {
+        const size_t at = o->n_dealt % n_vectors;
+        if (i == 0 || at == 0) {
+            Random random = random_stream(c->config->seed, RANDOM_DESCENT, (uint32_t)(o->n_dealt / n_vectors), 1);
+            for (size_t r = 0; r < n_vectors; r++)
+                deck[r] = r;
+            random_shuffle(&random, n_vectors, deck);
+        }
+        o->descent_vector[i] = deck[at];
+    }
+}
+
+/* Descents along reference vectors, as many as the population at most; the criteria share them. */
 static void add_descended(Offspring *o, const Breeding *w)
 {
     const Common *c = w->common;
@@ -157,9 +169,7 @@ static void add_descended(Offspring *o, const Breeding *w)
     size_t *vector = o->descent_vector;
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
-    for (size_t r = 0; r < n_vectors; r++)
-        vector[r] = r;
-    random_shuffle(&random, n_vectors, vector);
+    deal_vectors(o, c, n_vectors, n);
     surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_HYPERVOLUME], first, vector, X);
     surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_PBI], n - first, vector + first,
                       X + first * p->n_var);
@@ -197,15 +207,14 @@ static void add_probes(Offspring *o, const Breeding *w)
 /* Designs that are asked for already, predicted. */
 static void add_pending(Offspring *o, const Common *c)
 {
-    const size_t n = queue_pending(c->queue);
-    o->n_pending = MIN_OF(n, o->pending_max);
+    o->n_pending = MIN_OF(c->pending.n, o->pending_max);
     for (size_t i = 0; i < o->n_pending; i++)
-        population_add(&o->members, queue_design(c->queue, i).x);
+        population_add(&o->members, pending_x(&c->pending, i));
 }
 
 void offspring_make(Offspring *o, const Breeding *w)
 {
-    o->members.n = o->n_probes = o->n_variation = 0;
+    o->members.n = o->n_probes = o->n_variation = o->n_pending = 0;
     if (!w->with_surrogate) {
         add_variation(o, w);
         return;
@@ -220,14 +229,14 @@ void offspring_make(Offspring *o, const Breeding *w)
 
 /* -- which of them are evaluated ----------------------------------------------------------------------------------- */
 
-/* Candidates are offered to both criteria with lower confidence bounds of their objectives; pending designs lower the
- * values to beat, by their predictions. */
+/* Candidates are offered to both criteria with lower confidence bounds of their objectives, by which pending designs
+ * lower the values to beat: by their mean their neighbours would still gain an error. */
 static void offer(Offspring *o, const Breeding *w)
 {
     const Population *p = &o->members;
     const size_t first_pending = p->n - o->n_pending;
     for (size_t i = 0; i < p->n * p->n_obj; i++)
-        o->bound[i] = p->F[i] - (i < first_pending * p->n_obj ? OPTIMISM * p->error[i] : 0.0);
+        o->bound[i] = p->F[i] - OPTIMISM * p->error[i];
     for (int kind = 0; kind < INFILL_KINDS; kind++) {
         Infill *q = w->criteria->select[kind];
         infill_offer(q, p->n, o->bound, p->violation, p->uncertainty, w->has_front ? p->chance : NULL);

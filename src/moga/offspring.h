@@ -15,12 +15,13 @@ typedef struct {
     Population pool; /* of a generation on the surrogate */
     size_t n_probes, n_variation, n_pending;
     size_t n_probed;        /* probes so far */
+    size_t n_dealt;         /* reference vectors of descents so far */
     unsigned char *allowed; /* (pool) may be picked now */
     double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
     size_t *survivors;      /* (pool) of the environmental selection */
     double *children;       /* (2, n_var) */
     double *mixed; /* (5, n_var) bounds, parents and a child on the scale of variation; of real variables none */
-    size_t *descent_vector; /* (vectors) in the order of this generation */
+    size_t *descent_vector; /* (2, vectors) those of this group; all in the order in which they are dealt */
     double *descent_X;      /* (pool, n_var) */
     size_t pending_max;     /* designs that may be pending */
 } Offspring;

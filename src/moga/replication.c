@@ -25,14 +25,6 @@ static int noise_exceeds(const Archive *a, double part)
 
 /* -- how many ------------------------------------------------------------------------------------------------------ */
 
-static size_t n_pending_replicates(const Common *c)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < queue_pending(c->queue); i++)
-        n += queue_design(c->queue, i).kind == KIND_REPEAT;
-    return n;
-}
-
 /* Replicates that are due where n evaluations are asked for: replicate_share of those beyond the first REPLICATE_AFTER
  * for each variable, before which new designs are worth more. */
 static size_t replicates_due(const Common *c, size_t n)
@@ -40,7 +32,7 @@ static size_t replicates_due(const Common *c, size_t n)
     const Archive *a = &c->archive;
     const double late = (double)n - (double)(REPLICATE_AFTER * c->problem->n_var),
                  due = floor(c->config->replicate_share * fmax(late, 0.0));
-    const size_t made = a->n_replicates + n_pending_replicates(c);
+    const size_t made = a->n_replicates + c->pending.n_of_kind[KIND_REPEAT];
     const int is_noticeable = a->n_replicates < NOISE_SAMPLE || noise_exceeds(a, NOISE_NEGLIGIBLE);
     if (!c->problem->is_noisy || c->config->replicates_max < 2 || due <= made || !is_noticeable)
         return 0;
@@ -97,7 +89,7 @@ static size_t pick(const Common *c, const size_t importance[])
         const int comes_first = best == a->n || a->replicates[row] < a->replicates[best] ||
                                 (a->replicates[row] == a->replicates[best] && importance[row] > importance[best]);
         if (importance[row] > 0 && a->replicates[row] < c->config->replicates_max && comes_first &&
-            !queue_has(c->queue, a->X + row * a->n_var))
+            !pending_has(&c->pending, a->X + row * a->n_var))
             best = row;
     }
     return best;
@@ -126,8 +118,7 @@ static size_t append(const Common *c, const Criteria *q, Batch *b, size_t n, siz
 
 size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t n)
 {
-    const size_t left = common_left(c), asked = c->archive.n + queue_pending(c->queue) + n,
-                 due = replicates_due(c, asked);
+    const size_t left = common_left(c), asked = common_asked(c) + n, due = replicates_due(c, asked);
     const size_t room = MIN_OF(b->size_max, left);
     return append(c, q, b, n, MIN_OF(room, n + due));
 }

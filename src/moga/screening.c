@@ -66,9 +66,17 @@ size_t screening_evaluations(const Screening *q, const Common *c)
     return spent(q, c) / q->cost.whole;
 }
 
+/* What is under way, and was asked for as the levels were then. */
+static size_t under_way(const Screening *q, const Common *c)
+{
+    const size_t *n = c->pending.n_of_kind;
+    return n[KIND_SCREENED] * q->cost.cheap + n[KIND_FINISHED] * q->cost.rest +
+           (c->pending.n - n[KIND_SCREENED] - n[KIND_FINISHED]) * q->cost.whole;
+}
+
 static size_t left(const Screening *q, const Common *c)
 {
-    const size_t all = common_end(c) * q->cost.whole, now = spent(q, c) + queue_pending(c->queue);
+    const size_t all = common_end(c) * q->cost.whole, now = spent(q, c) + under_way(q, c);
     return all > now ? all - now : 0;
 }
 
@@ -84,18 +92,20 @@ static int is_open(const Screening *q, const Archive *a, size_t i)
     return d->finished == SIZE_MAX && a->usable[d->row];
 }
 
-/* Designs to be finished when n more have been screened. */
-static size_t finish_due(const Screening *q, size_t n)
+/* Designs to be finished when n more have been screened, beside those that are under way. */
+static size_t finish_due(const Screening *q, const Common *c, size_t n)
 {
-    const size_t due = (q->n + n) / SCREENED_PER_FINISHED;
-    return due > q->n_finished ? MIN_OF(due - q->n_finished, q->n_open + n) : 0;
+    const size_t *asked = c->pending.n_of_kind, n_screened = asked[KIND_SCREENED] + n,
+                 due = (q->n + n_screened) / SCREENED_PER_FINISHED, done = q->n_finished + asked[KIND_FINISHED],
+                 n_open = q->n_open > asked[KIND_FINISHED] ? q->n_open - asked[KIND_FINISHED] : 0;
+    return due > done ? MIN_OF(due - done, n_open + n_screened) : 0;
 }
 
 size_t screening_room(const Screening *q, const Common *c, size_t n_max)
 {
     const size_t one = q->is_on ? q->cost.cheap : q->cost.whole, all = left(q, c);
     size_t n = 0;
-    while (n < n_max && (n + 1) * one + (q->is_on ? finish_due(q, n + 1) * q->cost.rest : 0) <= all)
+    while (n < n_max && (n + 1) * one + (q->is_on ? finish_due(q, c, n + 1) * q->cost.rest : 0) <= all)
         n++;
     return n;
 }
@@ -132,7 +142,7 @@ static size_t find(const Screening *q, const Common *c, const double x[])
     return low < q->n && q->design[low].row == row ? low : q->n;
 }
 
-static Status keep(Screening *q, const Common *c, const Finished *done, Err *err)
+static Status keep(Screening *q, const Common *c, const Answer *done, Err *err)
 {
     const Problem *p = c->problem;
     const size_t size = p->n_cheap * p->part_size;
@@ -148,11 +158,11 @@ static Status keep(Screening *q, const Common *c, const Finished *done, Err *err
     return STATUS_OK;
 }
 
-Status screening_take(Screening *q, const Common *c, const Finished *done, Err *err)
+Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err)
 {
-    if (done->evaluation->kind == KIND_SCREENED)
-        return keep(q, c, done, err);
-    const size_t i = find(q, c, done->evaluation->x);
+    if (answer->kind == KIND_SCREENED)
+        return keep(q, c, answer, err);
+    const size_t i = find(q, c, answer->x);
     if (i == q->n)
         return STATUS_OK;
     q->design[i].finished = c->archive.n;
@@ -290,14 +300,29 @@ static Status predict(Screening *q, Archive *a, Err *err)
 
 /* -- the front ----------------------------------------------------------------------------------------------------- */
 
-/* Of whole evaluations and predictions together. */
-static Status find_front(Screening *q, const Archive *a, Err *err)
+/* Those that are being finished. */
+static void choose_pending(const Common *c)
 {
+    const Archive *a = &c->archive;
+    memset(a->is_chosen, 0, a->n);
+    for (size_t i = 0; i < c->pending.n; i++) {
+        const size_t row = pending_at(&c->pending, i)->q.kind == KIND_FINISHED
+                               ? pareto_archive_find(a, pending_x(&c->pending, i))
+                               : a->n;
+        if (row < a->n)
+            a->is_chosen[row] = 1;
+    }
+}
+
+/* Of whole evaluations and predictions together. */
+static Status find_front(Screening *q, const Common *c, Err *err)
+{
+    const Archive *a = &c->archive;
     NdTree *tree;
     NdChange change;
     size_t n = 0;
     q->n_open = 0;
-    memset(a->is_chosen, 0, a->n);
+    choose_pending(c);
     Status status = nd_tree_create(&tree, a->n_obj, err);
     for (size_t row = 0; status == STATUS_OK && row < a->n; row++) {
         a->expected[row] = 0;
@@ -318,8 +343,9 @@ static Status find_front(Screening *q, const Archive *a, Err *err)
     return status;
 }
 
-Status screening_update(Screening *q, Archive *a, Err *err)
+Status screening_update(Screening *q, Common *c, Err *err)
 {
+    Archive *a = &c->archive;
     if (q->n == 0)
         return STATUS_OK;
     if (find_pairs(q, a) >= LEVEL_PAIRS) {
@@ -328,7 +354,7 @@ Status screening_update(Screening *q, Archive *a, Err *err)
             turn_off(q, a);
     }
     TRY(predict(q, a, err));
-    return find_front(q, a, err);
+    return find_front(q, c, err);
 }
 
 /* -- finishing ----------------------------------------------------------------------------------------------------- */
@@ -400,18 +426,19 @@ static size_t size_with(const Screening *q, const Common *c, const Batch *b, siz
 
 /* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial
  * sample where nothing is screened any more. */
-static size_t wanted_now(const Screening *q, size_t n)
+static size_t wanted_now(const Screening *q, const Common *c, size_t n)
 {
+    const size_t done = q->n_finished + c->pending.n_of_kind[KIND_FINISHED];
     if (!q->is_on)
         return q->n;
-    return q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : q->is_biased ? finish_due(q, n) : 0;
+    return done < LEVEL_PAIRS ? LEVEL_PAIRS - done : q->is_biased ? finish_due(q, c, n) : 0;
 }
 
 Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 {
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(q, c, b, *n, wanted_now(q, *n));
+    const size_t size = size_with(q, c, b, *n, wanted_now(q, c, *n));
     if (size <= *n)
         return STATUS_OK;
     if (q->is_on)
@@ -424,7 +451,7 @@ Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 
 int screening_is_due(const Screening *q, const Common *c)
 {
-    return q->is_on && q->n_open > 0 && finish_due(q, 0) > 0 && left(q, c) >= q->cost.rest;
+    return q->is_on && q->n_open > 0 && finish_due(q, c, 0) > 0 && left(q, c) >= q->cost.rest;
 }
 
 Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err)

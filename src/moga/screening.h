@@ -8,6 +8,14 @@
 #include "moga/batch.h"
 #include "moga/levels.h"
 
+/* An evaluation as it enters the archive: of its kind, minimised f and g. */
+typedef struct {
+    const double *x, *f, *g;
+    EvaluationKind kind;
+    unsigned char ok;
+    const void *parts; /* of the cheap level; NULL: not known */
+} Answer;
+
 /* A design of which the cheap level was evaluated first. */
 typedef struct {
     size_t row, finished; /* of the archive; of its evaluation in full, SIZE_MAX: there is none */
@@ -39,8 +47,9 @@ int screening_is_spent(const Screening *q, const Common *c);
 /* New designs, n_max at most, that there is room for beside what the screened ones are finished with. */
 size_t screening_room(const Screening *q, const Common *c, size_t n_max);
 
-Status screening_take(Screening *q, const Common *c, const Finished *done, Err *err); /* before it enters the archive */
-Status screening_update(Screening *q, Archive *a, Err *err); /* after results: predictions, agreement, front */
+/* Before it enters the archive; minimised f and g; parts of the cheap level, NULL: not known. */
+Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err);
+Status screening_update(Screening *q, Common *c, Err *err); /* after results: predictions, agreement, front */
 void screening_exchange(Screening *q, Archive *a); /* predictions in the archive for what was evaluated, and back */
 const void *screening_parts(const Screening *q, const Common *c, const double x[]); /* of the cheap level; NULL: none */
 

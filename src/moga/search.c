@@ -26,22 +26,23 @@ static StopReason reason_to_stop(const Search *s)
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
     if (s->common.generation >= c->generations && !screening_is_due(&s->screening, &s->common))
         return STOP_GENERATIONS;
-    if (c->nondominated_share < 1.0 && a->n_front >= c->nondominated_share * (double)a->n)
-        return STOP_SHARE;
-    return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
+    return c->nondominated_share < 1.0 && a->n_front >= c->nondominated_share * (double)a->n ? STOP_SHARE : STOP_NONE;
+}
+
+void search_stop(Search *s, StopReason reason)
+{
+    if (s->reason == STOP_NONE)
+        s->reason = reason;
 }
 
 /* -- convergence --------------------------------------------------------------------------------------------------- */
 
-/* Eight times in stop_after evaluations: this generation has passed one of those marks. */
+/* Eight times in stop_after evaluations: this step has passed one of those marks. */
 static int is_due(const Search *s)
 {
     const Archive *a = &s->common.archive;
     const size_t wanted = s->common.config->stop_after, step = wanted / 8 + 1;
-    size_t before = a->n;
-    while (before > 0 && a->generation[before - 1] == s->common.generation)
-        before--;
-    return wanted > 0 && s->common.convergence.end == 0 && a->n > wanted && a->n / step > before / step;
+    return wanted > 0 && s->common.convergence.end == 0 && a->n > wanted && a->n / step > s->n_before / step;
 }
 
 static Status look_for_convergence(Search *s, Err *err)
@@ -59,7 +60,7 @@ static Status look_for_convergence(Search *s, Err *err)
     if (!(h[1] - h[0] <= hypervolume_error(h[1])))
         return STATUS_OK;
     s->common.convergence.after = s->common.config->stop_after;
-    s->common.convergence.end = a->n + queue_pending(s->common.queue);
+    s->common.convergence.end = a->n + s->common.pending.n;
     return STATUS_OK;
 }
 
@@ -70,82 +71,95 @@ static void reconsider_convergence(Search *s)
         s->common.convergence = (Convergence){0};
 }
 
-/* -- the view of the observer -------------------------------------------------------------------------------------- */
+/* -- what is known ------------------------------------------------------------------------------------------------- */
 
-static int report(Search *s, int is_last, ObserveFn observe, void *user)
+/* For who looks: the results of screened designs in the archive, else predictions. */
+static void show_results(Search *s, int wanted)
 {
-    const Archive *a = &s->common.archive;
-    state_save(s);
-    const SearchView view = {
-        .n = a->n,
-        .n_var = a->n_var,
-        .n_obj = a->n_obj,
-        .n_con = a->n_con,
-        .X = a->X,
-        .F = a->F,
-        .sd = a->sd,
-        .replicates = a->replicates,
-        .Y = a->Y,
-        .H = a->H,
-        .ok = a->ok,
-        .kind = a->kind,
-        .generation = a->generation,
-        .on_front = a->on_front,
-        .n_front = a->n_front,
-        .n_failed = a->n_failed,
-        .n_replicates = a->n_replicates,
-        .n_evaluations = screening_evaluations(&s->screening, &s->common),
-        .n_screened = s->screening.n,
-        .level_agreement = s->screening.agreement,
-        .has_left_screening = s->screening.n > 0 && !s->screening.is_on,
-        .generation_now = s->common.generation,
-        .n_left_out = surrogate_left_out(s->surrogate),
-        .surrogate_error = surrogate_error(s->surrogate),
-        .seconds = search_seconds(s),
-        .waited_s = s->waited_s,
-        .surrogate_s = s->surrogate_s,
-        .is_last = is_last,
-        .is_asynchronous = s->common.config->asynchronous != 0,
-        .state = pack_finished(&s->state) ? s->state.bytes : NULL,
-        .n_state = s->state.n,
-    };
-    screening_exchange(&s->screening, &s->common.archive);
-    const int stop = observe && observe(&view, user);
-    screening_exchange(&s->screening, &s->common.archive);
-    return stop;
+    if (s->shows_results != wanted)
+        screening_exchange(&s->screening, &s->common.archive);
+    s->shows_results = wanted;
 }
 
-/* -- the loop over generations ------------------------------------------------------------------------------------- */
-
-static Status begin(Search *s, const SearchStart *start, StopReason *reason, Err *err)
+static void save_state(Search *s)
 {
-    *reason = STOP_NONE;
-    if (!start)
-        return STATUS_OK;
-    TRY(state_restore(s, start, err));
-    reconsider_convergence(s);
-    *reason = start->state ? reason_to_stop(s) : STOP_NONE;
-    s->common.generation += start->state != NULL;
+    const int shown = s->shows_results;
+    s->state.n = 0;
+    s->state.faulty = 0;
+    if (shown)
+        screening_exchange(&s->screening, &s->common.archive);
+    state_pack(s, &s->state);
+    if (shown)
+        screening_exchange(&s->screening, &s->common.archive);
+}
+
+SearchView search_look(Search *s)
+{
+    save_state(s);
+    return (SearchView){.all = &s->common.archive,
+                        .n_evaluations = screening_evaluations(&s->screening, &s->common),
+                        .n_screened = s->screening.n,
+                        .level_agreement = s->screening.agreement,
+                        .has_left_screening = s->screening.n > 0 && !s->screening.is_on,
+                        .generation = s->common.generation,
+                        .n_left_out = surrogate_left_out(s->surrogate),
+                        .surrogate_error = surrogate_error(s->surrogate),
+                        .reason = s->common.pending.n == 0 ? s->reason : STOP_NONE,
+                        .state = pack_finished(&s->state) ? s->state.bytes : NULL,
+                        .n_state = s->state.n};
+}
+
+/* -- asked and told ------------------------------------------------------------------------------------------------ */
+
+static void decide(Search *s, StopReason reason)
+{
+    search_stop(s, reason);
+    s->phase = s->reason != STOP_NONE && s->common.pending.n == 0 ? PHASE_OVER : PHASE_GROUP;
+}
+
+/* What is due has entered, and what follows from it is decided. */
+static Status end_step(Search *s, Err *err)
+{
+    TRY(generation_enter(s, err));
+    TRY(look_for_convergence(s, err));
+    decide(s, reason_to_stop(s));
+    show_results(s, 1);
     return STATUS_OK;
 }
 
-static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason, Err *err)
+Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
 {
-    TRY(begin(s, start, reason, err));
-    for (; *reason == STOP_NONE; s->common.generation += *reason == STOP_NONE) {
-        TRY(s->common.generation == 0 ? generation_first(s, err) : generation_next(s, err));
-        TRY(look_for_convergence(s, err));
-        *reason = reason_to_stop(s);
-        if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
-            *reason = STOP_ASKED;
+    Pending *p = &s->common.pending;
+    if (s->phase == PHASE_GROUP) {
+        s->common.generation += s->shows_results;
+        show_results(s, 0);
+        TRY(generation_ask(s, err));
+        s->phase = PHASE_ANSWERS;
     }
-    if (queue_pending(s->common.queue) == 0 || *reason == STOP_ASKED)
-        return STATUS_OK;
-    s->common.generation++;
-    TRY(generation_last(s, err));
-    report(s, 1, observe, user);
+    if (pending_hand(p, q)) {
+        *move = SEARCH_ASKS;
+        q->cheap_parts = q->kind == KIND_FINISHED ? screening_parts(&s->screening, &s->common, q->x) : NULL;
+    } else if (s->phase == PHASE_OVER) {
+        *move = SEARCH_ENDS;
+    } else if (p->n_known + s->allowed < p->n) {
+        *move = SEARCH_WAITS;
+    } else {
+        *move = SEARCH_STEPS;
+        return end_step(s, err);
+    }
     return STATUS_OK;
 }
+
+Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err)
+{
+    const Problem *p = s->common.problem;
+    double *f = s->scratch.f, *g = s->scratch.g;
+    problem_judge(p, e, f, g);
+    return pending_tell(&s->common.pending, number, f, g, e->outcome == OUTCOME_OK, parts, p->n_cheap * p->part_size,
+                        err);
+}
+
+/* -- life ---------------------------------------------------------------------------------------------------------- */
 
 static Status check(const Problem *p, const SearchConfig *c, Err *err)
 {
@@ -163,34 +177,41 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
     return STATUS_OK;
 }
 
-static Status open_queue(Search *s, const SearchStart *start, Err *err)
+/* One that is resumed behind a step may have other limits now. */
+static Status begin(Search *s, const SearchStart *start, Err *err)
 {
-    const int asynchronous = s->common.config->asynchronous;
-    const size_t n_before = start ? start->n + (asynchronous ? start->n_later : 0) : 0;
-    TRY(queue_open(&s->common.queue, s->common.problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED, n_before,
-                   err));
-    if (start)
-        queue_know(s->common.queue, start->n_later, start->row + (start->each ? 0 : start->n));
+    TRY(state_create(s, err));
+    if (!start)
+        return STATUS_OK;
+    TRY(state_restore(s, start, err));
+    if (!s->shows_results)
+        return STATUS_OK;
+    s->shows_results = 0;
+    s->common.generation++;
+    reconsider_convergence(s);
+    decide(s, reason_to_stop(s));
     return STATUS_OK;
 }
 
-Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
-                  Err *err)
+Status search_create(Search **out, const Problem *problem, const SearchConfig *config, const SearchStart *start,
+                     Err *err)
 {
-    return search_resume(problem, config, NULL, observe, user, reason, err);
+    Search *s;
+    *out = NULL;
+    TRY(check(problem, config, err));
+    TRY_ROOM(s, 1, "a search", err);
+    s->common = (Common){.problem = problem, .config = config};
+    const Status status = begin(s, start, err);
+    if (status == STATUS_OK)
+        *out = s;
+    else
+        search_free(s);
+    return status;
 }
 
-Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
-                     void *user, StopReason *reason, Err *err)
+void search_free(Search *s)
 {
-    Search s = {.common = {.problem = problem, .config = config}, .start = clock_seconds()};
-    TRY(check(problem, config, err));
-    Status status = state_create(&s, err);
-    if (status == STATUS_OK)
-        status = open_queue(&s, start, err);
-    if (status == STATUS_OK)
-        status = run_loop(&s, start, observe, user, reason, err);
-    queue_close(s.common.queue);
-    state_free(&s);
-    return status;
+    if (s)
+        state_free(s);
+    free(s);
 }

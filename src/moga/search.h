@@ -19,33 +19,30 @@
  *                   nothing of the others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted
- *   5 Evaluation (generation.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES
- *     by the cheap level, and in full for those that promise most (screening.c)
+ *   5 Questions (generation.c), of replicates too where evaluations are noisy (replication.c); with FIDELITY_REPLICATES
+ *     by the cheap level, and in full for those that promise most (screening.c). The client evaluates and tells
  *   6 Environmental selection (selection.h)
  *       NSGA-III among members and results; other designs are dropped. Back to 2
  *
- * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count; no
- *               clock is read but for max_seconds
+ * Look-ahead    questions are made in groups, and no group waits for all answers to those before: it is made from the
+ *               answers to all questions but the last common_ahead ones, whether these are there or not; those count as
+ *               their predictions, so that no design near them is chosen. Which answers a question is made from follows
+ *               from its number alone
+ * Reproducible  random streams are keyed by (seed, generation, individual), no clock is read and nothing depends on who
+ *               evaluates or in what order the answers are told: the same bytes for any number of workers
  * Never twice   a design that is in the archive, failed ones too, is not evaluated again, except as a replicate
  * Noise         a share replicate_share of the evaluations, beyond the first REPLICATE_AFTER for each variable, goes to
  *               replicates of the front: the best in each objective and the knee, then the best for most reference
  *               vectors. A design has the mean of its replicates, and dominance asks for more than the standard
  *               errors (moga/archive.h). Standard deviations below a thousandth of the front's range end replication
- * Threads       evaluations go through a queue (evaluate/queue.h) to as many workers as the problem has; a batch is
- *               asked for, then taken in that order. Set BLAS to one thread
- * Asynchronous  the same queue in the order of arrival: no worker waits for the slowest of a batch, and the next one is
- *               selected while the last designs of this one wait or are under way. Those count as their predictions, so
- *               that no design near them is selected. A generation ends with the first results that arrive, all but
- *               those that keep the workers busy: none at one worker, else the workers and a quarter of a batch more.
- *               Rows of the archive are in the order of arrival, and a run is a function of that order alone: the same
- *               order, the same bytes, at one worker those of a search in batches
- * Resumed       from the evaluations and the state of any generation's end (SearchView.state), to the same bytes as if
- *               it had not stopped. The state is what the evaluations do not tell: population, hyperparameters, running
- *               means. A new variable that outlives a generation is one more line in pack_search (state.c), and
- *               STATE_VERSION one higher
+ * Resumed       from the evaluations that had entered and the state (search_state), to the same bytes as if it had not
+ *               stopped: what was under way is asked for again. The state is what the evaluations do not tell:
+ *               population, hyperparameters, questions under way. A new variable that outlives a step is one more line
+ *               in state_pack (state.c), and STATE_VERSION one higher
  * Converged     stop_after evaluations that gain no more hypervolume than its standard error end the search
- *               (moga/convergence.h)
- * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
+ *               (moga/convergence.h); whatever ends it, what is under way enters first
+ * Life cycle    search_create -> search_ask, search_tell ... -> search_free; borrows problem and configuration
+ * Threads       one at a time; fits and predictions use several (OpenMP). Set BLAS to one thread
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III)
  *               Deb and Agrawal, Complex Systems 9 (1995) 115-148 (SBX)
  *               Cox and John, SDO: a statistical method for global optimization, SIAM 1997, 315-329 (lower confidence
@@ -55,7 +52,9 @@
 #pragma once
 
 #include "evaluate/problem.h"
+#include "moga/archive.h"
 #include "moga/config.h"
+#include "moga/question.h"
 
 typedef enum {
     STOP_NONE,
@@ -69,43 +68,44 @@ typedef enum {
 } StopReason;
 const char *stop_reason_words(StopReason reason);
 
-/* All evaluations so far, in their order; row i is design number i + 1. */
+typedef struct Search Search;
+
+/* start NULL: from the beginning; else problem and configuration must be those of the search that wrote the state, but
+ * for the limits (generations, max_evals with planned_evals set). A state that does not fit is STATUS_BAD_DATA. */
+Status search_create(Search **out, const Problem *problem, const SearchConfig *config, const SearchStart *start,
+                     Err *err);
+void search_free(Search *s); /* NULL is fine */
+
+typedef enum {
+    SEARCH_ASKS,  /* here is a question */
+    SEARCH_WAITS, /* for the answer to the first question that is not told */
+    SEARCH_STEPS, /* answers have entered: look, save the state; then ask again */
+    SEARCH_ENDS   /* every question is answered and has entered */
+} SearchMove;
+
+/* What the search does next; q is set where it asks. */
+Status search_ask(Search *s, SearchMove *move, Question *q, Err *err);
+
+/* The answer to a question, in any order; parts of its cheap level, which are copied, NULL: they are not known. */
+Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err);
+
+/* Nothing more is asked for this reason; what is under way enters. */
+void search_stop(Search *s, StopReason reason);
+
+/* What is known; rows have their results after a step alone, else screened ones what is expected of them. */
 typedef struct {
-    size_t n, n_var, n_obj, n_con;
-    const double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) design, objectives and constraints of each row */
-    const double *F;               /* (n, n_obj) of a design's first row: mean of its replicates */
-    const double *sd;              /* (n, n_obj) ... standard deviation of one replicate */
-    const size_t *replicates;      /* (n) ... how many; of further replicates 0 */
-    const unsigned char *ok;       /* (n) 0: failed */
-    const unsigned char *kind;     /* (n) EvaluationKind */
-    const size_t *generation;      /* (n) */
-    const unsigned char *on_front; /* (n) feasible, nondominated */
-    size_t n_front, n_failed;
-    size_t n_replicates;    /* rows that are further replicates */
-    size_t n_evaluations;   /* of max_evals: n, less what screened designs are not simulated */
+    const Archive *all;     /* rows in the order of the questions: row i is design number i + 1 */
+    size_t n_evaluations;   /* of max_evals: all->n, less what screened designs are not simulated */
     size_t n_screened;      /* designs evaluated by the cheap level first */
     double level_agreement; /* Kendall's tau of the levels, mean over the objectives; NAN: not known */
     int has_left_screening; /* it is too low: nothing is screened any more */
-    size_t generation_now;
+    size_t generation;
     size_t n_left_out;      /* objectives and constraints that the surrogate leaves out: their mean stands for them */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NAN: no surrogate yet */
-    double seconds;
-    double waited_s;    /* of `seconds`: waiting for evaluations */
-    double surrogate_s; /* ... fits, predictions, descents; the rest is search */
-    int is_asynchronous;
-    int is_last;       /* the search ends by itself; none follows */
-    const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
+    StopReason reason;      /* why it has ended; STOP_NONE: it goes on */
+    const void *state;      /* (n_state bytes) the search as it is now but for the rows; NULL: no memory for it */
     size_t n_state;
 } SearchView;
 
-/* Called after the start and after every generation; return non-zero to stop. */
-typedef int (*ObserveFn)(const SearchView *view, void *user);
-
-Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
-                  Err *err);
-
-/* Resumed at `start` (NULL: from the beginning). Problem and configuration must be those of the search that wrote
- * the state, but for the limits (generations, max_evals with planned_evals set, max_seconds). A state that does not fit
- * is STATUS_BAD_DATA. A search that has reached its limits evaluates nothing and does not call observe. */
-Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
-                     void *user, StopReason *reason, Err *err);
+/* At any time; holds until the next call on the search. */
+SearchView search_look(Search *s);

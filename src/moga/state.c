@@ -1,7 +1,5 @@
 #include "moga/state.h"
 
-#include <float.h>
-
 #include "base/carve.h"
 
 /* -- memory -------------------------------------------------------------------------------------------------------- */
@@ -29,7 +27,7 @@ static void layout(void *search, Carve *c)
     CARVE(c, o->bound, n_members * p->n_obj);
     CARVE(c, o->children, 2 * n_var);
     CARVE(c, o->mixed, p->kind ? 5 * n_var : 0);
-    CARVE(c, o->descent_vector, s->criteria.vectors.n);
+    CARVE(c, o->descent_vector, 2 * s->criteria.vectors.n);
     CARVE(c, o->descent_X, n_pool * n_var);
     CARVE(c, w->members, n_pool);
     CARVE(c, w->slices, b->size_max);
@@ -37,7 +35,6 @@ static void layout(void *search, Carve *c)
     CARVE(c, w->given, n_var);
     CARVE(c, w->f, p->n_obj);
     CARVE(c, w->g, p->n_con);
-    CARVE(c, w->x, n_var);
 }
 
 static Status create_criteria(Search *s, size_t n_pool, Err *err)
@@ -58,19 +55,13 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
     return selection_create(&s->selection, n_pool, &s->directions, s->common.problem->aspire, err);
 }
 
-/* Asynchronous: the workers and a part of a batch. */
-static size_t pending_max(const SearchConfig *c, size_t n_workers)
-{
-    return c->asynchronous && n_workers > 1 ? n_workers + batch_size_max(c) / LOOK_AHEAD_SHARE + 1 : 0;
-}
-
 Status state_create(Search *s, Err *err)
 {
     const Problem *p = s->common.problem;
     const SearchConfig *c = s->common.config;
     screening_begin(&s->screening, &s->common);
     const size_t population = c->population, initial = c->n_given + generation_samples(s);
-    const size_t pending = pending_max(c, p->n_workers);
+    const size_t pending = common_ahead(c, MAX_OF(c->max_evals, initial));
     const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
@@ -84,6 +75,7 @@ Status state_create(Search *s, Err *err)
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_members, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.pool, n_pool, p->n_var, p->n_obj, err));
+    s->common.pending = (Pending){.n_var = p->n_var, .n_obj = p->n_obj, .n_con = p->n_con};
     s->store = carve_all(layout, s);
     return s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
 }
@@ -98,6 +90,7 @@ void state_free(Search *s)
         free(s->criteria.select[kind]);
     surrogate_free(s->surrogate);
     screening_free(&s->screening);
+    pending_free(&s->common.pending);
     population_free(&s->population);
     population_free(&s->offspring.members);
     population_free(&s->offspring.pool);
@@ -107,33 +100,8 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 14 };
+enum { STATE_VERSION = 16 };
 
-/* Designs that are asked for and not evaluated yet. */
-static void pack_pending(Search *s, Pack *p)
-{
-    const size_t n_var = s->common.problem->n_var;
-    double *x = s->scratch.x;
-    size_t n = queue_pending(s->common.queue);
-    pack_size(p, &n, UINT32_MAX);
-    for (size_t i = 0; i < n && !p->faulty; i++) {
-        Asked asked = {.x = x};
-        size_t kind;
-        if (!p->reading) {
-            asked = queue_design(s->common.queue, i);
-            memcpy(x, asked.x, n_var * sizeof *x);
-        }
-        kind = asked.kind;
-        pack_numbers(p, x, n_var, -DBL_MAX, DBL_MAX);
-        pack_size(p, &asked.repeat, UINT32_MAX);
-        pack_size(p, &kind, KIND_COUNT - 1);
-        asked.kind = (EvaluationKind)kind;
-        if (p->reading && !p->faulty)
-            p->faulty = queue_ask(s->common.queue, &asked, &(Err){0}) != STATUS_OK;
-    }
-}
-
-/* All that the next generation takes from the earlier ones, beside the archive. */
 int search_state_is_current(const void *state, size_t n_state)
 {
     uint64_t version = 0;
@@ -143,7 +111,21 @@ int search_state_is_current(const void *state, size_t n_state)
     return version == STATE_VERSION;
 }
 
-static void pack_search(Search *s, Pack *p)
+/* Where it stands; why it stops is decided anew behind a step. */
+static void pack_moment(Search *s, Pack *p)
+{
+    size_t phase = s->phase, behind_step = s->shows_results, reason = behind_step ? STOP_NONE : s->reason;
+    pack_size(p, &phase, PHASE_OVER);
+    pack_size(p, &behind_step, 1);
+    pack_size(p, &reason, STOP_FAILURES);
+    pack_size(p, &s->allowed, UINT32_MAX);
+    s->phase = (Phase)phase;
+    s->shows_results = behind_step != 0;
+    s->reason = p->reading ? (StopReason)reason : s->reason;
+}
+
+/* All that the next generation takes from the earlier ones, beside the archive. */
+void state_pack(Search *s, Pack *p)
 {
     const Problem *problem = s->common.problem;
     pack_expect(p, STATE_VERSION);
@@ -154,18 +136,13 @@ static void pack_search(Search *s, Pack *p)
     pack_expect(p, s->common.archive.n);
     pack_size(p, &s->common.generation, UINT32_MAX);
     pack_size(p, &s->offspring.n_probed, UINT32_MAX);
+    pack_size(p, &s->offspring.n_dealt, UINT32_MAX);
     population_pack(&s->population, p, &s->common.archive);
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->common.convergence, p);
     pack_size(p, &s->screening.is_on, 1);
-    pack_pending(s, p);
-}
-
-void state_save(Search *s)
-{
-    s->state.n = 0;
-    s->state.faulty = 0;
-    pack_search(s, &s->state);
+    pending_pack(&s->common.pending, p);
+    pack_moment(s, p);
 }
 
 typedef struct {
@@ -183,7 +160,7 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
-    TRY(screening_take(&s->screening, &s->common, &(Finished){.evaluation = e, .f = f, .g = g}, err));
+    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, ok, NULL}, err));
     if (r->start->on_front && !p->is_noisy)
         return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, e->generation, r->start->on_front[i],
                                       err);
@@ -199,15 +176,16 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
     while (restoring.n < start->n)
         TRY(restore_row(&start->row[restoring.n], &restoring, err));
     pareto_archive_update_noise(&s->common.archive);
+    s->common.pending.n_entered = s->common.archive.n;
     if (!start->state)
         return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
-    pack_search(s, &state);
+    state_pack(s, &state);
     if (!pack_finished(&state))
         return bad_data(
             err,
             "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
             "another version, or with other settings",
             start->n_state, start->n);
-    return screening_update(&s->screening, &s->common.archive, err);
+    return screening_update(&s->screening, &s->common, err);
 }

@@ -1,14 +1,14 @@
-/* moga/state.h -- a search under way, for its loop alone: search.c (limits, the observer's view), generation.c (the
- * steps of one generation) and state.c (memory; what outlives a generation, as bytes). Every other file gets the part
- * that it changes and moga/common.h; everybody else reads search.h.
+/* moga/state.h -- a search under way, for its steps alone: search.c (what is asked and told, limits), generation.c (one
+ * group of questions and the step that follows) and state.c (memory; what outlives a step, as bytes). Every other file
+ * gets the part that it changes and moga/common.h; everybody else reads search.h.
  *
- * Threads  one; the simulator and predictions of the surrogate use several */
+ * Threads  one; predictions of the surrogate use several */
 #pragma once
 
-#include "base/clock.h"
 #include "base/pack.h"
 #include "moga/offspring.h"
 #include "moga/screening.h"
+#include "moga/search.h"
 
 /* Each array has one use. */
 typedef struct {
@@ -17,10 +17,12 @@ typedef struct {
     double *samples; /* (batch.size_max, n_var) of it */
     double *given;   /* (n_var) */
     double *f, *g;   /* (n_obj) (n_con) of a design restored */
-    double *x;       /* (n_var) of a pending one */
 } Scratch;
 
-typedef struct {
+/* The next thing that search_ask does. */
+typedef enum { PHASE_GROUP, PHASE_ANSWERS, PHASE_OVER } Phase;
+
+struct Search {
     Common common;
     Surrogate *surrogate;
     Criteria criteria;
@@ -31,26 +33,22 @@ typedef struct {
     Batch batch;
     Screening screening;
     Scratch scratch;
-    Pack state;                   /* as of the last report */
-    double start;                 /* [s] of the clock */
-    double waited_s, surrogate_s; /* of this session: for simulations; fits, candidates on the surrogate */
+    Phase phase;
+    size_t n_before;   /* rows before the last step */
+    size_t allowed;    /* questions that may be under way when the next answers enter */
+    StopReason reason; /* STOP_NONE: it goes on; else what is under way enters, and it is over */
+    int shows_results; /* between a step and what follows: of what is screened the archive has the results */
+    Pack state;
     void *store;
-} Search;
-
-/* [s] wall time since the search began. */
-static inline double search_seconds(const Search *s)
-{
-    return clock_seconds() - s->start;
-}
+};
 
 /* state.c */
 Status state_create(Search *s, Err *err); /* for its problem and config */
 void state_free(Search *s);
-void state_save(Search *s);
+void state_pack(Search *s, Pack *p);
 Status state_restore(Search *s, const SearchStart *start, Err *err);
 
 /* generation.c */
-size_t generation_samples(const Search *s); /* size of the initial sample without the given designs */
-Status generation_first(Search *s, Err *err);
-Status generation_next(Search *s, Err *err);
-Status generation_last(Search *s, Err *err); /* asynchronous: what is under way when the search ends */
+size_t generation_samples(const Search *s);   /* size of the initial sample without the given designs */
+Status generation_ask(Search *s, Err *err);   /* makes the questions of this generation */
+Status generation_enter(Search *s, Err *err); /* all but the last `allowed` answers enter the archive */

@@ -34,5 +34,5 @@ void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const dou
  * value that is sold. */
 void mutate_discrete(Random *r, const Problem *p, const double before[], double x[]);
 
-/* x is `from` with variable d, which is not real, elsewhere: another word, the next whole number or value that is sold. */
+/* x is `from` but for variable d, which is not real: another word, the next whole number or value that is sold. */
 void step_discrete(Random *r, const Problem *p, size_t d, const double from[], double x[]);

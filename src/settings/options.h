@@ -46,7 +46,7 @@ typedef struct {
     double max_hours; /* OPTION_WORD: by the Slurm job */
     double nondominated_share;
     SurrogateUse surrogate;
-    Switch asynchronous;
+    long ahead; /* OPTION_WORD: by the number of designs */
     Fidelity fidelity;
     double replicate_share; /* share of max_evals */
     long replicates_max;    /* of a design */

@@ -88,8 +88,6 @@ static void check_fidelity(const SearchOptions *s, long replicates, const char *
         break_rule(r, "search.fidelity: replicates needs several of them: set sim.replicates to 2 or more");
     if (s->fidelity == FIDELITY_RECORDS && !list_is_given(records))
         break_rule(r, "search.fidelity: records needs several of them: set motion.records");
-    if (s->asynchronous == SWITCH_ON)
-        break_rule(r, "search.fidelity: screens batches: set search.asynchronous = off");
     if (s->stop_after > 0)
         break_rule(r, "search.fidelity: finishes most designs at the end, so that what was gained lately is not known "
                       "before: set search.stop_after = 0");

@@ -22,7 +22,7 @@ typedef struct {
     double min, max;
     const char
         *words;    /* CHOICE: "a|b|c", in the order of its enum; SHARES: the names of its numbers, likewise; PATH: names
-                          that are no path, or NULL; REAL: the one that stands for OPTION_WORD, or NULL */
+                          that are no path, or NULL; REAL, WHOLE: the one that stands for OPTION_WORD, or NULL */
     int count;     /* LIST: numbers, in ascending order; 0: any number of them. SHARES: of words */
     size_t number; /* CHOICE: the field of a number that is taken in the place of a word, as the default is; 0: none */
     const char *help;
@@ -301,8 +301,10 @@ static const Option OPTIONS[] = {
     REAL(search.nondominated_share, "-", "1", 0, 1,
          "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
-    CHOICE(search.asynchronous, Switch, SWITCH_LIST, "off",
-           "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
+    WHOLE(search.ahead, "auto", 0, 1e4,
+          "designs that may be under way when the next ones are chosen, so that no thread waits; auto: 24, from 600 on "
+          "a 24th of the designs; 0: one by one",
+          .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
            "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
            "replicate, or a fifth of the records, four at most, is simulated, and the rest where it promises most"),
@@ -499,14 +501,14 @@ Status table_assign(Settings *s, int at, const char *value, Err *err)
     double number;
     switch (o->kind) {
     case KIND_REAL:
+    case KIND_WHOLE:
         number = OPTION_WORD;
         if (!o->words || strcmp(value, o->words) != 0)
             TRY(parse_number(o, value, &number, err));
-        *(double *)field_of(s, o) = number;
-        return STATUS_OK;
-    case KIND_WHOLE:
-        TRY(parse_number(o, value, &number, err));
-        *(long *)field_of(s, o) = (long)number;
+        if (o->kind == KIND_REAL)
+            *(double *)field_of(s, o) = number;
+        else
+            *(long *)field_of(s, o) = (long)number;
         return STATUS_OK;
     case KIND_CHOICE:
         return assign_choice(s, o, value, err);
@@ -722,13 +724,12 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     int word;
     switch (o->kind) {
     case KIND_REAL:
-        if (o->words && *(const double *)field == OPTION_WORD)
+    case KIND_WHOLE:
+        number = o->kind == KIND_REAL ? *(const double *)field : (double)*(const long *)field;
+        if (o->words && number == OPTION_WORD)
             snprintf(text, OPTION_TEXT_MAX, "%s", o->words);
         else
-            format_real(*(const double *)field, text);
-        break;
-    case KIND_WHOLE:
-        snprintf(text, OPTION_TEXT_MAX, "%ld", *(const long *)field);
+            format_real(number, text);
         break;
     case KIND_CHOICE:
         memcpy(&word, field, sizeof word);

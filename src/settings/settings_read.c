@@ -23,6 +23,7 @@ typedef struct {
     char section[64];
     int n_faults, line;
     Place seen[TABLE_MAX]; /* where it was set; line 0: nowhere */
+    int is_stored;         /* settings of a run: keys that are none any more are passed over */
     Err *first;
 } Reading;
 
@@ -147,6 +148,21 @@ static void cut_note(char *value)
         }
 }
 
+/* Keys of earlier versions, which stand in their runs; what a file of today is told. */
+static const char *const FORMER[][2] = {
+    {"search.asynchronous", "search.asynchronous is no setting any more: every search looks ahead (search.ahead)"}};
+
+/* 1: it is one of those, and a fault where a file has it. */
+static int is_former(Reading *r, const char *key, Place at)
+{
+    size_t i = 0;
+    while (i < N_OF(FORMER) && strcmp(key, FORMER[i][0]) != 0)
+        i++;
+    if (i < N_OF(FORMER) && !r->is_stored)
+        report_fault(r, at, FORMER[i][1]);
+    return i < N_OF(FORMER);
+}
+
 /* name = value, from `begin` of the line at hand on. */
 static void take_pair(Reading *r, char *begin)
 {
@@ -159,6 +175,8 @@ static void take_pair(Reading *r, char *begin)
     trim_end(value);
     value = skip_blanks(value);
     snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
+    if (is_former(r, key, place_of(r, begin)))
+        return;
     if (table_find(key, &i, &err) != STATUS_OK) {
         report_fault(r, place_of(r, begin), err.text);
         return;
@@ -280,7 +298,7 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
 {
     char *copy = strdup(text);
-    Reading r = {.s = s, .path = path, .first = err};
+    Reading r = {.s = s, .path = path, .is_stored = 1, .first = err};
     if (!copy)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", path);
     const Status status = read_text(&r, copy, strlen(copy), NULL);

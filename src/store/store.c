@@ -103,13 +103,11 @@ static Status check_nothing_lost(const RunStore *store, Err *err)
 }
 
 /* An evaluation that belongs to no later generation than the one that was cut short; others are left of a transaction
- * that was lost. So is, where they are numbered as they arrive, what is behind a gap. */
+ * that was lost. */
 static int is_of_the_next(const RunStore *store, const Evaluation *e)
 {
     const Run *run = &store->run;
-    const long next = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
-    return e->generation <= next && (run->settings->search.asynchronous == SWITCH_OFF ||
-                                     number_of(store, e->id) == (long)(run->n_finished + store->unfinished.n) + 1);
+    return e->generation <= (run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0);
 }
 
 static Status take_open_row(const Evaluation *e, void *user, Err *err)
@@ -370,67 +368,76 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
 
-/* A box about the first designs that succeeded: from a fifth of their range below the best to the worst. */
-static Status create_cover(RunStore *store, const SearchView *v, Err *err)
+/* A box about the first designs that succeeded, when all of their generation are there: from a fifth of their range
+ * below the best to the worst. */
+static Status create_cover(RunStore *store, const Archive *a, int is_last, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
-    size_t first = 0;
-    while (first < v->n && !v->ok[first])
+    size_t first = 0, end;
+    while (first < a->n && !a->ok[first])
         first++;
-    if (first == v->n)
+    for (end = first; end < a->n && a->generation[end] == a->generation[first];)
+        end++;
+    if (first == a->n || (end == a->n && !is_last))
         return STATUS_OK;
-    for (size_t k = 0; k < v->n_obj; k++) {
-        lower[k] = reference[k] = v->Y[first * v->n_obj + k];
-        for (size_t i = first; i < v->n && v->generation[i] == v->generation[first]; i++)
-            if (v->ok[i]) {
-                lower[k] = fmin(lower[k], v->Y[i * v->n_obj + k]);
-                reference[k] = fmax(reference[k], v->Y[i * v->n_obj + k]);
+    for (size_t k = 0; k < a->n_obj; k++) {
+        lower[k] = reference[k] = a->Y[first * a->n_obj + k];
+        for (size_t i = first; i < end; i++)
+            if (a->ok[i]) {
+                lower[k] = fmin(lower[k], a->Y[i * a->n_obj + k]);
+                reference[k] = fmax(reference[k], a->Y[i * a->n_obj + k]);
             }
     }
-    hypervolume_box(v->n_obj, lower, reference);
-    return hypervolume_create(&store->hypervolume, v->n_obj, lower, reference, 1, err);
+    hypervolume_box(a->n_obj, lower, reference);
+    return hypervolume_create(&store->hypervolume, a->n_obj, lower, reference, 1, err);
 }
 
 /* Only designs on the front count: one that an earlier one dominates adds nothing. Where repeats move designs and take
  * them off the front, all of it is measured again. */
-static Status measure_front(RunStore *store, const SearchView *v, Err *err)
+static Status measure_front(RunStore *store, const Archive *a, int is_last, Err *err)
 {
-    if (v->n_replicates > 0) {
+    if (a->n_replicates > 0) {
         hypervolume_free(store->hypervolume);
         store->hypervolume = NULL;
         store->n_measured = 0;
     }
     if (!store->hypervolume)
-        TRY(create_cover(store, v, err));
+        TRY(create_cover(store, a, is_last, err));
     if (!store->hypervolume)
         return STATUS_OK;
-    for (size_t i = v->n;
+    for (size_t i = a->n;
          i-- > store->n_measured;) /* later designs dominate more: fewer samples are left for the others */
-        if (v->on_front[i])
-            hypervolume_add(store->hypervolume, v->F + i * v->n_obj);
-    store->n_measured = v->n;
+        if (a->on_front[i])
+            hypervolume_add(store->hypervolume, a->F + i * a->n_obj);
+    store->n_measured = a->n;
     return STATUS_OK;
 }
 
 /* -- generations --------------------------------------------------------------------------------------------------- */
 
-static Status store_rows(RunStore *store, const SearchView *v, Err *err)
+/* Rows that have entered get kind and generation. Behind the last step what another program or machine had asked for
+ * before it was cut short is left over; before, it is told or replaced, and counted anew. */
+static Status store_rows(RunStore *store, const Archive *a, int is_last, Err *err)
 {
-    for (size_t i = store->n_known; i < v->n; i++)
-        TRY(rows_finish(store->db, id_of(store, i), v->kind[i], v->generation[i], err));
-    if (v->is_asynchronous)
-        return STATUS_OK;
-    /* what another program or machine had asked for in this generation before it was cut short */
-    store->n_stored = v->n;
-    return database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i",
-                       v->n > 0 ? id_of(store, v->n - 1) : 0L);
+    const long last = a->n > 0 ? id_of(store, a->n - 1) : 0;
+    char count[96];
+    double behind;
+    for (size_t i = store->n_known; i < a->n; i++)
+        TRY(rows_finish(store->db, id_of(store, i), a->kind[i], a->generation[i], err));
+    if (is_last)
+        TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", last));
+    snprintf(count, sizeof count, "SELECT count(*) FROM evaluation WHERE kind IS NULL AND id > %ld", last);
+    TRY(database_number(store->db, count, &behind, err));
+    store->n_stored = a->n + (size_t)behind;
+    return STATUS_OK;
 }
 
 static Status store_front_change(RunStore *store, const SearchView *v, size_t i, Err *err)
 {
-    const long id = id_of(store, i), generation = v->generation_now;
+    const Archive *a = v->all;
+    const long id = id_of(store, i), generation = v->generation;
     store->front ^= digest_member(id);
-    if (v->on_front[i])
+    if (a->on_front[i])
         return database_do(store->db, err,
                            "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE "
                            "SET left = NULL",
@@ -441,30 +448,32 @@ static Status store_front_change(RunStore *store, const SearchView *v, size_t i,
 static Status store_front_changes(RunStore *store, const SearchView *v, Err *err)
 {
     enum { BLOCK = 64 };
-    unsigned char *flags = realloc(store->was_on_front, v->n + 1);
+    const Archive *a = v->all;
+    unsigned char *flags = realloc(store->was_on_front, a->n + 1);
     if (!flags)
-        return fail_memory(err, v->n, "designs");
+        return fail_memory(err, a->n, "designs");
     store->was_on_front = flags;
-    memset(flags + store->n_known, 0, v->n - store->n_known);
-    store->n_known = v->n;
-    for (size_t i = 0; i < v->n; i++) {
-        if (i % BLOCK == 0 && i + BLOCK <= v->n && memcmp(v->on_front + i, flags + i, BLOCK) == 0) {
+    memset(flags + store->n_known, 0, a->n - store->n_known);
+    store->n_known = a->n;
+    for (size_t i = 0; i < a->n; i++) {
+        if (i % BLOCK == 0 && i + BLOCK <= a->n && memcmp(a->on_front + i, flags + i, BLOCK) == 0) {
             i += BLOCK - 1; /* nothing has changed here */
             continue;
         }
-        if (v->on_front[i] != flags[i])
+        if (a->on_front[i] != flags[i])
             TRY(store_front_change(store, v, i, err));
-        flags[i] = v->on_front[i];
+        flags[i] = a->on_front[i];
     }
     return STATUS_OK;
 }
 
 static Status store_moment(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
-    RunGeneration g = {.number = v->generation_now,
-                       .simulated = v->n,
-                       .failed = v->n_failed,
-                       .front = v->n_front,
+    const Archive *a = v->all;
+    RunGeneration g = {.number = v->generation,
+                       .simulated = a->n,
+                       .failed = a->n_failed,
+                       .front = a->n_front,
                        .surrogate_error = v->surrogate_error,
                        .hypervolume = store_hypervolume(store),
                        .seconds = seconds,
@@ -476,7 +485,7 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
 /* Twice: one that the disk has damaged gives way to its copy. */
 static Status store_state(RunStore *store, const SearchView *v, Err *err)
 {
-    const long generation = v->generation_now;
+    const long generation = v->generation;
     for (long copy = 1; copy <= 2; copy++)
         TRY(database_do(store->db, err, "INSERT OR REPLACE INTO state VALUES (?, ?, ?, ?)", "iibi", copy, generation,
                         v->state, v->n_state, state_digest(generation, v->state, v->n_state)));
@@ -487,7 +496,7 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
 {
     if (!v->state)
         return fail_memory(err, 1, "the state of the search");
-    TRY(store_rows(store, v, err));
+    TRY(store_rows(store, v->all, v->reason != STOP_NONE, err));
     TRY(store_front_changes(store, v, err));
     TRY(database_do(store->db, err, "DELETE FROM finer", "")); /* what the search named before is another front's */
     TRY(store_moment(store, v, seconds, err));
@@ -501,21 +510,21 @@ static int is_due(RunStore *store, const SearchView *v)
 {
     const double now = clock_seconds(), before = store->last_generation;
     store->last_generation = now;
-    return v->is_last || now >= store->last_commit + COMMIT_S || now >= before + GENERATION_S;
+    return v->reason != STOP_NONE || now >= store->last_commit + COMMIT_S || now >= before + GENERATION_S;
 }
 
 /* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
  * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
-Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+Status store_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
 {
-    TRY(measure_front(store, v, err));
+    TRY(measure_front(store, v->all, v->reason != STOP_NONE, err));
     TRY(begin(store, err));
     TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
-    store->session.seconds = session;
-    store->session.search_s = v->seconds;
-    store->session.waited_s = v->waited_s;
-    store->session.surrogate_s = v->surrogate_s;
-    Status status = put_generation(store, v, seconds, err);
+    store->session.seconds = s->session;
+    store->session.search_s = s->search;
+    store->session.waited_s = s->waiting;
+    store->session.surrogate_s = s->choosing;
+    Status status = put_generation(store, v, s->run, err);
     if (status == STATUS_OK)
         status = database_do(store->db, err, "RELEASE generation", "");
     if (status != STATUS_OK)

@@ -69,8 +69,13 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err);
 Status store_flush(RunStore *store, Err *err); /* commits what waits */
 
-/* The end of a generation. seconds: of work on the run, this session: of it alone. */
-Status store_generation(RunStore *store, const SearchView *view, double seconds, double session, Err *err);
+/* [s] of work on the run, of this session; of its search, and of that waiting for evaluations and choosing designs. */
+typedef struct {
+    double run, session, search, waiting, choosing;
+} SessionTimes;
+
+/* The end of a generation. */
+Status store_generation(RunStore *store, const SearchView *view, const SessionTimes *times, Err *err);
 double store_hypervolume(const RunStore *store); /* of the last generation; NAN: none */
 
 /* A line of log.jsonl, "time" (UTC) added; the event is taken over. */

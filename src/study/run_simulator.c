@@ -17,5 +17,5 @@ Status run_simulator_open(RunSimulator *r, const Settings *s, const SimOptions *
     run_simulator_close(r);
     TRY(adapter_open(&r->adapter, &settings, err));
     adapter_observe(r->adapter, &(Observer){.go_on = go_on, .user = user});
-    return queue_open(&r->queue, adapter_problem(r->adapter), QUEUE_AS_ASKED, 0, err);
+    return queue_open(&r->queue, adapter_problem(r->adapter), err);
 }

@@ -18,6 +18,7 @@
 #include "study/job_limit.h"
 #include "study/named.h"
 #include "study/record_race.h"
+#include "study/search_loop.h"
 #include "study/study_log.h"
 
 typedef struct {
@@ -42,7 +43,7 @@ typedef struct {
     int failing;               /* search.failures_max of them; 2: of the cheap level */
     char failure[200];         /* why the last one failed */
     char lost[200];            /* what ended the session beside a request: a rank that died, say */
-    pthread_mutex_t lock;      /* of an asynchronous search: results come while a generation is written */
+    pthread_mutex_t lock;      /* results come while a generation is written */
     int has_new_limits;
     Status status; /* of writing; ends the search */
     Err *err;
@@ -149,34 +150,31 @@ static Status evaluation_done(const Evaluation *e, void *user, Err *err)
     return status;
 }
 
-static Status write_generation(Study *study, const SearchView *view, Err *err)
+static Status write_generation(Study *study, const SearchView *view, const SearchTime *t, Err *err)
 {
-    const double session = session_seconds(study), seconds = study->seconds_before + session;
-    TRY(store_generation(study->store, view, seconds, session, err));
-    return study_log_generation(study->store, view, seconds, err);
+    const double session = session_seconds(study);
+    const SessionTimes times = {study->seconds_before + session, session, t->all, t->waiting, t->choosing};
+    TRY(store_generation(study->store, view, &times, err));
+    return study_log_generation(study->store, view, &times, err);
 }
 
 static void take_view(StudySummary *sum, const SearchView *view)
 {
-    sum->n_front = view->n_front;
-    sum->n_repeats = view->n_replicates;
+    sum->n_front = view->all->n_front;
+    sum->n_repeats = view->all->n_replicates;
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
     sum->has_left_screening = view->has_left_screening;
 }
 
-static int observe(const SearchView *view, void *user)
+static int observe(const SearchView *view, const SearchTime *time, void *user)
 {
     Study *study = user;
     StudySummary *sum = study->summary;
     pthread_mutex_lock(&study->lock);
-    study->status = write_generation(study, view, study->err);
-    study->generation = view->generation_now + 1;
-    if (!view->is_asynchronous) {
-        sum->n_simulated = view->n;
-        sum->n_failed = view->n_failed;
-    }
+    study->status = write_generation(study, view, time, study->err);
+    study->generation = view->generation + 1;
     pthread_mutex_unlock(&study->lock);
     take_view(sum, view);
     show_progress(study, view, view->n_evaluations);
@@ -225,9 +223,10 @@ static Status take_first(const Evaluation *e, void *user, Err *err)
     return evaluation_table_append(&((Study *)user)->first, e, err);
 }
 
-static int end_first(const SearchView *view, void *user)
+static int end_first(const SearchView *view, const SearchTime *time, void *user)
 {
     (void)view;
+    (void)time;
     (void)user;
     return 1;
 }
@@ -248,7 +247,6 @@ static Status ask_first(Study *study, Err *err)
     p.n_workers = 1;
     p.observer = (Observer){waits_for_first, take_first, study};
     TRY(search_config(study, &config, err));
-    config.asynchronous = 0;
     const Status status = search_run(&p, &config, end_first, NULL, &reason, err);
     if (status == STATUS_STOPPED && !has_first(study)) {
         study->summary->stopped = study->late ? STOP_TIME : STOP_ASKED;
@@ -410,13 +408,6 @@ static SearchStart find_start(const Study *study)
                          .user = study->store};
 }
 
-/* Of surrogate and search: beside running simulations a quarter. */
-static int search_threads(const Study *study)
-{
-    const int threads = adapter_threads(study->adapter);
-    return study->used.search.asynchronous ? (threads + 3) / 4 : threads;
-}
-
 /* A stop is no error: the session ends as others do. One that nobody here asked for is a loss: of a rank, say. */
 static Status note_stop(Study *study, Status status, const Err *err)
 {
@@ -439,7 +430,7 @@ static Status run_search(Study *study, Err *err)
         config.initial = MIN_OF(study->used.search.initial, run->planned_evals);
     }
     TRY(record_race(study->adapter, &study->used, err));
-    omp_set_num_threads(search_threads(study));
+    omp_set_num_threads(adapter_threads(study->adapter));
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     const Status status =
         search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL, observe,

@@ -15,17 +15,18 @@ Status study_log_start(RunStore *store, int threads, const SearchOptions *used, 
                        err);
 }
 
-Status study_log_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
+Status study_log_generation(RunStore *store, const SearchView *v, const SessionTimes *t, Err *err)
 {
+    const Archive *a = v->all;
     const double hypervolume = store_hypervolume(store);
     return store_event(
         store,
         json_of(
             "event=%s number=%ld simulated=%ld repeats=%ld failed=%ld front=%ld outputs_left_out=%ld "
             "surrogate_error=%g hypervolume=%g hypervolume_error=%g seconds=%g search_s=%g waited_s=%g surrogate_s=%g",
-            "generation", v->generation_now, v->n, v->n_replicates, v->n_failed, v->n_front, v->n_left_out,
-            v->surrogate_error, hypervolume, hypervolume_error(hypervolume), seconds, v->seconds, v->waited_s,
-            v->surrogate_s),
+            "generation", v->generation, a->n, a->n_replicates, a->n_failed, a->n_front, v->n_left_out,
+            v->surrogate_error, hypervolume, hypervolume_error(hypervolume), t->run, t->search, t->waiting,
+            t->choosing),
         err);
 }
 

@@ -1,0 +1,108 @@
+#include "study/search_loop.h"
+
+#include "base/clock.h"
+#include "evaluate/queue.h"
+
+typedef struct {
+    const Problem *problem;
+    const SearchConfig *config;
+    Search *search;
+    Queue *queue;
+    const Evaluation *known; /* (n_known) by ascending number; before next_known none is asked for again */
+    size_t n_known, next_known;
+    double start;
+    SearchTime time;
+} Loop;
+
+/* The answer of before to this question, or NULL. */
+static const Evaluation *find_known(Loop *l, const Question *q)
+{
+    while (l->next_known < l->n_known && l->known[l->next_known].id < (long)q->number)
+        l->next_known++;
+    const Evaluation *e = &l->known[l->next_known];
+    return l->next_known < l->n_known && e->id == (long)q->number &&
+                   memcmp(e->x, q->x, l->problem->n_var * sizeof *q->x) == 0
+               ? e
+               : NULL;
+}
+
+static Status ask(Loop *l, const Question *q, Err *err)
+{
+    const Evaluation *known = find_known(l, q);
+    if (known)
+        return search_tell(l->search, q->number, known, NULL, err);
+    return queue_ask(l->queue,
+                     &(Asked){.id = (long)q->number,
+                              .x = q->x,
+                              .repeat = q->repeat,
+                              .kind = q->kind,
+                              .n_parts = q->n_parts,
+                              .cheap_parts = q->cheap_parts},
+                     err);
+}
+
+static Status wait(Loop *l, Err *err)
+{
+    Finished done;
+    const double before = clock_seconds();
+    const Status status = queue_next(l->queue, &done, err);
+    l->time.waiting += clock_seconds() - before;
+    TRY(status);
+    return search_tell(l->search, (size_t)done.evaluation->id, done.evaluation, done.parts, err);
+}
+
+/* 1: the observer wants no more. */
+static int show(Loop *l, ObserveFn observe, void *user)
+{
+    const double most = l->config->max_seconds;
+    l->time.all = clock_seconds() - l->start;
+    if (most > 0.0 && l->time.all >= most)
+        search_stop(l->search, STOP_TIME);
+    const SearchView view = search_look(l->search);
+    return observe && observe(&view, &l->time, user) && view.reason == STOP_NONE;
+}
+
+static Status run(Loop *l, ObserveFn observe, void *user, StopReason *reason, Err *err)
+{
+    for (SearchMove move = SEARCH_ASKS; move != SEARCH_ENDS;) {
+        Question q;
+        const double before = clock_seconds();
+        const Status status = search_ask(l->search, &move, &q, err);
+        l->time.choosing += clock_seconds() - before;
+        TRY(status);
+        if (move == SEARCH_ASKS)
+            TRY(ask(l, &q, err));
+        if (move == SEARCH_WAITS)
+            TRY(wait(l, err));
+        if (move == SEARCH_STEPS && show(l, observe, user)) {
+            *reason = STOP_ASKED;
+            return STATUS_OK;
+        }
+    }
+    *reason = search_look(l->search).reason;
+    return STATUS_OK;
+}
+
+Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
+                     void *user, StopReason *reason, Err *err)
+{
+    Loop l = {.problem = problem, .config = config, .start = clock_seconds()};
+    *reason = STOP_NONE;
+    TRY(search_create(&l.search, problem, config, start, err));
+    if (start) {
+        l.n_known = start->n_later;
+        l.known = start->row + (start->each ? 0 : start->n);
+    }
+    Status status = queue_open(&l.queue, problem, err);
+    if (status == STATUS_OK)
+        status = run(&l, observe, user, reason, err);
+    queue_close(l.queue);
+    search_free(l.search);
+    return status;
+}
+
+Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
+                  Err *err)
+{
+    return search_resume(problem, config, NULL, observe, user, reason, err);
+}
