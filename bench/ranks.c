@@ -4,7 +4,7 @@
  *
  * prints   mode,workers,task_s,tasks,seconds,efficiency,rank0_s
  *
- *   async    one design is one task; WINDOW more than there are workers are pending at any time, as in an asynchronous search
+ *   async    one design is one task; WINDOW more than there are workers are pending at any time, as in a search
  *   batch    BATCH designs of PARTS tasks each (replicates, records) are asked for and waited for, then the next
  *   rate     as async, with MANY pending: seconds = 0 gives the service rate of rank 0
  *

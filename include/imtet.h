@@ -23,8 +23,10 @@
  *
  * Shapes     X (n, variables), F (n, objectives), G (n, constraints), row-major. F has natural signs: `senses` says
  *            which objectives are to be large. Whole numbers and choices are numbers too: choice:a|b is 0 or 1
- * Batches    the search asks for the designs of a generation and goes on when all of them are told. Until then ask
- *            gives those that are left, 0 where every one is under way. Ids are 1, 2, ... in the order of asking
+ * Look-ahead which answers a design is chosen from follows from its id alone: those to all but the last ones before it
+ *            (search.ahead), which may be under way. So some 24 designs and more can be asked for at once; ask gives
+ *            fewer than it is asked for, or none, where more answers are to be known first. A design that will never be
+ *            told holds the search up: tell that it failed. Ids are 1, 2, ... in the order of asking
  * The same   options and answers give the same designs, to the last bit, in whatever portions they are asked for, in
  *            whatever order they are told, saved and loaded in between or not, at any number of threads: those of
  *            `imtet optimize` with the same settings. On processors of several kinds: with OPENBLAS_CORETYPE=Haswell in
@@ -35,8 +37,8 @@
  * Ownership  a search belongs to the caller, who frees it; what is passed in is copied, what comes out is written into
  *            the caller's arrays
  * Threads    any: calls on one search exclude each other, searches do not know of each other. Between two calls no
- *            thread of the library runs. Not across fork: a child loads a saved search. While a generation is made,
- *            or a scene opened, the OpenBLAS of this process has one thread
+ *            thread of the library runs. Not across fork: a child loads a saved search. While designs are chosen, or a
+ *            scene opened, the OpenBLAS of this process has one thread
  * Errors     every function that can fail returns an imtet_status and writes a sentence into *error (NULL: not wanted):
  *            what, where, what to do. Nothing has changed then. So is a handle that is NULL, as free leaves it */
 #ifndef IMTET_H
@@ -87,7 +89,7 @@ typedef struct {
     const char *const *settings;  /* "search.KEY=VALUE" as `imtet settings` lists them, NULL behind the last;
                                                 NULL: none. search.max_evals, seed, population, initial, generations,
                                                 max_hours, stop_after, failures_max, surrogate, nondominated_share,
-                                                threads (of the search itself), aspire (objectives are f1, f2, ...:
+                                                ahead, threads (of the search itself), aspire (objectives are f1, f2, ...:
                                                 "search.aspire=f1 0.5,f2 3") */
 } imtet_search_options;
 
@@ -95,15 +97,15 @@ typedef struct {
 IMTET_API imtet_status imtet_search_create(const imtet_search_options *options, imtet_search **out, imtet_error *error);
 
 /* Up to n designs that nobody has asked for: their ids (n), X (n, variables), and how many. *found is 0 where the
- * search is done, or waits for answers. Where one is to be made it takes the time of a
- * generation, some 10 ms to seconds. */
+ * search is done, or waits for answers. Where new ones are to be chosen it takes some
+ * 10 ms to seconds. */
 IMTET_API imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids[], double X[], size_t *found,
                                         imtet_error *error);
 
 /* What n designs are worth, in any order: F (n, objectives), G (n, constraints; NULL without constraints), failed (n):
  * NULL, or why it failed, and then its F and G are not read; failed NULL: all succeeded. An id is one that ask has given;
- * of a search that was loaded also one from before it was saved that has no answer yet (up to the end of the generation
- * under way), whether ask has given it again or not: told, it is not given again. Refused as a whole where an id is
+ * of a search that was loaded also one from before it was saved that has no answer yet, whether ask has given it again
+ * or not: told, it is not given again. Refused as a whole where an id is
  * another one, stands there twice or was told before, or where a number is not finite. */
 IMTET_API imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[], const double F[],
                                          const double G[], const char *const failed[], imtet_error *error);
@@ -118,7 +120,7 @@ typedef struct {
     const char *why;     /* it is done, in words; empty */
 } imtet_search_state;
 
-/* How far it is. Looks whether the search is done, for which it may take the time of a generation. */
+/* How far it is. Looks whether the search is done, for which it may choose designs, as ask does. */
 IMTET_API imtet_status imtet_search_look(imtet_search *search, imtet_search_state *state, imtet_error *error);
 
 typedef enum { IMTET_FRONT, IMTET_TOLD } imtet_set;

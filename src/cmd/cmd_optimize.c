@@ -44,9 +44,9 @@ static void tell(const StudyProgress *p, void *user)
                  p->settings->search.max_evals, left);
     else
         snprintf(line, sizeof line,
-                 "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
-                 v->generation, p->progress.simulated, p->settings->search.max_evals, v->all->n_failed, v->all->n_front,
-                 hypervolume, left);
+                 "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left", v->generation,
+                 p->progress.simulated, p->settings->search.max_evals, v->all->n_failed, v->all->n_front, hypervolume,
+                 left);
     if (t->terminal)
         fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
     else
