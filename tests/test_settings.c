@@ -606,4 +606,13 @@ TEST(fidelity_needs_replicates_that_average_no_noise)
     assert_true(settings_screens(&s));
 }
 
+TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it)
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    CHECK_OK(settings_parse(&s, "run.sqlite", "[search]\nasynchronous = on\nseed = 7\n", &err), &err);
+    assert_int_equal(s.search.seed, 7);
+}
+
 SUITE(NULL, NULL)

@@ -54,9 +54,12 @@ static void tell(const StudyProgress *p, void *user)
     t->has_line = t->terminal;
 }
 
-static void tell_start(const char *folder, size_t n_simulated, void *user)
+static void tell_start(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user)
 {
     (void)user;
+    if (n_workers > n_busy)
+        fprintf(stderr, "%zu workers, of which %zu at most have something to simulate at once: search.ahead\n",
+                n_workers, n_busy);
     if (n_simulated > 0)
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }

@@ -150,6 +150,11 @@ Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
     return STATUS_OK;
 }
 
+size_t search_at_once(const SearchConfig *c)
+{
+    return common_ahead(c, c->max_evals) + batch_size(&(Common){.config = c, .archive = {.n = c->max_evals}});
+}
+
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err)
 {
     const Problem *p = s->common.problem;

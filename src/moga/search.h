@@ -89,6 +89,9 @@ Status search_ask(Search *s, SearchMove *move, Question *q, Err *err);
 /* The answer to a question, in any order; parts of its cheap level, which are copied, NULL: they are not known. */
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err);
 
+/* Questions that may be under way at once, at most, behind the initial sample. */
+size_t search_at_once(const SearchConfig *c);
+
 /* Nothing more is asked for this reason; what is under way enters. */
 void search_stop(Search *s, StopReason reason);
 

@@ -203,8 +203,11 @@ static Status search_config(Study *study, SearchConfig *config, Err *err)
 static void tell_start(const Study *study)
 {
     const StudySummary *sum = study->summary;
+    const Problem *p = adapter_problem(study->adapter);
+    const SearchConfig config = search_config_of(&study->used);
     if (study->options->started)
-        study->options->started(sum->folder, sum->n_before, study->options->user);
+        study->options->started(sum->folder, sum->n_before, p->n_workers, search_at_once(&config) * p->n_parts,
+                                study->options->user);
 }
 
 static int has_first(const Study *study)

@@ -43,7 +43,8 @@ typedef struct {
     int fresh;               /* never resume a run: a number is added to run.out where it holds one */
     int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* a signal's number, 0: goes on; asked from any thread, often; NULL: never */
-    void (*started)(const char *folder, size_t n_simulated, void *user);
+    /* n_busy: of n_workers so many may have something to simulate at once */
+    void (*started)(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user);
     void (*record)(const Scenario *w, void *user); /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
