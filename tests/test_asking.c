@@ -238,7 +238,7 @@ TEST(answers_of_designs_that_were_under_way_when_it_was_saved_are_taken_by_the_o
     assert_memory_equal(again.X, u.X, 4 * e->n_var * sizeof *u.X);
     must(imtet_search_tell(s, 1, (const long[]){16}, F, NULL, NULL, &error), &error); /* it may have been asked for */
     must(imtet_search_ask(s, 8, again.id, again.X, &again.n, &error), &error);
-    assert_true(again.n == 3 && again.id[2] == 15); /* of 16 half are to be told before others can be asked for */
+    assert_true(again.n == 3 && again.id[2] == 15); /* of the first sample */
     assert_says(imtet_search_tell(s, 1, (const long[]){17}, F, NULL, NULL, &error), &error, IMTET_MISUSED,
                 "no design has the id 17; 16 were asked for");
     imtet_search_free(&s);

@@ -30,18 +30,15 @@ size_t generation_samples(const Search *s)
 
 /* -- step 5: evaluation: what is asked, and the answers, the only way into the archive ----------------------------- */
 
-/* How many may be under way when the next group is made: of the initial sample half at most, always one less than now,
- * none where nothing is left to be asked. */
+/* How many may be under way when the next group is made: always one less than now; none of the initial sample, which the
+ * first surrogate wants whole, and where nothing is left to be asked. */
 static size_t allowed_now(const Search *s)
 {
     const Common *c = &s->common;
-    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)),
-                 most = c->generation == 0 ? now / 2
-                        : now > 0          ? now - 1
-                                           : 0;
-    const int is_last =
-        s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0 || c->generation >= c->config->generations;
-    return is_last ? 0 : MIN_OF(ahead, most);
+    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
+    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE ||
+                              screening_room(&s->screening, c, 1) == 0 || c->generation >= c->config->generations;
+    return waits_for_all ? 0 : MIN_OF(ahead, most);
 }
 
 /* A group of n questions; designs from n_new on are in the archive already. */
