@@ -107,7 +107,7 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 14 };
+enum { STATE_VERSION = 15 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -153,7 +153,6 @@ static void pack_search(Search *s, Pack *p)
     pack_expect(p, s->common.config->population);
     pack_expect(p, s->common.archive.n);
     pack_size(p, &s->common.generation, UINT32_MAX);
-    pack_size(p, &s->offspring.n_probed, UINT32_MAX);
     population_pack(&s->population, p, &s->common.archive);
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->common.convergence, p);
