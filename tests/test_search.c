@@ -686,7 +686,7 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
  * 0.03 and PROBE_SHARE probes, in the mean over the seeds. */
 TEST(single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else)
 {
-    enum { SEEDS = 8 };
+    enum { SEEDS = 32 };
     size_t probes = 0, in_lowest = 0, n;
     for (uint32_t seed = 1; seed <= SEEDS; seed++) {
         assert_less(best_of_waves(0, seed, &n), 1.001);

@@ -28,7 +28,7 @@ enum { VECTORS = 200 }; /* or the population, where that is more */
 enum { INNER_GENERATIONS = 10 };       /* of variation and selection on the surrogate between two batches */
 enum { DESCENTS_PER_DESIGN = 2 };      /* descents on the surrogate for each design of a batch */
 enum { SWAPS = 12 };                   /* designs beside each descent, of problems with choices or whole numbers */
-static const double PROBE_SHARE = 0.1; /* of a batch, for probes, times the share of objectives with waves */
+static const double PROBE_SHARE = 0.3; /* of a batch, for probes, times the share of objectives with waves */
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 

@@ -43,8 +43,7 @@ static void from_scale(const Problem *p, double x[])
 }
 
 /* Two children of mother and father, where variables are of several kinds. */
-static void breed_mixed(Offspring *o, const Problem *p, Random *r, double eta, const double mother[],
-                        const double father[])
+static void breed_mixed(Offspring *o, const Problem *p, Random *r, const double mother[], const double father[])
 {
     const size_t n = p->n_var;
     double *child = o->children, *lower = o->mixed, *upper = lower + n, *parent = upper + n, *before = parent + 2 * n;
@@ -54,25 +53,23 @@ static void breed_mixed(Offspring *o, const Problem *p, Random *r, double eta, c
     cross_choices(r, n, p->kind, mother, father, child, child + n);
     for (int i = 0; i < 2; i++, child += n) {
         memcpy(before, child, n * sizeof *child);
-        mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, eta, child);
+        mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, MUTATION_ETA, child);
         mutate_discrete(r, p, before, child);
         from_scale(p, child);
     }
 }
 
-static void breed_real(Offspring *o, const Problem *p, Random *r, double eta, const double mother[],
-                       const double father[])
+static void breed_real(Offspring *o, const Problem *p, Random *r, const double mother[], const double father[])
 {
     const size_t n = p->n_var;
     double *child = o->children;
     crossover_sbx(r, n, p->lower, p->upper, SBX_ETA, mother, father, child, child + n);
     for (int i = 0; i < 2; i++)
-        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, eta, child + i * n);
+        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, MUTATION_ETA, child + i * n);
 }
 
-/* Appends a population of children of the present members; a share of the pairs is mutated over the whole box. Pair j
- * of step has its own streams. */
-static void breed(Offspring *o, const Common *c, Population *population, uint32_t step, double far)
+/* Appends a population of children of the present members. Pair j of step has its own streams. */
+static void breed(Offspring *o, const Common *c, Population *population, uint32_t step)
 {
     const Problem *p = c->problem;
     const Population parents = *population;
@@ -85,8 +82,7 @@ static void breed(Offspring *o, const Common *c, Population *population, uint32_
         const uint32_t name = step * (uint32_t)n + (uint32_t)j;
         Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
-        const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : MUTATION_ETA;
-        (p->kind ? breed_mixed : breed_real)(o, p, &change, eta, mother, father);
+        (p->kind ? breed_mixed : breed_real)(o, p, &change, mother, father);
         for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
             double *x = o->children + i * p->n_var;
             problem_repair(p, x);
@@ -105,9 +101,9 @@ static void append_predicted(Offspring *o)
 static void add_variation(Offspring *o, const Breeding *w)
 {
     population_copy(&o->pool, w->population);
-    breed(o, w->common, &o->pool, 0, 0.0);
+    breed(o, w->common, &o->pool, 0);
     append_predicted(o);
-    o->n_variation = o->members.n;
+    o->n_unpicked = o->members.n;
 }
 
 /* -- on the surrogate ---------------------------------------------------------------------------------------------- */
@@ -118,7 +114,7 @@ static void add_evolved(Offspring *o, const Breeding *w)
     population_copy(&o->pool, w->population);
     for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
         const size_t n_parents = o->pool.n;
-        breed(o, w->common, &o->pool, step, surrogate_waves(w->surrogate));
+        breed(o, w->common, &o->pool, step);
         surrogate_predict(w->surrogate, &o->pool, n_parents, 0);
         offspring_survive(o, w, &o->pool, 1 + step);
     }
@@ -181,24 +177,21 @@ static void add_descended(Offspring *o, const Breeding *w)
     }
 }
 
-/* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the
- * golden section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. As far as objectives
- * have waves. Their number is rounded at random, or a small share would never come to a whole one. */
+/* Designs of the front with one variable anywhere else, as far as objectives have waves. Their number is rounded at
+ * random, or a small share would never come to a whole one. */
 static void add_probes(Offspring *o, const Breeding *w)
 {
-    static const double GOLDEN = 0.61803398874989485;
     const Common *c = w->common;
     const Problem *p = c->problem;
     const double share = c->archive.n_front == 0 ? 0.0 : PROBE_SHARE * surrogate_waves(w->surrogate);
     Random random = stream(c, RANDOM_PROBES, 0);
-    o->n_probes = (size_t)(share * (double)batch_size(c) + random_uniform(&random));
-    for (size_t i = 0; i < o->n_probes; i++, o->n_probed++) {
-        const size_t d = o->n_probed % p->n_var, vector = random_below(&random, w->criteria->vectors.n);
-        const Infill *near = w->criteria->select[i % INFILL_KINDS];
-        const double place = GOLDEN * (double)(o->n_probed / p->n_var) + M_SQRT2 * (double)d;
+    o->n_unpicked = (size_t)(share * (double)batch_size(c) + random_uniform(&random));
+    for (size_t i = 0; i < o->n_unpicked; i++) {
+        const size_t d = random_below(&random, p->n_var), vector = random_below(&random, w->criteria->vectors.n);
         double *x = o->children;
-        memcpy(x, c->archive.X + infill_best(near, vector) * p->n_var, p->n_var * sizeof *x);
-        x[d] = problem_spread(p, d, place - floor(place));
+        memcpy(x, c->archive.X + infill_best(w->criteria->select[i % INFILL_KINDS], vector) * p->n_var,
+               p->n_var * sizeof *x);
+        x[d] = problem_spread(p, d, random_uniform(&random));
         problem_repair(p, x);
         population_add(&o->members, x);
     }
@@ -214,7 +207,7 @@ static void add_pending(Offspring *o, const Common *c)
 
 void offspring_make(Offspring *o, const Breeding *w)
 {
-    o->members.n = o->n_probes = o->n_variation = o->n_pending = 0;
+    o->members.n = o->n_unpicked = o->n_pending = 0;
     if (!w->with_surrogate) {
         add_variation(o, w);
         return;
@@ -265,12 +258,11 @@ static size_t pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size
 
 size_t offspring_select(Offspring *o, const Breeding *w, Batch *b)
 {
-    const size_t size = batch_size(w->common), first = o->members.n - o->n_pending - o->n_probes - o->n_variation,
-                 end = first + o->n_probes + o->n_variation;
+    const size_t size = batch_size(w->common), end = o->members.n - o->n_pending, first = end - o->n_unpicked;
     size_t n = 0;
     if (w->with_surrogate) {
         offer(o, w);
-        n = pick(o, w, b, size > o->n_probes ? size - o->n_probes : 0, first);
+        n = pick(o, w, b, size > o->n_unpicked ? size - o->n_unpicked : 0, first);
     }
     for (size_t i = first; i < end && n < size; i++)
         n = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_OFFSPRING);

@@ -9,13 +9,13 @@
 #include "moga/selection.h"
 #include "moga/surrogate.h"
 
-/* Members in this order: proposed by the surrogate, probes, by variation, pending. */
+/* Members in this order: proposed by the surrogate; probes, or those by variation; pending. */
 typedef struct {
     Population members;
-    Population pool; /* of a generation on the surrogate */
-    size_t n_probes, n_variation, n_pending;
-    size_t n_probed;        /* probes so far */
-    size_t n_dealt;         /* reference vectors of descents so far */
+    Population pool;   /* of a generation on the surrogate */
+    size_t n_unpicked; /* probes, or by variation: as many as fit into the batch are evaluated */
+    size_t n_pending;
+    size_t n_dealt; /* reference vectors of descents so far */
     unsigned char *allowed; /* (pool) may be picked now */
     double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
     size_t *survivors;      /* (pool) of the environmental selection */

@@ -6,10 +6,9 @@
  *       RBF interpolant of the archive; hyperparameters are tuned now and then. Of an output with waves along single
  *       variables the kernel gets an additive part (rbf/rbf.h). Used while its leave-one-out errors are small enough
  *   3 Offspring (offspring.c): tournament, SBX, polynomial mutation
- *       evolved     INNER_GENERATIONS generations of variation and selection on the surrogate; a share of the pairs, as
- *                   many as objectives have waves, is mutated over the whole box
+ *       evolved     INNER_GENERATIONS generations of variation and selection on the surrogate
  *       descended   descents on the surrogate along reference vectors, from the best design of each
- *       probes      designs of the front with one variable elsewhere, where objectives have waves
+ *       probes      designs of the front with one variable anywhere else, where objectives have waves
  *       variation   children of the population, where the surrogate is not used or proposes nothing new
  *   4 Infill selection of a batch (offspring.c)
  *       infill      those with the greatest gain by two criteria in turn, PBI and hypervolume (infill.h); a gain is

@@ -135,7 +135,6 @@ void state_pack(Search *s, Pack *p)
     pack_expect(p, s->common.config->population);
     pack_expect(p, s->common.archive.n);
     pack_size(p, &s->common.generation, UINT32_MAX);
-    pack_size(p, &s->offspring.n_probed, UINT32_MAX);
     pack_size(p, &s->offspring.n_dealt, UINT32_MAX);
     population_pack(&s->population, p, &s->common.archive);
     surrogate_pack(s->surrogate, p);

@@ -16,13 +16,8 @@ static const double WARP_PRIOR_SD = 0.0015; /* of log a and log b about 0, for e
 static const double NUGGET_MIN = 1e-8;      /* least nugget; 1: all of the variance is noise */
 static const double NUGGET_START = 1e-4;    /* smallest nugget that tuning starts from */
 
-/* -- tune.c: the additive part of a kernel ------------------------------------------------------------------------- */
+/* -- kernel.c: the additive part of a kernel; tune.c --------------------------------------------------------------- */
 
-static const double ADDITIVE_REACH_SHORT = 0.1; /* of the unit cube; tried in turn */
-static const double ADDITIVE_REACH_LONG = 0.25; /* ... */
-static const double ADDITIVE_GAIN = 0.8;        /* of the mean square leave-one-out error, to take it */
-static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in variances, below which none is tried */
-
-/* -- rbf.c --------------------------------------------------------------------------------------------------------- */
-
-static const double ADDITIVE_SHARE = 0.5; /* of the kernel is its additive part, the rest is as without it */
+static const double ADDITIVE_REACH = 0.1;  /* of the unit cube */
+static const double ADDITIVE_GAIN = 0.8;   /* of the mean square leave-one-out error, to take it */
+static const double ADDITIVE_ERROR = 1e-3; /* mean square error, in variances, below which it is not tried */

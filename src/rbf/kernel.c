@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clones.h"
+#include "rbf/constants.h"
 
 /* Four numbers, wherever they lie. */
 typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
@@ -219,48 +220,21 @@ CLONED void kernel_weigh(size_t n, const double slope[], const double w[], doubl
         v[i] = (w[i] * w_j / s2 - v[i]) * slope[i];
 }
 
-CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first, size_t count,
-                            double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK])
+CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t count, double a[],
+                            double b[])
 {
-    const double each = share / (double)n_dim, by_reach = 1.0 / reach;
-    for (size_t p = 0; p < RBF_BLOCK; p++) {
-        double *f = factor[p];
-        for (size_t i = 0; i < count; i++)
-            f[i] = 1.0 - share;
-        for (size_t d = 0; d < n_dim; d++) {
-            const double *u = U + d * stride + first;
-            const double at = x[d * RBF_BLOCK + p];
-#pragma omp simd
-            for (size_t i = 0; i < count; i++) {
-                const double t = fabs(u[i] - at) * by_reach, left = t < 1.0 ? 1.0 - t : 0.0;
-                f[i] += each * left * left * left * (1.0 + 3.0 * t);
-            }
-        }
-    }
-}
-
-/* psi' = -12 t (1 - t)^2 */
-CLONED_V3 void kernel_additive_slopes(size_t n_dim, size_t stride, const double U[], const double x[], size_t p,
-                                      size_t first, size_t count, double share, double reach, const double w[],
-                                      double g[])
-{
-    const double each = -12.0 * share / ((double)n_dim * reach), by_reach = 1.0 / reach;
+    const double by_reach = 1.0 / ADDITIVE_REACH, each = 0.5 / (double)n_dim;
+    double sum[KERNEL_CHUNK] = {0};
     for (size_t d = 0; d < n_dim; d++) {
-        const double *u = U + d * stride + first;
-        const double at = x[d * RBF_BLOCK + p];
-        double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-        for (size_t i = 0; i < count; i++) {
-            const double t = (at - u[i]) * by_reach, off = fabs(t), left = off < 1.0 ? 1.0 - off : 0.0;
-            sum += w[i] * t * left * left;
-        }
-        g[d] += each * sum;
-    }
-}
-
-CLONED void kernel_multiply(size_t n, const double factor[], double values[])
-{
+        const double *u = U + d * stride, at = x[d * RBF_BLOCK];
 #pragma omp simd
-    for (size_t i = 0; i < n; i++)
-        values[i] *= factor[i];
+        for (size_t i = 0; i < count; i++) {
+            const double t = fabs(u[i] - at) * by_reach, left = t < 1.0 ? 1.0 - t : 0.0;
+            sum[i] += left * left * left * (1.0 + 3.0 * t);
+        }
+    }
+    for (double *values = a; values; values = values == a ? b : NULL)
+#pragma omp simd
+        for (size_t i = 0; i < count; i++)
+            values[i] *= 0.5 + each * sum[i];
 }

@@ -13,7 +13,6 @@ typedef struct {
     RbfKernel kernel;
     RbfTail tail;
     double nugget; /* [-] share of the output's variance */
-    double reach;  /* [-] of the kernel's additive part in each variable, of the unit cube; 0: there is none */
 } RbfForm;
 
 /* How one output sees the variables. */
@@ -41,7 +40,6 @@ typedef struct {
     double *C, *S, *Z;   /* centres of the tuning set; scaled; for gradients */
     double *by_a, *by_b; /* (n) derivatives by the warp */
     double *A;           /* (n, n) kernel matrix, its factor, its inverse */
-    double *K;           /* (n, n) factors of an additive part, which no scale changes */
     double *slope;       /* (n, n) of the tuning set: derivatives of the kernel by the squared distance */
     double *P;           /* (n, n_tail + 1) tail basis and data */
     double *M;           /* (n_tail, n_tail) normal matrix of the tail, factored */
@@ -76,17 +74,13 @@ void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);
 /* Points first..first+RBF_BLOCK-1, of n: x (n_dim, RBF_BLOCK); the last one again where there are fewer. */
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
 
-/* Factors of the additive part of n centres C, laid out as the kernel matrix: K (n, n). */
-void model_additive(const Rbf *m, size_t n, const double C[], double reach, double K[]);
-
-/* Lower triangle of the kernel matrix into k->A (n, n), of centres scaled to S, with nugget times k->noise (n) on the
- * diagonal and, where the form has an additive part, its factors in k->K; slope (n, n) of the kernel without that part,
- * NULL: not wanted. */
-void model_matrix(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm form, double slope[]);
+/* Lower triangle of the kernel matrix into k->A (n, n), of centres C scaled to S, with nugget times k->noise (n) on the
+ * diagonal; slope (n, n): its derivatives by the squared distances, NULL: not wanted. */
+void model_matrix(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm form, double slope[]);
 
 /* Factors that matrix in place, raising the nugget by tens where centres are too near each other to tell apart; 0 where
  * that does not help. */
-int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form);
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form);
 
 /* More centres than coefficients, else a simpler tail. */
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim);

@@ -36,7 +36,6 @@ static void layout(void *interpolant, Carve *c)
         CARVE(c, w->by_a, n);
         CARVE(c, w->by_b, n);
         CARVE(c, w->A, n * n);
-        CARVE(c, w->K, n * n);
         CARVE(c, w->slope, tuned * tuned);
         CARVE(c, w->P, n * (t + 1));
         CARVE(c, w->M, t * t);
@@ -72,7 +71,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     if (!m)
         return fail_memory(err, n_max, "centres of an interpolant");
     for (size_t k = 0; k < n_out; k++) {
-        m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN, 0.0};
+        m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN};
         for (size_t d = 0; d < n_dim; d++)
             m->output[k].shape.theta[d] = 1.0 / (double)n_dim;
         m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
@@ -103,26 +102,13 @@ void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double
             x[d * RBF_BLOCK + p] = S[d * m->stride + (first + p < n ? first + p : n - 1)];
 }
 
-/* Both a block of columns at a time, from its first row on, chunk by chunk. */
-void model_additive(const Rbf *m, size_t n, const double C[], double reach, double K[])
+/* A block of columns at a time, from its first row on, chunk by chunk. */
+void model_matrix(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm form, double slope[])
 {
-    double factor[RBF_BLOCK][KERNEL_CHUNK], u[RBF_BLOCK * RBF_DIM_MAX];
-    for (size_t j = 0; j < n; j += RBF_BLOCK) {
-        model_gather(m, C, j, n, u);
-        for (size_t i = j; i < n; i += KERNEL_CHUNK) {
-            const size_t count = MIN_OF(n - i, KERNEL_CHUNK);
-            kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, reach, factor);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
-                memcpy(K + (j + p) * n + i, factor[p], count * sizeof *K);
-        }
-    }
-}
-
-void model_matrix(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm form, double slope[])
-{
-    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
+    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, S, j, n, x);
+        model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = MIN_OF(n - i, KERNEL_CHUNK);
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
@@ -131,8 +117,8 @@ void model_matrix(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm f
                     kernel_values_and_slopes(form.kernel, count, r2[p], k->A + at, slope + at);
                 else
                     kernel_values(form.kernel, count, r2[p], k->A + at);
-                if (form.reach > 0.0)
-                    kernel_multiply(count, k->K + at, k->A + at);
+                if (form.kernel == RBF_ADDITIVE)
+                    kernel_additive(m->n_dim, m->stride, C + i, u + p, count, k->A + at, slope ? slope + at : NULL);
             }
         }
         for (size_t p = j; p < j + RBF_BLOCK && p < n; p++)
@@ -158,10 +144,10 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }
 
-int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form)
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, k, n, S, *form, NULL);
+        model_matrix(m, k, n, C, S, *form, NULL);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= 1.0)
@@ -245,7 +231,7 @@ static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
     RbfForm form = o->form;
-    if (!model_factor(m, k, n, o->S, &form))
+    if (!model_factor(m, k, n, m->C, o->S, &form))
         return 0;
     o->n_tail = model_weights(m, k, n, m->C, model_tail(tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
@@ -281,8 +267,6 @@ static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], con
         k->y[i] = (f[i] - o->mean) / o->scale;
     o->is_left_out = 0;
     model_scale(m, m->n, m->C, &o->shape, o->S);
-    if (o->form.reach > 0.0)
-        model_additive(m, m->n, m->C, o->form.reach, k->K);
     if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
         leave_out(m, o, f);
 }
@@ -296,7 +280,7 @@ void model_fit(Rbf *m)
 
 int rbf_is_additive(const Rbf *m, size_t output)
 {
-    return m->output[output].form.reach > 0.0;
+    return m->output[output].form.kernel == RBF_ADDITIVE;
 }
 
 size_t rbf_left_out(const Rbf *m)
@@ -351,23 +335,24 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const doubl
 
 /* -- prediction ---------------------------------------------------------------------------------------------------- */
 
-/* log u and log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: L (2, n_dim, RBF_BLOCK) */
-static void take_logs(const Rbf *m, size_t n, const double X[], double L[])
+/* u, log u and log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: P (3, n_dim, RBF_BLOCK) */
+static void place_points(const Rbf *m, size_t n, const double X[], double P[])
 {
     for (size_t d = 0; d < m->n_dim; d++)
         for (size_t p = 0; p < RBF_BLOCK; p++) {
             const double u = X[(p < n ? p : n - 1) * m->n_dim + d];
-            L[d * RBF_BLOCK + p] = log_away(u);
-            L[(m->n_dim + d) * RBF_BLOCK + p] = log_away(1.0 - u);
+            P[d * RBF_BLOCK + p] = u;
+            P[(m->n_dim + d) * RBF_BLOCK + p] = log_away(u);
+            P[(2 * m->n_dim + d) * RBF_BLOCK + p] = log_away(1.0 - u);
         }
 }
 
 /* The points as the output's kernel sees them: x (n_dim, RBF_BLOCK) */
-static void scale_points(const Rbf *m, const Output *o, const double L[], double x[])
+static void scale_points(const Rbf *m, const Output *o, const double P[], double x[])
 {
     for (size_t d = 0; d < m->n_dim; d++)
-        kernel_warp(RBF_BLOCK, L + d * RBF_BLOCK, L + (m->n_dim + d) * RBF_BLOCK, o->shape.theta[d], o->shape.warp,
-                    x + d * RBF_BLOCK);
+        kernel_warp(RBF_BLOCK, P + (m->n_dim + d) * RBF_BLOCK, P + (2 * m->n_dim + d) * RBF_BLOCK, o->shape.theta[d],
+                    o->shape.warp, x + d * RBF_BLOCK);
 }
 
 static double tail_sum(const Rbf *m, const Output *o, const double x[])
@@ -378,33 +363,20 @@ static double tail_sum(const Rbf *m, const Output *o, const double x[])
     return value;
 }
 
-/* n <= RBF_BLOCK points as they are: x (n_dim, RBF_BLOCK), the last one again where there are fewer. */
-static void place_points(size_t n_dim, size_t n, const double X[], double x[])
-{
-    for (size_t d = 0; d < n_dim; d++)
-        for (size_t p = 0; p < RBF_BLOCK; p++)
-            x[d * RBF_BLOCK + p] = X[(p < n ? p : n - 1) * n_dim + d];
-}
-
 /* f and error of point p go to f[p n_out]. */
-static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
+static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], const double P[], double f[],
                         double error[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, square[RBF_BLOCK] = {0}, weights[RBF_BLOCK] = {0};
-    double u[RBF_BLOCK * RBF_DIM_MAX], factor[RBF_BLOCK][KERNEL_CHUNK];
-    scale_points(m, o, L, x);
-    if (o->form.reach > 0.0)
-        place_points(m->n_dim, n, X, u);
+    scale_points(m, o, P, x);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
         const size_t count = MIN_OF(m->n - first, KERNEL_CHUNK);
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
-        if (o->form.reach > 0.0)
-            kernel_additive(m->n_dim, m->stride, m->C, u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
         for (size_t p = 0; p < n; p++) {
             kernel_values(o->form.kernel, count, r2[p], phi);
-            if (o->form.reach > 0.0)
-                kernel_multiply(count, factor[p], phi);
+            if (o->form.kernel == RBF_ADDITIVE)
+                kernel_additive(m->n_dim, m->stride, m->C + first, P + p, count, phi, NULL);
             value[p] += kernel_dot(count, o->weight + first, phi);
             if (error)
                 kernel_errors(count, r2[p], o->leave_one_out + first, &square[p], &weights[p]);
@@ -419,12 +391,12 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
 
 void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[])
 {
-    double L[2 * RBF_BLOCK * RBF_DIM_MAX];
+    double P[3 * RBF_BLOCK * RBF_DIM_MAX];
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = MIN_OF(n - i, RBF_BLOCK);
-        take_logs(m, count, X + i * m->n_dim, L);
+        place_points(m, count, X + i * m->n_dim, P);
         for (size_t k = 0; k < m->n_out; k++)
-            eval_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,
+            eval_output(m, &m->output[k], count, X + i * m->n_dim, P, F + i * m->n_out + k,
                         E ? E + i * m->n_out + k : NULL);
     }
 }
@@ -437,80 +409,60 @@ static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
 
 /* Sums over the centres; of variables first. */
 typedef struct {
-    double x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX],
-        by_u[RBF_BLOCK * RBF_DIM_MAX];                                    /* (n_dim, RBF_BLOCK) */
-    double G[RBF_BLOCK * RBF_DIM_MAX], additive[RBF_BLOCK * RBF_DIM_MAX]; /* (RBF_BLOCK, n_dim) */
+    double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX]; /* (n_dim, RBF_BLOCK) */
+    double G[RBF_BLOCK * RBF_DIM_MAX];                                /* (RBF_BLOCK, n_dim) */
     double value[RBF_BLOCK], sum[RBF_BLOCK];
 } Slopes;
 
-/* Weights times the additive factor in w; the slope of that factor, weights times phi. */
-static void slope_additive(const Rbf *m, const Output *o, size_t p, size_t first, size_t count, const double r2[],
-                           const double factor[], double w[], Slopes *s)
+static void slope_chunk(const Rbf *m, const Output *o, size_t n, const double P[], size_t first, size_t count,
+                        Slopes *s)
 {
-    double phi[KERNEL_CHUNK];
-    memcpy(w, o->weight + first, count * sizeof *w);
-    kernel_multiply(count, factor, w);
-    kernel_values(o->form.kernel, count, r2, phi);
-    kernel_multiply(count, o->weight + first, phi);
-    kernel_additive_slopes(m->n_dim, m->stride, m->C, s->u, p, first, count, ADDITIVE_SHARE, o->form.reach, phi,
-                           s->additive + p * m->n_dim);
-}
-
-static void slope_chunk(const Rbf *m, const Output *o, size_t n, size_t first, size_t count, Slopes *s)
-{
-    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], factor[RBF_BLOCK][KERNEL_CHUNK],
-        weighted[KERNEL_CHUNK];
+    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], w[KERNEL_CHUNK];
     if (n < RBF_BLOCK || count < KERNEL_CHUNK)
         memset(q, 0, sizeof q);
     kernel_distances(m->n_dim, m->stride, o->S, s->x, first, count, r2);
-    if (o->form.reach > 0.0)
-        kernel_additive(m->n_dim, m->stride, m->C, s->u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
     for (size_t p = 0; p < n; p++) {
-        const double *w = o->weight + first;
-        if (o->form.reach > 0.0) {
-            slope_additive(m, o, p, first, count, r2[p], factor[p], weighted, s);
-            w = weighted;
-        }
+        memcpy(w, o->weight + first, count * sizeof *w);
+        if (o->form.kernel == RBF_ADDITIVE)
+            kernel_additive(m->n_dim, m->stride, m->C + first, P + p, count, w, NULL);
         s->value[p] += kernel_slopes(o->form.kernel, count, r2[p], w, q[p], &s->sum[p]);
     }
     kernel_project(m->n_dim, m->stride, o->S, first, count, q, s->G);
 }
 
-/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; the additive
- * part and the tail. J of point p goes to J[p n_out n_dim]. */
-static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
+/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule, and the
+ * tail. J of point p goes to J[p n_out n_dim]. */
+static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], const double P[], double f[],
                          double J[])
 {
     const size_t n_dim = m->n_dim;
     Slopes s;
     memset(s.G, 0, RBF_BLOCK * n_dim * sizeof *s.G);
-    memset(s.additive, 0, RBF_BLOCK * n_dim * sizeof *s.additive);
     memset(s.value, 0, sizeof s.value);
     memset(s.sum, 0, sizeof s.sum);
-    scale_points(m, o, L, s.x);
-    place_points(n_dim, n, X, s.u);
+    scale_points(m, o, P, s.x);
     for (size_t d = 0; d < n_dim; d++)
-        kernel_warp_by_u(RBF_BLOCK, L + d * RBF_BLOCK, L + (n_dim + d) * RBF_BLOCK, o->shape.theta[d], o->shape.warp,
-                         s.by_u + d * RBF_BLOCK);
+        kernel_warp_by_u(RBF_BLOCK, P + (n_dim + d) * RBF_BLOCK, P + (2 * n_dim + d) * RBF_BLOCK, o->shape.theta[d],
+                         o->shape.warp, s.by_u + d * RBF_BLOCK);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK)
-        slope_chunk(m, o, n, first, MIN_OF(m->n - first, KERNEL_CHUNK), &s);
+        slope_chunk(m, o, n, P, first, MIN_OF(m->n - first, KERNEL_CHUNK), &s);
     for (size_t p = 0; p < n; p++) {
         f[p * m->n_out] = o->mean + o->scale * (s.value[p] + tail_sum(m, o, X + p * n_dim));
         for (size_t d = 0; d < n_dim; d++)
             J[p * m->n_out * n_dim + d] =
                 o->scale * (2.0 * (s.x[d * RBF_BLOCK + p] * s.sum[p] - s.G[p * n_dim + d]) * s.by_u[d * RBF_BLOCK + p] +
-                            s.additive[p * n_dim + d] + tail_slope(n_dim, o, d, X[p * n_dim + d]));
+                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
     }
 }
 
 void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 {
-    double L[2 * RBF_BLOCK * RBF_DIM_MAX];
+    double P[3 * RBF_BLOCK * RBF_DIM_MAX];
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = MIN_OF(n - i, RBF_BLOCK);
-        take_logs(m, count, X + i * m->n_dim, L);
+        place_points(m, count, X + i * m->n_dim, P);
         for (size_t k = 0; k < m->n_out; k++)
-            slope_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,
+            slope_output(m, &m->output[k], count, X + i * m->n_dim, P, F + i * m->n_out + k,
                          J + (i * m->n_out + k) * m->n_dim);
     }
 }
@@ -539,7 +491,6 @@ void rbf_pack(Rbf *m, Pack *p)
         pack(p, &form.kernel, sizeof form.kernel);
         pack(p, &form.tail, sizeof form.tail);
         pack_numbers(p, &form.nugget, 1, 0.0, DBL_MAX);
-        pack_numbers(p, &form.reach, 1, 0.0, 1.0);
         pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
         p->faulty = p->faulty || !form_is_known(form);

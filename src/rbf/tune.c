@@ -52,7 +52,7 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 
 /* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
  * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
-static double weigh_pairs(Worker *k, size_t n, double reach, double s2)
+static double weigh_pairs(Worker *k, size_t n, double s2)
 {
     double trace = 0.0;
     memset(k->q, 0, n * sizeof *k->q);
@@ -60,8 +60,6 @@ static double weigh_pairs(Worker *k, size_t n, double reach, double s2)
         double *v = k->A + j * n;
         trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
         kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
-        if (reach > 0.0)
-            kernel_multiply(n - j, k->K + j * n + j, v + j);
         v[j] = 0.0;
         for (size_t i = j + 1; i < n; i++) {
             k->q[j] += v[i];
@@ -98,7 +96,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
                          double *s2, double gradient[])
 {
     model_scale(m, n, k->C, shape, k->S);
-    model_matrix(m, k, n, k->S, form, k->slope);
+    model_matrix(m, k, n, k->C, k->S, form, k->slope);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
     k->n_tail = model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
@@ -117,7 +115,7 @@ static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, co
 {
     model_invert((int)n, k->A, (int)n);
     LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
-    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(k, n, form.reach, s2);
+    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(k, n, s2);
     pull_back(m, k, n, shape, gradient);
 }
 
@@ -161,7 +159,7 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
 {
     if (!is_at_hand) {
         model_scale(m, n, k->C, shape, k->S);
-        if (!model_factor(m, k, n, k->S, form))
+        if (!model_factor(m, k, n, k->C, k->S, form))
             return INFINITY;
         k->n_tail = model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim));
     }
@@ -183,42 +181,24 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
     return n;
 }
 
-/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. */
+/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. An additive
+ * part must be worth it where there is none yet, and is not tried where the others leave nothing to explain. */
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
 {
+    const int is_new = form.kernel == RBF_ADDITIVE && o->form.kernel != RBF_ADDITIVE;
+    if (is_new && k->min_error < ADDITIVE_ERROR)
+        return;
     model_copy_shape(m, &k->shape, &o->shape);
-    if (form.reach > 0.0)
-        model_additive(m, n, k->C, form.reach, k->K);
     const int is_at_hand = climb(m, k, n, &form, &k->shape, steps);
     const double e = trial_error(m, k, n, &form, &k->shape, is_at_hand);
-    if (e < k->min_error) {
+    if (e < k->min_error * (is_new ? ADDITIVE_GAIN : 1.0)) {
         k->min_error = e;
         k->best_form = form;
         model_copy_shape(m, &k->best_shape, &k->shape);
     }
 }
 
-/* The best form so far with an additive part, which must be worth it where there is none yet. Scales are tuned for it
- * only the first time, and where it is better with the present ones: where there are no waves it is not, and that costs
- * little. */
-static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, double reach, int steps)
-{
-    const double best = k->min_error, wanted = best * (k->best_form.reach > 0.0 ? 1.0 : ADDITIVE_GAIN);
-    RbfForm form = k->best_form;
-    form.reach = reach;
-    form.nugget = fmax(form.nugget, NUGGET_START);
-    RbfForm untuned = form;
-    model_additive(m, n, k->C, reach, k->K);
-    if (m->n_tuned > 0 && !(trial_error(m, k, n, &untuned, &k->best_shape, 0) < best))
-        return;
-    k->min_error = wanted;
-    try_form(m, k, n, o, form, steps);
-    if (!(k->min_error < wanted))
-        k->min_error = best;
-}
-
-/* The first time every form is tried; later the present one and, in turn, one challenger without an additive part and
- * one with it. */
+/* The first time every form is tried; later the present one and, in turn, one challenger. */
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
@@ -227,20 +207,10 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
     k->min_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
         const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
-                              fmax(o->form.nugget, NUGGET_START), 0.0};
-        const int present = o->form.reach == 0.0 && form.kernel == o->form.kernel && form.tail == o->form.tail;
-        if (is_first || present || i == challenger)
+                              fmax(o->form.nugget, NUGGET_START)};
+        if (is_first || i == challenger || (form.kernel == o->form.kernel && form.tail == o->form.tail))
             try_form(m, k, n, o, form, steps);
     }
-    if (o->form.reach > 0.0) {
-        RbfForm form = o->form;
-        form.nugget = fmax(form.nugget, NUGGET_START);
-        try_form(m, k, n, o, form, steps);
-    }
-    const double reach[] = {ADDITIVE_REACH_SHORT, ADDITIVE_REACH_LONG};
-    for (size_t r = 0; k->min_error > ADDITIVE_ERROR && k->min_error < INFINITY && r < 2; r++)
-        if ((is_first || m->n_tuned % 2 == r) && reach[r] != o->form.reach)
-            try_additive(m, k, n, o, reach[r], steps);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
