@@ -669,6 +669,7 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
     double best = INFINITY;
     SearchConfig c = config(36, 108);
     c.seed = seed;
+    c.ahead = 6; /* 72 designs are few */
     fresh(NULL);
     world(&here, 6, 2);
     here.function.evaluate = evaluate_waves;

@@ -30,8 +30,8 @@ size_t generation_samples(const Search *s)
 
 /* -- step 5: evaluation: what is asked, and the answers, the only way into the archive ----------------------------- */
 
-/* How many may be under way when the next group is made: always one less than now; none of the initial sample, which the
- * first surrogate wants whole, and where nothing is left to be asked. */
+/* How many may be under way when the next group is made: one less than now at most; none of the initial sample, which
+ * the first surrogate wants whole, and none where nothing is left to be asked. */
 static size_t allowed_now(const Search *s)
 {
     const Common *c = &s->common;
