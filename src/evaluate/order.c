@@ -1,0 +1,56 @@
+#include "evaluate/order.h"
+
+#include "base/clock.h"
+
+/* Where x begins. */
+static double *numbers_of(Order *o)
+{
+    return (double *)((Task *)(o + 1) + o->n);
+}
+
+size_t order_write(Order *to, size_t n, const Task tasks[], size_t n_var)
+{
+    to->n = n;
+    memcpy(to + 1, tasks, n * sizeof *tasks);
+    for (size_t i = 0; i < n; i++)
+        memcpy(numbers_of(to) + i * n_var, tasks[i].x, n_var * sizeof(double));
+    return order_bytes(n, n_var);
+}
+
+Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
+{
+    Task *task = (Task *)(order + 1);
+    const double began = clock_seconds();
+    const size_t size = order->n > 0 ? task->size : 0;
+    Answer *a = calloc(1, sizeof *a + order->n * size);
+    if (!a)
+        return NULL;
+    a->epoch = order->epoch;
+    a->worker = order->worker;
+    for (; a->n_done < order->n; a->n_done++) {
+        Task *t = &task[a->n_done];
+        t->x = numbers_of(order) + a->n_done * doer->n_var;
+        t->result = a->parts + a->n_done * size;
+        t->may_go_on = doer->may_go_on;
+        t->user = doer->user;
+        if (!doer->may_go_on(doer->user))
+            fail(&a->why, STATUS_STOPPED, "stopped");
+        else if (doer->simulate(doer->self, worker, t, &a->why) == STATUS_OK)
+            continue;
+        break;
+    }
+    a->seconds = clock_seconds() - began;
+    *n_bytes = sizeof *a + a->n_done * size;
+    return a;
+}
+
+int order_take(const Answer *answer, size_t n_bytes, size_t n, const Task tasks[])
+{
+    if (n_bytes < sizeof *answer || answer->n_done > n || answer->why.code >= STATUS_COUNT ||
+        (answer->n_done < n) != (answer->why.code != STATUS_OK) ||
+        n_bytes != sizeof *answer + answer->n_done * tasks->size)
+        return 0;
+    for (size_t i = 0; i < answer->n_done; i++)
+        memcpy(tasks[i].result, answer->parts + i * tasks->size, tasks->size);
+    return 1;
+}
