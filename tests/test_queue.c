@@ -344,7 +344,7 @@ static void stop_none(void *self)
     (void)self;
 }
 
-static const Executor NONE = {start_none, NULL, stop_none};
+static const Executor NONE = {.start = start_none, .stop = stop_none};
 
 TEST(what_nobody_has_taken_can_be_withdrawn)
 {

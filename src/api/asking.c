@@ -95,7 +95,7 @@ static void executor_stop(void *self)
     (void)self;
 }
 
-static const Executor ASKING = {executor_start, help, executor_stop};
+static const Executor ASKING = {.start = executor_start, .help = help, .stop = executor_stop};
 
 /* -- the simulator: what was told ---------------------------------------------------------------------------------- */
 

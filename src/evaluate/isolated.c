@@ -30,7 +30,7 @@ static void serve(void *self, size_t worker)
 static size_t write_order(void *self, const Errand *e, char *request)
 {
     const Isolated *q = self;
-    return order_write((Order *)(void *)request, 1, e->task, q->doer.n_var);
+    return order_write((Order *)(void *)request, e, q->doer.n_var);
 }
 
 static void look(void *self, Worker *w)
@@ -41,22 +41,18 @@ static void look(void *self, Worker *w)
     if (n_line < sizeof *a || n_line < sizeof *a + (a->n_done > 0 ? w->errand.task->size : 0))
         return;
     w->n_line = 0;
-    if (!order_take(a, n_line, 1, w->errand.task))
+    if (!order_take(a, n_line, &w->errand))
         pool_settle(w, OUTCOME_GARBLED, 1, "its process answered what is no answer");
-    else if ((w->why = a->why).code != STATUS_OK)
-        w->errand.n = 0;
-    else
-        pool_settle(w, OUTCOME_OK, 0, "%s", "");
 }
 
 static void tell(void *self, const Worker *w, const Task *task, Outcome outcome, const char *reason)
 {
-    const Isolated *q = self;
+    (void)outcome;
+    (void)reason;
     char words[REASON_MAX];
     snprintf(words, sizeof words, "its process ended: %s",
              WIFSIGNALED(w->how) ? strsignal(WTERMSIG(w->how)) : "no answer");
-    if (outcome != OUTCOME_OK)
-        q->lost(task, outcome == OUTCOME_DEAD ? words : reason);
+    ((const Isolated *)self)->lost(task, words);
 }
 
 Status isolated_open(Isolated *q, size_t n_workers, Err *err)

@@ -6,11 +6,10 @@
  * Threads  no state */
 #pragma once
 
-#include "evaluate/problem.h"
+#include "evaluate/pool.h"
 
-typedef struct Order {
-    struct Order *next; /* of a list there */
-    int64_t epoch;      /* those two come back as they are */
+typedef struct {
+    int64_t epoch; /* comes back as it is, and so does worker */
     uint64_t worker, n;
 } Order;
 
@@ -22,9 +21,11 @@ typedef struct {
     _Alignas(16) char parts[];
 } Answer;
 
+typedef Status SimulateFn(void *self, size_t worker, const Task *task, Err *err);
+
 /* Who does them. */
 typedef struct {
-    Status (*simulate)(void *self, size_t worker, const Task *task, Err *err);
+    SimulateFn *simulate;
     void *self;
     size_t n_var;
     int (*may_go_on)(void *user);
@@ -37,10 +38,10 @@ static inline size_t order_bytes(size_t n, size_t n_var)
 }
 
 /* Into room for it; its bytes. */
-size_t order_write(Order *to, size_t n, const Task tasks[], size_t n_var);
+size_t order_write(Order *to, const Errand *e, size_t n_var);
 
 /* As `worker`; the answer, to be freed, NULL: there is no memory. */
 Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes);
 
-/* The parts of an answer of n_bytes; 0: it is none to so many tasks. */
-int order_take(const Answer *answer, size_t n_bytes, size_t n, const Task tasks[]);
+/* What an answer of n_bytes says of the errand; 0: it is none to that. */
+int order_take(const Answer *answer, size_t n_bytes, Errand *e);

@@ -42,7 +42,9 @@ Status pool_wait(const Transport *t, Errand *e, Err *err)
             ending = now;
         }
     }
-    return STATUS_OK;
+    if (e->why.code != STATUS_OK)
+        *err = e->why;
+    return e->why.code;
 }
 
 /* -- one process --------------------------------------------------------------------------------------------------- */
@@ -175,7 +177,6 @@ static Status ask(Worker *w, size_t n, const Task tasks[], Err *err)
 {
     const Protocol *how = &w->pool->protocol;
     w->errand = (Errand){.task = tasks, .n = n, .limit_s = how->timeout_s * (double)n};
-    w->why = (Err){0};
     w->is_second = 0;
     if (w->helper.pid && has_ended(w))
         worker_end(w); /* it ended after its last answer: no fault of any design */
@@ -185,10 +186,7 @@ static Status ask(Worker *w, size_t n, const Task tasks[], Err *err)
     w->n_sent = 0;
     w->asked = clock_seconds();
     how->look(how->self, w); /* a worker that wrote without being asked */
-    TRY(pool_wait(&PROCESSES, &w->errand, err));
-    if (w->why.code != STATUS_OK)
-        *err = w->why;
-    return w->why.code;
+    return pool_wait(&PROCESSES, &w->errand, err);
 }
 
 /* What a process that failed left of a batch is asked one by one, so that the design at fault fails alone. */

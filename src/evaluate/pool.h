@@ -25,6 +25,7 @@ typedef struct {
     const Task *task;
     size_t n, n_done; /* less n: the rest is given up */
     double limit_s, silent_s;
+    Err why; /* of a fault that ends everything */
 } Errand;
 
 /* Of a worker, which is known by its errand. */
@@ -57,7 +58,6 @@ typedef struct {
     size_t n_answered; /* by this process */
     int is_second;     /* the request went to a fresh process */
     int how;           /* the last one ended (evaluate/helper.h) */
-    Err why;           /* of a fault that ends everything */
 } Worker;
 
 /* How one speaks with them. */

@@ -76,7 +76,10 @@ enum { TASKS_MAX = 64 };
 typedef struct {
     Status (*start)(void **self, Queue *queue, Err *err);
     void (*help)(void *self); /* called while the client waits: does something; NULL: needs no help */
-    void (*stop)(void *self); /* the queue gives no more tasks: returns when none is under way */
+    void (*stop)(void *self); /* none is under way any more */
+    /* A thread for each worker asks this one to simulate; `self` is the executor's. NULL: it takes tasks by itself */
+    const Simulator *simulator;
+    size_t (*n_workers)(const void *self);
 } Executor;
 
 typedef struct {
