@@ -332,8 +332,9 @@ TEST(known_evaluations_are_not_simulated_again)
 }
 
 /* Without a worker of its own: tasks are taken and given here. */
-static Status start_none(void **self, Queue *queue, Err *err)
+static Status start_none(void **self, Queue *queue, size_t *n, Err *err)
 {
+    (void)n;
     (void)err;
     *self = queue;
     return STATUS_OK;
@@ -412,6 +413,8 @@ static int go_on(void *user)
     return 1;
 }
 
+static const Simulator DIES = {.simulate = double_or_die};
+
 static void note_lost(const Task *t, const char *reason)
 {
     *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
@@ -419,7 +422,7 @@ static void note_lost(const Task *t, const char *reason)
 
 TEST(a_simulation_that_crashes_ends_its_own_task_alone)
 {
-    Isolated q = {.doer = {.simulate = double_or_die, .n_var = 1}, .lost = note_lost};
+    Isolated q = {.doer = {.simulator = &DIES, .n_var = 1}, .lost = note_lost};
     Err err = {0};
     CHECK_OK(isolated_open(&q, WORKERS, &err), &err);
     for (int i = 0; i < DESIGNS; i++) {

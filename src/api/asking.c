@@ -69,8 +69,9 @@ static void give_answers(Asking *a, Status status, const Err *why)
         }
 }
 
-static Status executor_start(void **self, Queue *queue, Err *err)
+static Status executor_start(void **self, Queue *queue, size_t *n, Err *err)
 {
+    (void)n;
     Asking *a = queue_problem(queue)->self;
     (void)err;
     a->queue = queue;

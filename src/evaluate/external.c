@@ -227,16 +227,10 @@ static void look_for_answer(void *self, Worker *w)
 
 /* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
-static Status simulate_batch(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
 {
     External *e = self;
     return pool_do(&e->pool, worker, n, tasks, n_done, err);
-}
-
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
-{
-    size_t n_done;
-    return simulate_batch(self, worker, 1, task, &n_done, err);
 }
 
 static size_t batch(void *self, size_t worker)
@@ -274,11 +268,8 @@ static void external_close(void *self)
     free(e);
 }
 
-static const Simulator EXTERNAL = {.simulate = simulate,
-                                   .combine = combine,
-                                   .close = external_close,
-                                   .batch = batch,
-                                   .simulate_batch = simulate_batch};
+static const Simulator EXTERNAL = {
+    .combine = combine, .close = external_close, .batch = batch, .simulate_batch = simulate};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 

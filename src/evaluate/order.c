@@ -21,24 +21,21 @@ Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
 {
     Task *task = (Task *)(order + 1);
     const double began = clock_seconds();
-    const size_t size = order->n > 0 ? task->size : 0;
+    const size_t size = task->size;
+    size_t n_done;
     Answer *a = calloc(1, sizeof *a + order->n * size);
     if (!a)
         return NULL;
     a->epoch = order->epoch;
     a->worker = order->worker;
-    for (; a->n_done < order->n; a->n_done++) {
-        Task *t = &task[a->n_done];
-        t->x = numbers_of(order) + a->n_done * doer->n_var;
-        t->result = a->parts + a->n_done * size;
-        t->may_go_on = doer->may_go_on;
-        t->user = doer->user;
-        if (!doer->may_go_on(doer->user))
-            fail(&a->why, STATUS_STOPPED, "stopped");
-        else if (doer->simulate(doer->self, worker, t, &a->why) == STATUS_OK)
-            continue;
-        break;
+    for (size_t i = 0; i < order->n; i++) {
+        task[i].x = numbers_of(order) + i * doer->n_var;
+        task[i].result = a->parts + i * size;
+        task[i].may_go_on = doer->may_go_on;
+        task[i].user = doer->user;
     }
+    simulate_tasks(doer->simulator, doer->self, worker, order->n, task, &n_done, &a->why);
+    a->n_done = n_done;
     a->seconds = clock_seconds() - began;
     *n_bytes = sizeof *a + a->n_done * size;
     return a;

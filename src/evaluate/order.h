@@ -21,11 +21,9 @@ typedef struct {
     _Alignas(16) char parts[];
 } Answer;
 
-typedef Status SimulateFn(void *self, size_t worker, const Task *task, Err *err);
-
 /* Who does them. */
 typedef struct {
-    SimulateFn *simulate;
+    const Simulator *simulator;
     void *self;
     size_t n_var;
     int (*may_go_on)(void *user);

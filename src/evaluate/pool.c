@@ -34,13 +34,12 @@ Status pool_wait(const Transport *t, Errand *e, Err *err)
         if (has_ended || e->silent_s >= e->limit_s)
             TRY(t->lose(e, has_ended, err));
         if (ending > 0.0 && now > ending + t->grace_s) {
-            t->stop(e, 1);
+            if (t->kill)
+                t->kill(e);
             return fail(err, STATUS_STOPPED, "stopped");
         }
-        if (ending == 0.0 && !e->task->may_go_on(e->task->user)) {
-            t->stop(e, 0);
+        if (ending == 0.0 && !e->task->may_go_on(e->task->user))
             ending = now;
-        }
     }
     if (e->why.code != STATUS_OK)
         *err = e->why;
@@ -165,13 +164,12 @@ static Status lose(Errand *e, int has_gone, Err *err)
     return STATUS_OK;
 }
 
-static void stop(Errand *e, int at_once)
+static void kill_it(Errand *e)
 {
-    if (at_once)
-        worker_end((Worker *)e);
+    worker_end((Worker *)e);
 }
 
-static const Transport PROCESSES = {.grace_s = 5.0, .listen = listen_to, .lose = lose, .stop = stop};
+static const Transport PROCESSES = {.grace_s = 5.0, .listen = listen_to, .lose = lose, .kill = kill_it};
 
 static Status ask(Worker *w, size_t n, const Task tasks[], Err *err)
 {
@@ -194,10 +192,11 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
 {
     Worker *w = &p->worker[worker];
     Status status = STATUS_OK;
-    size_t asked = n;
-    for (*n_done = 0; status == STATUS_OK && *n_done < n; asked = 1) {
+    size_t most = TASKS_MAX;
+    for (*n_done = 0; status == STATUS_OK && *n_done < n; *n_done += w->errand.n_done) {
+        const size_t asked = MIN_OF(MIN_OF(most, w->batch), n - *n_done);
         status = ask(w, asked, tasks + *n_done, err);
-        *n_done += w->errand.n_done;
+        most = w->errand.n_done < asked ? 1 : most;
     }
     return status;
 }

@@ -33,7 +33,7 @@ typedef struct {
     double grace_s;
     int (*listen)(Errand *e, double seconds);           /* takes what comes; 1: it has ended */
     Status (*lose)(Errand *e, int has_ended, Err *err); /* it has ended, or is silent */
-    void (*stop)(Errand *e, int at_once);               /* no more is wanted of it */
+    void (*kill)(Errand *e);                            /* NULL: it ends when we do */
 } Transport;
 
 Status pool_wait(const Transport *t, Errand *e, Err *err);

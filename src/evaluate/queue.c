@@ -336,8 +336,7 @@ static int do_tasks(Queue *q, size_t worker, int wait)
             n_wanted = share(q, n_wanted);
     if (n == 0)
         return 0;
-    const Status status =
-        n > 1 ? s->simulate_batch(self, worker, n, task, &n_done, &why) : s->simulate(self, worker, task, &why);
+    const Status status = simulate_tasks(s, self, worker, n, task, &n_done, &why);
     for (size_t i = 0; i < n; i++)
         queue_give(q, &task[i], i < n_done ? STATUS_OK : status, &why);
     return 1;
@@ -570,10 +569,9 @@ static Status start(Queue *q, Err *err)
     const Executor *e = q->problem->executor;
     size_t n = q->problem->n_workers;
     if (e)
-        TRY(e->start(&q->executing, q, err));
+        TRY(e->start(&q->executing, q, &n, err));
     if (e ? !e->simulator : n == 1)
         return STATUS_OK;
-    n = e ? e->n_workers(q->executing) : n;
     TRY_ROOM(q->worker, n, "threads", err);
     for (; q->n_threads < n; q->n_threads++) {
         Worker *w = &q->worker[q->n_threads];

@@ -239,6 +239,8 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     return STATUS_OK;
 }
 
+static const Simulator HERE = {.simulate = simulate_here};
+
 static void write_lost(const Task *task, const char *reason)
 {
     SimResult lost = {.outcome = RUN_ENGINE_FAILED};
@@ -530,7 +532,7 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->judged = status == STATUS_OK ? order.judged : 0;
     if (status == STATUS_OK)
         status = prepare(t, err);
-    t->isolated.doer = (Doer){.simulate = simulate_here, .self = t, .n_var = t->design.n_var};
+    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
     t->isolated.lost = write_lost;
     if (status == STATUS_OK && s->run.isolate == SWITCH_ON)
         status = isolated_open(&t->isolated, t->n_workers, err);

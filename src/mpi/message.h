@@ -1,9 +1,8 @@
 /* mpi/message.h -- what rank 0 and the ranks that evaluate say to each other.
  *
  *   rank 0                                                        every other rank
- *   OPEN   an Order (evaluate/order.h) of one task, the recipe ->  opens the problem
- *   TASK   an Order of one of its workers                      ->  does it
- *                                                              <-  DONE    an Answer; of OPEN its part is Opened
+ *   TASK   an Order (evaluate/order.h) of one of its workers   ->  does it
+ *                                                              <-  DONE    an Answer
  *                                                              <-  ALIVE   while it has tasks, every ALIVE_S
  *   LEAVE                                                      ->  ends
  *                                                              <-  LEFT
@@ -16,7 +15,10 @@
 #include "evaluate/cluster.h"
 #include "evaluate/order.h"
 
-enum { TAG_OPEN = 1, TAG_DONE, TAG_ALIVE, TAG_LEAVE, TAG_LEFT, TAG_TASK }; /* TAG_TASK + worker of the rank */
+/* TAG_TASK + worker of the rank, 0 ...; the opener is one more, whose task is to open a problem: x is the recipe, and
+ * the part Opened. */
+enum { TAG_DONE = 1, TAG_ALIVE, TAG_LEAVE, TAG_LEFT, TAG_OPEN, TAG_TASK };
+enum { OPENER = TAG_OPEN - TAG_TASK };
 
 enum { HOST_MAX = 64 };
 

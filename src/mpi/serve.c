@@ -66,9 +66,9 @@ static int may_go_on(void *user)
     return !((Service *)user)->closing;
 }
 
-static void do_order(Service *s, size_t worker, Order *order, SimulateFn *simulate, void *self)
+static void do_order(Service *s, size_t worker, Order *order, const Simulator *simulator, void *self)
 {
-    const Doer doer = {simulate, self, s->problem.n_var, may_go_on, s};
+    const Doer doer = {simulator, self, s->problem.n_var, may_go_on, s};
     Answer none = {.epoch = order->epoch, .worker = order->worker};
     size_t n = sizeof none;
     Answer *a = order_do(order, worker, &doer, &n);
@@ -89,7 +89,7 @@ static void *work(void *user)
             continue;
         }
         s->n_running++;
-        do_order(s, (size_t)w->number, m.bytes, s->problem.simulator->simulate, s->problem.self);
+        do_order(s, (size_t)w->number, m.bytes, s->problem.simulator, s->problem.self);
         s->n_running--;
         free(m.bytes);
         pause = PAUSE_MIN_S;
@@ -125,21 +125,20 @@ static Status start_workers(Service *s, Err *err)
     return STATUS_OK;
 }
 
-/* A task whose part is Opened; the recipe lies behind it, and is kept. A problem that is open already stays so. */
+/* The recipe is kept. A problem that is open already stays so. */
 static Status open_problem(void *self, size_t worker, const Task *task, Err *err)
 {
     (void)worker;
     Service *s = self;
     Opened *opened = task->result;
     const size_t before = order_bytes(1, 0), n = s->heard.n - before;
-    const char *recipe = (const char *)s->heard.bytes + before;
     Status status = STATUS_OK;
     Err why = {0};
-    if (s->heard.n != s->held.n || memcmp(recipe, (const char *)s->held.bytes + before, n) != 0) {
+    if (s->heard.n != s->held.n || memcmp(task->x, (const char *)s->held.bytes + before, n) != 0) {
         close_problem(s);
         s->held = s->heard;
         s->heard.bytes = NULL;
-        status = s->reopen(&s->problem, recipe, n, &why);
+        status = s->reopen(&s->problem, task->x, n, &why);
         if (status == STATUS_OK)
             status = start_workers(s, &why);
     }
@@ -151,6 +150,8 @@ static Status open_problem(void *self, size_t worker, const Task *task, Err *err
     return fail_here(err, status, why.text);
 }
 
+static const Simulator OPENS = {.simulate = open_problem};
+
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
 static void exchange(Service *s)
@@ -158,7 +159,7 @@ static void exchange(Service *s)
     Message *m = &s->heard;
     for (double pause = PAUSE_MIN_S; !hear(s, TAG_LEAVE, m);) {
         if (hear(s, TAG_OPEN, m)) {
-            do_order(s, 0, m->bytes, open_problem, s);
+            do_order(s, 0, m->bytes, &OPENS, s);
             free(m->bytes);
             pause = PAUSE_MIN_S;
         }
