@@ -593,16 +593,28 @@ TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
     expect_code(mpirun, 0);
 }
 
-TEST(a_message_that_is_cut_or_of_no_ticket_is_none)
+TEST(a_message_that_is_cut_or_of_no_worker_is_none)
 {
-    enum { PART = 24, TICKETS = 4 };
-    const size_t whole = sizeof(DoneMessage) + PART;
-    const DoneMessage right = {.ticket = 3, .status = STATUS_OK}, bad = {.ticket = 1, .status = STATUS_BAD_DATA};
-    for (size_t n = 0; n < whole + 2; n++)
-        assert_int_equal(is_done_message(&right, n, PART, TICKETS), n == whole);
-    assert_false(is_done_message(&right, whole, PART, 3));
-    assert_false(is_done_message(&bad, whole, PART, TICKETS)); /* its reason is longer than a part */
-    assert_true(is_done_message(&bad, sizeof bad + WHY_BYTES, PART, TICKETS));
+    enum { PART = 24, WORKERS = 4 };
+    char part[PART + 16];
+    const Task task = {.result = part, .size = PART};
+    const size_t whole = sizeof(Answer) + PART;
+    Answer *right = calloc(1, whole), bad = {.worker = 1, .why.code = STATUS_BAD_DATA};
+    *right = (Answer){.worker = 3, .n_done = 1};
+    for (size_t n = 0; n < whole + 2; n++) {
+        Errand e = {.task = &task, .n = 1};
+        assert_int_equal(order_take(right, n, &e), n == whole);
+        assert_int_equal(e.n_done, n == whole);
+        assert_int_equal(is_answer(right, n, WORKERS), n >= sizeof *right);
+    }
+    assert_false(is_answer(right, whole, 3));
+    assert_false(order_take(&bad, sizeof bad + PART, &(Errand){.task = &task, .n = 1})); /* a fault has no part */
+    assert_true(order_take(&bad, sizeof bad, &(Errand){.task = &task, .n = 1}));
+    bad.why.code = STATUS_COUNT;
+    assert_false(order_take(&bad, sizeof bad, &(Errand){.task = &task, .n = 1}));
+    bad = (Answer){.n_done = 2};
+    assert_false(order_take(&bad, sizeof bad + 2 * PART, &(Errand){.task = &task, .n = 1}));
+    free(right);
 }
 
 static int prepare(void **state)

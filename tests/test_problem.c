@@ -322,16 +322,16 @@ TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
     assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
 }
 
-/* The first child of a process: the helper that started its workers. */
+/* The first child of a process: the helper of one of its workers. */
 static pid_t helper_of(pid_t pid)
 {
-    char path[64];
+    char command[64];
     int helper = 0;
-    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)pid, (int)pid);
-    FILE *f = fopen(path, "r");
+    snprintf(command, sizeof command, "pgrep -P %d", (int)pid);
+    FILE *f = popen(command, "r");
     assert_non_null(f);
     assert_int_equal(fscanf(f, "%d", &helper), 1);
-    fclose(f);
+    pclose(f);
     return helper;
 }
 

@@ -263,8 +263,9 @@ TEST(a_fault_of_the_observer_ends_everything)
 }
 
 /* Without a worker of its own: tasks are taken and given here. */
-static Status start_none(void **self, Queue *queue, Err *err)
+static Status start_none(void **self, Queue *queue, size_t *n, Err *err)
 {
+    (void)n;
     (void)err;
     *self = queue;
     return STATUS_OK;
@@ -275,7 +276,7 @@ static void stop_none(void *self)
     (void)self;
 }
 
-static const Executor NONE = {start_none, NULL, stop_none};
+static const Executor NONE = {.start = start_none, .stop = stop_none};
 
 TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 {
@@ -342,21 +343,28 @@ static int go_on(void *user)
     return 1;
 }
 
+static const Simulator DIES = {.simulate = double_or_die};
+
+static void note_lost(const Task *t, const char *reason)
+{
+    *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
+}
+
 TEST(a_simulation_that_crashes_ends_its_own_task_alone)
 {
-    Isolated *q;
+    Isolated q = {.doer = {.simulator = &DIES, .n_var = 1}, .lost = note_lost};
     Err err = {0};
-    CHECK_OK(isolated_open(&q, WORKERS, &(IsolatedWork){double_or_die, NULL, 1}, &err), &err);
+    CHECK_OK(isolated_open(&q, WORKERS, &err), &err);
     for (int i = 0; i < DESIGNS; i++) {
         const double x = (double)((i * 7) % 11 - 3);
         double result = 0.5;
         const Task task = {.x = &x, .result = &result, .size = sizeof result, .may_go_on = go_on};
-        int how;
-        CHECK_OK(isolated_run(q, (size_t)i % WORKERS, &task, &how, &err), &err);
-        assert_int_equal(how, x < 0.0 ? SIGKILL : x == 0.0 ? -1 : 0);
-        assert_true(result == (how == 0 ? 2.0 * x : 0.5));
+        size_t n_done;
+        CHECK_OK(pool_do(&q.pool, (size_t)i % WORKERS, 1, &task, &n_done, &err), &err);
+        assert_same_number(result, x < 0.0 ? SIGKILL : x == 0.0 ? -1.0 : 2.0 * x);
+        assert_int_equal(n_done, 1);
     }
-    isolated_close(q);
+    pool_close(&q.pool);
 }
 
 SUITE(NULL, NULL)

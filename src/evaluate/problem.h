@@ -63,8 +63,8 @@ typedef struct {
      * there. */
     void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
-    /* Several tasks at once, so many as the worker wants now, TASKS_MAX at most; *n_done of them, the first ones, are
-     * done where a status ends it. NULL: one */
+    /* In the place of simulate: several tasks at once, so many as the worker wants now, TASKS_MAX at most; *n_done of
+     * them, the first ones, are done where a status ends it. NULL: one */
     size_t (*batch)(void *self, size_t worker);
     Status (*simulate_batch)(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
 } Simulator;
@@ -74,9 +74,10 @@ enum { TASKS_MAX = 64 };
 /* Who does the tasks in the place of this process (evaluate/tasks.h), which has a thread for each of several workers;
  * where there is one, the client does them itself while it waits. */
 typedef struct {
-    Status (*start)(void **self, Queue *queue, Err *err);
-    void (*help)(void *self); /* called while the client waits: does something; NULL: needs no help */
-    void (*stop)(void *self); /* the queue gives no more tasks: returns when none is under way */
+    Status (*start)(void **self, Queue *queue, size_t *n_workers, Err *err);
+    void (*help)(void *self);   /* called while the client waits: does something; NULL: needs no help */
+    void (*stop)(void *self);   /* none is under way any more */
+    const Simulator *simulator; /* asked by a thread for each of n_workers; NULL: it takes tasks by itself */
 } Executor;
 
 typedef struct {
@@ -207,6 +208,17 @@ static inline double problem_spread(const Problem *p, size_t d, double u)
         return steps_at(&p->steps[d], (size_t)fmin(u * (double)p->steps[d].n, (double)(p->steps[d].n - 1)));
     return problem_is_discrete(p, d) ? fmin(floor(lower + u * (upper - lower + 1.0)), upper)
                                      : problem_from_unit(p, d, u);
+}
+
+/* The first *n_done are done; where they are not n a status ends it. */
+static inline Status simulate_tasks(const Simulator *s, void *self, size_t worker, size_t n, const Task tasks[],
+                                    size_t *n_done, Err *err)
+{
+    if (s->simulate_batch)
+        return s->simulate_batch(self, worker, n, tasks, n_done, err);
+    for (*n_done = 0; *n_done < n; ++*n_done)
+        TRY(s->simulate(self, worker, &tasks[*n_done], err));
+    return STATUS_OK;
 }
 
 static inline void problem_close(Problem *p)

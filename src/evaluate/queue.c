@@ -198,20 +198,33 @@ size_t queue_pending(const Queue *q)
     return q->n;
 }
 
+/* How many of the tasks that nobody has taken one worker takes, so that all get some: `most` at most. */
+static size_t share(Queue *q, size_t most)
+{
+    const size_t n_workers = q->problem->n_workers;
+    size_t n = 0;
+    pthread_mutex_lock(&q->lock);
+    for (size_t i = q->next; i < q->n && n < most * n_workers; i++)
+        n += in_line(q, i)->n_parts - in_line(q, i)->n_taken;
+    pthread_mutex_unlock(&q->lock);
+    return MIN_OF(1 + n / n_workers, most);
+}
+
 /* One, or as many of those that wait as the worker wants. */
 static int do_tasks(Queue *q, size_t worker, int wait)
 {
-    const Simulator *s = q->problem->simulator;
+    const Executor *executor = q->problem->executor;
+    const Simulator *s = executor ? executor->simulator : q->problem->simulator;
+    void *self = executor ? q->executing : q->problem->self;
     Task task[TASKS_MAX];
     Err why = {0};
-    size_t n = 0, n_done = 0;
-    const size_t n_wanted = s->batch ? s->batch(q->problem->self, worker) : 1;
-    while (n < n_wanted && queue_take(q, wait && n == 0, &task[n]))
-        n++;
+    size_t n = 0, n_done = 0, n_wanted = s->batch ? s->batch(self, worker) : 1;
+    for (; n < n_wanted && queue_take(q, wait && n == 0, &task[n]); n++)
+        if (n == 0 && n_wanted > 1)
+            n_wanted = share(q, n_wanted);
     if (n == 0)
         return 0;
-    const Status status = n > 1 ? s->simulate_batch(q->problem->self, worker, n, task, &n_done, &why)
-                                : s->simulate(q->problem->self, worker, task, &why);
+    const Status status = simulate_tasks(s, self, worker, n, task, &n_done, &why);
     for (size_t i = 0; i < n; i++)
         queue_give(q, &task[i], i < n_done ? STATUS_OK : status, &why);
     return 1;
@@ -420,13 +433,14 @@ static void *work(void *user)
 
 static Status start(Queue *q, Err *err)
 {
-    const size_t n = q->problem->n_workers;
-    if (q->problem->executor)
-        return q->problem->executor->start(&q->executing, q, err);
-    q->worker = n > 1 ? calloc(n, sizeof *q->worker) : NULL;
-    if (n > 1 && !q->worker)
-        return fail_memory(err, n, "threads");
-    for (; n > 1 && q->n_threads < n; q->n_threads++) {
+    const Executor *e = q->problem->executor;
+    size_t n = q->problem->n_workers;
+    if (e)
+        TRY(e->start(&q->executing, q, &n, err));
+    if (e ? !e->simulator : n == 1)
+        return STATUS_OK;
+    TRY_ROOM(q->worker, n, "threads", err);
+    for (; q->n_threads < n; q->n_threads++) {
         Worker *w = &q->worker[q->n_threads];
         *w = (Worker){.queue = q, .number = q->n_threads};
         if (pthread_create(&w->thread, NULL, work, w) != 0)
@@ -463,10 +477,10 @@ void queue_close(Queue *q)
     q->closed = 1;
     pthread_cond_broadcast(&q->work);
     pthread_mutex_unlock(&q->lock);
-    if (q->executing)
-        q->problem->executor->stop(q->executing);
     for (size_t i = 0; i < q->n_threads; i++)
         pthread_join(q->worker[i].thread, NULL);
+    if (q->executing)
+        q->problem->executor->stop(q->executing);
     free(q->worker);
     pthread_mutex_destroy(&q->lock);
     pthread_mutex_destroy(&q->finishing);

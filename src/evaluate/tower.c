@@ -52,7 +52,7 @@ struct Tower {
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
     size_t recipe_size;
     Recipe *recipe;
-    Isolated *isolated; /* NULL: simulated in this process */
+    Isolated isolated; /* {0}: simulated in this process */
 };
 
 /* -- scenes -------------------------------------------------------------------------------------------------------- */
@@ -239,21 +239,23 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     return STATUS_OK;
 }
 
+static const Simulator HERE = {.simulate = simulate_here};
+
+static void write_lost(const Task *task, const char *reason)
+{
+    SimResult lost = {.outcome = RUN_ENGINE_FAILED};
+    snprintf(lost.reason, sizeof lost.reason, "%s", reason);
+    *(Measured *)task->result = measured(&lost);
+    if (task->size >= sizeof(Whole))
+        ((Whole *)task->result)->result = lost;
+}
+
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
-    const Tower *t = self;
-    int how;
-    if (!t->isolated)
-        return simulate_here(self, worker, task, err);
-    TRY(isolated_run(t->isolated, worker, task, &how, err));
-    if (how != 0) {
-        SimResult lost = {.outcome = RUN_ENGINE_FAILED};
-        snprintf(lost.reason, sizeof lost.reason, "its process ended: %s", how > 0 ? strsignal(how) : "no answer");
-        *(Measured *)task->result = measured(&lost);
-        if (task->size >= sizeof(Whole))
-            ((Whole *)task->result)->result = lost;
-    }
-    return STATUS_OK;
+    Tower *t = self;
+    size_t n_done;
+    return t->isolated.pool.n_workers > 0 ? pool_do(&t->isolated.pool, worker, 1, task, &n_done, err)
+                                          : simulate_here(self, worker, task, err);
 }
 
 /* Of a design that has n parts: all, the first replicate of every record, or one alone. */
@@ -286,7 +288,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
 static void tower_close(void *self)
 {
     Tower *t = self;
-    isolated_close(t->isolated);
+    pool_close(&t->isolated.pool);
     for (size_t i = 0; t->worker && i < t->n_places * t->n_workers; i++)
         leave(t, i / t->n_workers, i % t->n_workers);
     for (size_t i = 0; t->place && i < t->n_places; i++)
@@ -530,8 +532,10 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     t->judged = status == STATUS_OK ? order.judged : 0;
     if (status == STATUS_OK)
         status = prepare(t, err);
+    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
+    t->isolated.lost = write_lost;
     if (status == STATUS_OK && s->run.isolate == SWITCH_ON)
-        status = isolated_open(&t->isolated, t->n_workers, &(IsolatedWork){simulate_here, t, t->design.n_var}, err);
+        status = isolated_open(&t->isolated, t->n_workers, err);
     if (status != STATUS_OK) {
         tower_close(t);
         return status;

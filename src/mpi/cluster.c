@@ -94,27 +94,35 @@ Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_
 /* For every rank to say that it has left. */
 static const double LEAVE_S = 5.0;
 
+int message_receive(int from, int tag, Message *m)
+{
+    MPI_Message message;
+    MPI_Status about;
+    int there, n;
+    MPI_Improbe(from, tag, MPI_COMM_WORLD, &there, &message, &about);
+    if (!there)
+        return 0;
+    MPI_Get_count(&about, MPI_BYTE, &n);
+    *m = (Message){about.MPI_SOURCE, about.MPI_TAG, n, malloc((size_t)n + 1)};
+    if (!m->bytes)
+        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
+    MPI_Mrecv(m->bytes, n, MPI_BYTE, &message, &about);
+    return 1;
+}
+
 /* What still comes is dropped until every rank has left; 0: one does not. */
 static int wait_until_all_left(void)
 {
-    int left = 0, there;
+    int left = 0;
     const double give_up = clock_seconds() + LEAVE_S;
     while (left < n_ranks() - 1 && clock_seconds() < give_up) {
-        MPI_Message message;
-        MPI_Status about;
-        int n;
-        MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &about);
-        if (!there) {
-            nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
+        Message m;
+        if (!message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m)) {
+            pause_s(2e-4);
             continue;
         }
-        MPI_Get_count(&about, MPI_BYTE, &n);
-        char *bytes = malloc((size_t)n + 1);
-        if (!bytes)
-            return 0;
-        MPI_Mrecv(bytes, n, MPI_BYTE, &message, &about);
-        free(bytes);
-        left += about.MPI_TAG == TAG_LEFT;
+        free(m.bytes);
+        left += m.tag == TAG_LEFT;
     }
     return left == n_ranks() - 1;
 }

@@ -1,27 +1,24 @@
 /* mpi/message.h -- what rank 0 and the ranks that evaluate say to each other.
  *
- *   rank 0                                                  every other rank
- *   OPEN   OpenMessage, then the recipe by broadcast    ->  opens the problem
- *                                                       <-  OPENED  OpenedMessage
- *   TASK   TaskMessage, then x (n_var)                  ->  does it
- *                                                       <-  DONE    DoneMessage and the part, or the reason of a
- *                                                                   status that is not ok
- *                                                       <-  ALIVE   while it has tasks, every ALIVE_S
- *   STOP   epoch                                        ->  tasks that are not begun come back at once, STATUS_STOPPED
- *   LEAVE                                               ->  ends
- *                                                       <-  LEFT
+ *   rank 0                                                        every other rank
+ *   TASK   an Order (evaluate/order.h) of one of its workers   ->  does it
+ *                                                              <-  DONE    an Answer
+ *                                                              <-  ALIVE   while it has tasks, every ALIVE_S
+ *   LEAVE                                                      ->  ends
+ *                                                              <-  LEFT
  *
- * epoch: of the queue that the tasks are of; what comes late from an earlier one is dropped. Plain bytes: all ranks
- * are the same program on the same kind of machine.
+ * epoch: of the queue that the tasks are of; what comes late from an earlier one is dropped.
  *
  * Threads  MPI is called by one thread at a time (MPI_THREAD_SERIALIZED) */
 #pragma once
 
-#include <time.h>
-
 #include "evaluate/cluster.h"
+#include "evaluate/order.h"
 
-enum { TAG_OPEN = 1, TAG_OPENED, TAG_TASK, TAG_DONE, TAG_ALIVE, TAG_STOP, TAG_LEAVE, TAG_LEFT };
+/* TAG_TASK + worker of the rank, 0 ...; the opener is one more, whose task is to open a problem: x is the recipe, and
+ * the part Opened. */
+enum { TAG_DONE = 1, TAG_ALIVE, TAG_LEAVE, TAG_LEFT, TAG_OPEN, TAG_TASK };
+enum { OPENER = TAG_OPEN - TAG_TASK };
 
 enum { HOST_MAX = 64 };
 
@@ -30,52 +27,34 @@ enum { HOST_MAX = 64 };
 static const double ALIVE_S = 2.0, SILENT_S = 20.0;
 
 typedef struct {
-    int64_t epoch;
-    uint64_t recipe_size, part_size;
-} OpenMessage;
-
-typedef struct {
-    int64_t epoch;
     uint64_t inputs; /* Problem.inputs as this rank has read them */
     uint64_t n_workers;
-    int32_t status;
     char host[HOST_MAX];
-    char why[sizeof((Err *)0)->text];
-} OpenedMessage;
+} Opened;
 
 typedef struct {
-    int64_t epoch;
-    uint64_t ticket; /* rank 0's */
-    int64_t id;
-    uint64_t part, repeat;
-    Variant variant;
-    double x[]; /* (n_var) */
-} TaskMessage;
+    int from, tag;
+    size_t n;
+    void *bytes; /* (n) for free */
+} Message;
 
-typedef struct {
-    int64_t epoch;
-    uint64_t ticket;
-    double seconds;
-    int64_t status;
-    char part[]; /* or the reason */
-} DoneMessage;
+/* The next one of that tag, or MPI_ANY_TAG, from that rank, or MPI_ANY_SOURCE; 0: there is none. Without memory
+ * the job ends. */
+int message_receive(int from, int tag, Message *m);
 
-enum { WHY_BYTES = sizeof((Err *)0)->text };
-
-/* Does a message of n bytes hold a result of one of n_tickets? */
-static inline int is_done_message(const DoneMessage *m, size_t n, size_t part_size, size_t n_tickets)
+/* Are those n bytes from one of n_workers? */
+static inline int is_answer(const Answer *a, size_t n, size_t n_workers)
 {
-    return n >= sizeof *m && m->ticket < n_tickets && m->status >= 0 && m->status < STATUS_COUNT &&
-           n == sizeof *m + (m->status == STATUS_OK ? part_size : WHY_BYTES);
+    return n >= sizeof *a && a->worker < n_workers;
 }
 
 /* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing
  * comes. */
+static const double PAUSE_MIN_S = 2e-5;
 static inline double longer_pause(double pause, double longest)
 {
     return MIN_OF(pause * 1.5, longest);
 }
-static const double PAUSE_MIN_S = 2e-5;
 static inline void pause_s(double seconds)
 {
     nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);

@@ -17,17 +17,14 @@ static void hear(External *e, const uint8_t *data, size_t size)
 {
     const size_t one = sizeof(ExternalAnswer) + N_OBJ * sizeof(double);
     char *answers = calloc(N_DESIGNS, one);
-    Worker w = {.line = malloc(LINE_MAX_BYTES), .batch = 1};
+    Pool pool = {.protocol = {.request_bytes = 1, .tell = tell}};
+    Worker w = {.pool = &pool, .line = malloc(LINE_MAX_BYTES), .batch = 1};
     Task task[N_DESIGNS];
     for (size_t i = 0; i < N_DESIGNS; i++)
         task[i] = (Task){.id = (long)i + 1, .result = answers + i * one};
     for (size_t at = 0; answers && w.line && at < N_DESIGNS && size > 0;) {
-        if (!w.answer) {
-            w.task = task + at;
-            w.n = at < 2 ? 1 : N_DESIGNS - at;
-            w.n_done = 0;
-            expect_next(&w);
-        }
+        if (!is_waited_for(&w))
+            w.errand = (Errand){.task = task + at, .n = at < 2 ? 1 : N_DESIGNS - at};
         const size_t piece = size < 7 + w.n_line ? size : 7 + w.n_line, room = LINE_MAX_BYTES - w.n_line;
         const size_t n = piece < room ? piece : room;
         memcpy(w.line + w.n_line, data, n);
@@ -35,9 +32,11 @@ static void hear(External *e, const uint8_t *data, size_t size)
         data += n;
         size -= n;
         look_for_answer(e, &w);
-        for (size_t i = 0; !w.answer && i < w.n_done; i++)
-            demand_numbers(w.task[i].result);
-        at += w.answer ? 0 : w.n_done > 0 ? w.n_done : 1;
+        if (is_waited_for(&w))
+            continue;
+        for (size_t i = 0; i < w.errand.n_done; i++)
+            demand_numbers(w.errand.task[i].result);
+        at += w.errand.n_done > 0 ? w.errand.n_done : 1;
     }
     free(w.request);
     free(w.line);

@@ -1,0 +1,55 @@
+#include "evaluate/order.h"
+
+#include "base/clock.h"
+
+/* Where x begins. */
+static double *numbers_of(Order *o)
+{
+    return (double *)((Task *)(o + 1) + o->n);
+}
+
+size_t order_write(Order *to, const Errand *e, size_t n_var)
+{
+    to->n = e->n;
+    memcpy(to + 1, e->task, e->n * sizeof *e->task);
+    for (size_t i = 0; i < e->n && n_var > 0; i++)
+        memcpy(numbers_of(to) + i * n_var, e->task[i].x, n_var * sizeof(double));
+    return order_bytes(e->n, n_var);
+}
+
+Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
+{
+    Task *task = (Task *)(order + 1);
+    const double began = clock_seconds();
+    const size_t size = task->size;
+    size_t n_done;
+    Answer *a = calloc(1, sizeof *a + order->n * size);
+    if (!a)
+        return NULL;
+    a->epoch = order->epoch;
+    a->worker = order->worker;
+    for (size_t i = 0; i < order->n; i++) {
+        task[i].x = numbers_of(order) + i * doer->n_var;
+        task[i].result = a->parts + i * size;
+        task[i].may_go_on = doer->may_go_on;
+        task[i].user = doer->user;
+    }
+    simulate_tasks(doer->simulator, doer->self, worker, order->n, task, &n_done, &a->why);
+    a->n_done = n_done;
+    a->seconds = clock_seconds() - began;
+    *n_bytes = sizeof *a + a->n_done * size;
+    return a;
+}
+
+int order_take(const Answer *answer, size_t n_bytes, Errand *e)
+{
+    const size_t size = e->task->size;
+    if (n_bytes < sizeof *answer || answer->n_done > e->n || answer->why.code >= STATUS_COUNT ||
+        (answer->n_done < e->n) != (answer->why.code != STATUS_OK) || n_bytes != sizeof *answer + answer->n_done * size)
+        return 0;
+    for (size_t i = 0; i < answer->n_done; i++)
+        memcpy(e->task[i].result, answer->parts + i * size, size);
+    e->n = e->n_done = answer->n_done;
+    e->why = answer->why;
+    return 1;
+}

@@ -1,0 +1,250 @@
+#include "evaluate/pool.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <stdarg.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+
+enum { READ_BYTES = 1 << 16 };
+
+/* A worker is looked at so often; and of a pause no more than twice that is its silence. */
+static const double LOOK_S = 0.1;
+
+/* A process that ends so soon after a request had ended after its answer before. */
+static const double LEFT_BEFORE_S = 1.0;
+
+/* To end by itself when its input has. */
+static const double FAREWELL_S = 1.0;
+
+/* -- the rules ----------------------------------------------------------------------------------------------------- */
+
+Status pool_wait(const Transport *t, Errand *e, Err *err)
+{
+    double before = clock_seconds(), ending = 0.0; /* since when no more is wanted */
+    while (e->n_done < e->n) {
+        const int has_ended = t->listen(e, fmax(fmin(e->limit_s - e->silent_s, LOOK_S), 0.0));
+        const double now = clock_seconds();
+        e->silent_s += fmin(now - before, 2.0 * LOOK_S);
+        before = now;
+        if (e->n_done == e->n)
+            break;
+        if (has_ended || e->silent_s >= e->limit_s)
+            TRY(t->lose(e, has_ended, err));
+        if (ending > 0.0 && now > ending + t->grace_s) {
+            if (t->kill)
+                t->kill(e);
+            return fail(err, STATUS_STOPPED, "stopped");
+        }
+        if (ending == 0.0 && !e->task->may_go_on(e->task->user))
+            ending = now;
+    }
+    if (e->why.code != STATUS_OK)
+        *err = e->why;
+    return e->why.code;
+}
+
+/* -- one process --------------------------------------------------------------------------------------------------- */
+
+static int has_ended(const Worker *w)
+{
+    return poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, 0) > 0;
+}
+
+static void close_pipes(const Worker *w)
+{
+    close(w->in);
+    close(w->out);
+    close(w->reader);
+}
+
+static Status worker_start(Worker *w, Err *err)
+{
+    const Protocol *how = &w->pool->protocol;
+    int to[2] = {-1, -1}, from[2] = {-1, -1}; /* the worker */
+    const int why = pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0
+                        ? errno
+                        : helper_start(&w->helper, &how->work, w - w->pool->worker, to[0], from[1]);
+    close(from[1]);
+    w->reader = to[0];
+    w->in = to[1];
+    w->out = from[0];
+    w->n_line = w->n_answered = w->n_sent = 0;
+    if (why) {
+        close_pipes(w);
+        return bad_data(err, "%s: %s cannot be started: %s", how->name,
+                        how->work.words ? *how->work.words : "a process", strerror(why));
+    }
+    fcntl(w->in, F_SETFL, O_NONBLOCK);
+    fcntl(w->out, F_SETFL, O_NONBLOCK);
+    return STATUS_OK;
+}
+
+static void worker_end(Worker *w)
+{
+    if (w->helper.pid == 0)
+        return;
+    w->how = helper_end(&w->helper);
+    close_pipes(w);
+}
+
+static void send_more(Worker *w)
+{
+    const ssize_t n = write(w->in, w->request + w->n_sent, w->n_request - w->n_sent);
+    w->n_sent += n > 0 ? (size_t)n : 0;
+}
+
+static int read_more(Worker *w)
+{
+    const Protocol *how = &w->pool->protocol;
+    const size_t room = LINE_MAX_BYTES - w->n_line;
+    const ssize_t n = read(w->out, w->line + w->n_line, MIN_OF(room, READ_BYTES));
+    if (n > 0) {
+        w->n_line += n;
+        how->look(how->self, w);
+    }
+    return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
+}
+
+/* The end of a process counts where it left nothing to be read: a child of it may hold its output open. */
+static int listen_to(Errand *e, double seconds)
+{
+    Worker *w = (Worker *)e;
+    struct pollfd ends[3] = {
+        {w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}, {w->helper.to, POLLIN, 0}};
+    if (poll(ends, 3, (int)ceil(1e3 * seconds)) <= 0)
+        return 0;
+    if (ends[1].revents)
+        return read_more(w);
+    if (ends[2].revents)
+        return 1;
+    send_more(w);
+    return 0;
+}
+
+/* -- what becomes of its tasks ------------------------------------------------------------------------------------- */
+
+void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format, ...)
+{
+    Errand *e = &w->errand;
+    const Protocol *how = &w->pool->protocol;
+    char reason[REASON_MAX];
+    va_list list;
+    if (kill_it)
+        worker_end(w);
+    if (kill_it && e->n > 1) { /* whose fault it was is not known */
+        e->n = e->n_done;
+        return;
+    }
+    va_start(list, format);
+    vsnprintf(reason, sizeof reason, format, list);
+    va_end(list);
+    how->tell(how->self, w, &e->task[e->n_done], outcome, reason);
+    e->n_done++;
+    w->asked = clock_seconds();
+}
+
+static Status lose(Errand *e, int has_gone, Err *err)
+{
+    Worker *w = (Worker *)e;
+    const Protocol *how = &w->pool->protocol;
+    const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
+                            clock_seconds() < w->asked + LEFT_BEFORE_S;
+    worker_end(w);
+    if (has_gone && e->n == 1 && (was_leaving || w->how == -1)) {
+        w->is_second = 1;
+        return worker_start(w, err);
+    }
+    if (has_gone)
+        pool_settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+    else
+        pool_settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", how->timeout_s);
+    return STATUS_OK;
+}
+
+static void kill_it(Errand *e)
+{
+    worker_end((Worker *)e);
+}
+
+static const Transport PROCESSES = {.grace_s = 5.0, .listen = listen_to, .lose = lose, .kill = kill_it};
+
+static Status ask(Worker *w, size_t n, const Task tasks[], Err *err)
+{
+    const Protocol *how = &w->pool->protocol;
+    w->errand = (Errand){.task = tasks, .n = n, .limit_s = how->timeout_s * (double)n};
+    w->is_second = 0;
+    if (w->helper.pid && has_ended(w))
+        worker_end(w); /* it ended after its last answer: no fault of any design */
+    if (w->helper.pid == 0)
+        TRY(worker_start(w, err));
+    w->n_request = how->write(how->self, &w->errand, w->request);
+    w->n_sent = 0;
+    w->asked = clock_seconds();
+    how->look(how->self, w); /* a worker that wrote without being asked */
+    return pool_wait(&PROCESSES, &w->errand, err);
+}
+
+/* What a process that failed left of a batch is asked one by one, so that the design at fault fails alone. */
+Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+{
+    Worker *w = &p->worker[worker];
+    Status status = STATUS_OK;
+    size_t most = TASKS_MAX;
+    for (*n_done = 0; status == STATUS_OK && *n_done < n; *n_done += w->errand.n_done) {
+        const size_t asked = MIN_OF(MIN_OF(most, w->batch), n - *n_done);
+        status = ask(w, asked, tasks + *n_done, err);
+        most = w->errand.n_done < asked ? 1 : most;
+    }
+    return status;
+}
+
+/* -- life ---------------------------------------------------------------------------------------------------------- */
+
+void pool_batch(Worker *w, size_t n)
+{
+    char *room = n > w->batch ? realloc(w->request, n * w->pool->protocol.request_bytes) : w->request;
+    if (room) {
+        w->request = room;
+        w->batch = n;
+    }
+}
+
+Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)
+{
+    *p = (Pool){.protocol = *protocol};
+    TRY_ROOM(p->worker, n_workers, "workers", err);
+    for (; p->n_workers < n_workers; p->n_workers++) {
+        Worker *w = &p->worker[p->n_workers];
+        *w = (Worker){.pool = p, .line = malloc(LINE_MAX_BYTES)};
+        pool_batch(w, 1);
+        if (!w->line || !w->request) {
+            free(w->line);
+            free(w->request);
+            return fail_memory(err, n_workers, "workers");
+        }
+    }
+    return STATUS_OK;
+}
+
+/* Input closed, a moment to end by itself. */
+void pool_close(Pool *p)
+{
+    const double until = clock_seconds() + FAREWELL_S;
+    for (size_t i = 0; i < p->n_workers; i++)
+        if (p->worker[i].helper.pid) {
+            close(p->worker[i].in);
+            p->worker[i].in = -1;
+        }
+    for (size_t i = 0; i < p->n_workers; i++) {
+        Worker *w = &p->worker[i];
+        if (w->helper.pid)
+            poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, (int)(1e3 * fmax(until - clock_seconds(), 0.0)));
+        worker_end(w);
+        free(w->line);
+        free(w->request);
+    }
+    free(p->worker);
+}

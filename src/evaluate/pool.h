@@ -1,0 +1,93 @@
+/* evaluate/pool.h -- workers that are elsewhere: processes of this machine, and the ranks of a cluster (src/mpi). A
+ * thread of the queue (evaluate/tasks.h) gives each its tasks and waits for them, all by these rules:
+ *
+ *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a fresh
+ *             worker is what it had no part in: its helper was lost; or, once, it had given answers before and ended by
+ *             itself within a second of the request (may_leave)
+ *   silent    for limit_s of our own running time, the same; where the whole machine was suspended none was silent
+ *   stopped   what is under way gets grace_s to end, then it counts as never begun
+ *
+ * An order is what processes of our own are asked, in plain bytes: Order, Task (n), x (n, n_var); and Answer the answer.
+ *
+ * Life cycle  pool_open -> pool_do ... -> pool_close ({0} is fine)
+ * Threads     pool_do by several, each for a worker of its own
+ * Processes   each in its own process group, killed with it when it is done with (evaluate/helper.h); standard error is
+ *             shared with ours. One is started by the first task it gets, and kept */
+#pragma once
+
+#include "evaluate/helper.h"
+#include "evaluate/problem.h"
+
+/* -- the rules ----------------------------------------------------------------------------------------------------- */
+
+/* Tasks of a worker, the first n_done are done. */
+typedef struct {
+    const Task *task;
+    size_t n, n_done; /* less n: the rest is given up */
+    double limit_s, silent_s;
+    Err why; /* of a fault that ends everything */
+} Errand;
+
+/* Of a worker, which is known by its errand. */
+typedef struct {
+    double grace_s;
+    int (*listen)(Errand *e, double seconds);           /* takes what comes; 1: it has ended */
+    Status (*lose)(Errand *e, int has_ended, Err *err); /* it has ended, or is silent */
+    void (*kill)(Errand *e);                            /* NULL: it ends when we do */
+} Transport;
+
+Status pool_wait(const Transport *t, Errand *e, Err *err);
+
+/* -- processes ----------------------------------------------------------------------------------------------------- */
+
+enum { LINE_MAX_BYTES = 1 << 20 };
+
+typedef struct Pool Pool;
+
+typedef struct {
+    Errand errand;
+    const Pool *pool;
+    Helper helper;
+    int in, out, reader; /* reader: of `in`, so that none of us ever writes to nobody */
+    char *line;          /* (LINE_MAX_BYTES) what has come of an answer */
+    size_t n_line;
+    char *request; /* room for `batch` designs */
+    size_t batch;  /* designs that it wants at once */
+    size_t n_request, n_sent;
+    double asked;      /* the next answer */
+    size_t n_answered; /* by this process */
+    int is_second;     /* the request went to a fresh process */
+    int how;           /* the last one ended (evaluate/helper.h) */
+} Worker;
+
+/* How one speaks with them. */
+typedef struct {
+    const char *name; /* of the setting */
+    HelperWork work;
+    size_t request_bytes; /* for one design */
+    double timeout_s;
+    int may_leave;
+    size_t (*write)(void *self, const Errand *e, char *request);
+    void (*look)(void *self, Worker *w); /* takes whole answers from `line`, each by pool_settle */
+    void (*tell)(void *self, const Worker *w, const Task *task, Outcome outcome, const char *reason);
+    void *self;
+} Protocol;
+
+struct Pool {
+    Protocol protocol;
+    size_t n_workers;
+    Worker *worker; /* (n_workers) */
+};
+
+Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err);
+void pool_close(Pool *p);
+
+/* As Simulator.simulate_batch. */
+Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
+
+/* So many designs at once from now on, where there is memory. */
+void pool_batch(Worker *w, size_t n);
+
+/* What became of the worker's next task; kill_it: the worker is not to be trusted any more. */
+__attribute__((format(printf, 4, 5))) void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format,
+                                                       ...);
