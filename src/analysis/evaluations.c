@@ -131,7 +131,7 @@ static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask ta
         task[n] = (SimTask){.kind = EVALUATION_CASES[n].kind, .x = x, .scene = i, .result = &run->result[n]};
     run->error_known = e->is_estimated && !e->level;
     if (run->error_known && run->record->from_folder)
-        task[n++] = (SimTask){.x = x, .scene = i, .is_finer = 1, .parts = &run->finer};
+        task[n++] = (SimTask){.x = x, .scene = i, .level = 1, .parts = &run->finer};
     return n;
 }
 

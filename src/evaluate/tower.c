@@ -45,7 +45,7 @@ struct Tower {
     Steps steps[DESIGN_VARIABLES_MAX];
     int has_kinds;      /* some are not real */
     Record *record;     /* (n_records) */
-    size_t n_places;    /* twice the scenes: the second half are the same with twice the steps */
+    size_t n_places;    /* the scenes, then the same at each level of steps */
     Place *place;       /* (n_places) */
     SimWorker **worker; /* (n_places, n_workers) NULL: it is not there */
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
@@ -65,8 +65,8 @@ static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err
     Settings *s = *out;
     *s = r->settings;
     memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
-    if (place >= r->n_scenes)
-        estimate_options(&r->settings.sim, &s->sim);
+    for (size_t level = place / r->n_scenes; level > 0; level--)
+        estimate_options(&s->sim, &s->sim);
     const unsigned needs = measures_need(s->sim.forces == FORCES_YES ? ~(MeasureSet)0 : t->judged);
     s->sim.filtered = (needs & NEEDS_FILTER) != 0;
     if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
@@ -395,7 +395,7 @@ Status tower_space(const Settings *s, DesignSpace *out, Err *err)
 static Status make_room(Tower *t, Err *err)
 {
     const Recipe *r = t->recipe;
-    t->n_places = 2 * r->n_scenes;
+    t->n_places = (1 + TOWER_LEVELS) * r->n_scenes;
     t->record = calloc(r->n_records, sizeof *t->record);
     t->place = calloc(t->n_places, sizeof *t->place);
     t->worker = calloc(t->n_places * t->n_workers, sizeof(SimWorker *));
@@ -641,13 +641,12 @@ const Scenario *tower_record(const Tower *t, size_t i)
 
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */
 
-static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)
+Variant tower_variant(const Tower *t, const SimTask *task)
 {
     const LinearDevice *d = &task->device;
-    const Variant variant = {task->kind + (task->is_brief ? BRIEF : 0),
-                             task->scene + (task->is_finer ? t->recipe->n_scenes : 0),
-                             {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
-    return queue_ask(q, &(Asked){.x = task->x, .variant = variant, .n_parts = task->n_parts ? task->n_parts : 1}, err);
+    return (Variant){task->kind + (task->is_brief ? BRIEF : 0),
+                     task->scene + task->level * t->recipe->n_scenes,
+                     {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
 }
 
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES])
@@ -686,7 +685,10 @@ static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult resul
     Finished done;
     for (size_t asked = 0, i = 0; i < n;) {
         if (asked < n && queue_pending(q) < 4 * p->n_workers) {
-            TRY(ask(q, p->self, &tasks[asked++], err));
+            const SimTask *task = &tasks[asked++];
+            const Asked design = {
+                .x = task->x, .variant = tower_variant(p->self, task), .n_parts = task->n_parts ? task->n_parts : 1};
+            TRY(queue_ask(q, &design, err));
             continue;
         }
         TRY(queue_next(q, &done, err));

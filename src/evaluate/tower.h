@@ -20,6 +20,8 @@
 
 typedef struct Tower Tower;
 
+enum { TOWER_LEVELS = 4 };
+
 typedef enum {
     TOWER_AS_SET, /* motion.record and motion.records, sim.replicates, sim.gap_tolerance_m, sim.robust */
     TOWER_SINGLE  /* motion.record alone, one replicate */
@@ -65,7 +67,7 @@ typedef struct {
     SceneKind kind;
     const double *x;     /* (n_var); NULL for SCENE_NO_CORE */
     size_t scene;        /* of the tower, 0: the first */
-    int is_finer;        /* with twice the steps: estimate_options */
+    size_t level;        /* times that the steps are doubled (estimate_options), TOWER_LEVELS at most */
     int is_brief;        /* to the end of the strong part of its motion (motion/motion.h) */
     LinearDevice device; /* of SCENE_TMD or SCENE_LINKS */
     size_t
@@ -74,6 +76,9 @@ typedef struct {
     SimResult *result;         /* of the part that failed first, else of the first; NULL: not wanted */
     ReplicateSummary *summary; /* NULL: not wanted */
 } SimTask;
+
+/* What the queue is asked for then. */
+Variant tower_variant(const Tower *t, const SimTask *task);
 
 /* All n tasks, shared out over the workers. tell: how many are done, NULL: nobody asks. */
 typedef void SimTell(size_t n_done, void *user);
