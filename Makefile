@@ -114,7 +114,7 @@ $(CORE): $(CORE_OBJ) Makefile
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $(BUILD)/libimtet.o
 
-CORE_LIBS := $(filter-out -lsqlite3 -lmicrohttpd -lz,$(LDLIBS))
+CORE_LIBS := $(filter-out -lnlopt -lsqlite3 -lmicrohttpd -lz,$(LDLIBS))
 $(SHARED): $(CORE_OBJ) include/imtet.map
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=include/imtet.map -Wl,--as-needed -Wl,-z,defs \

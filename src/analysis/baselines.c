@@ -40,33 +40,26 @@ static void summarise(const ReplicateSummary *sum, const LinearDevice *device, B
 
 Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err)
 {
-    const size_t n_records = tower_n_records(tower_of(p)), n = last > BASELINE_RIGID ? N_BASELINES : (size_t)last + 1;
+    const size_t n = last >= BASELINE_TMD ? N_BASELINES : (size_t)last + 1;
+    DeviceSearch found[N_BASELINES] = {0};
     SimTask task[N_BASELINES];
     ReplicateSummary sum[N_BASELINES];
-    Measured found[N_BASELINES];
     for (size_t k = 0; k < N_BASELINES; k++) {
         out[k] = (Baseline){.outcome = OUTCOME_ERROR,
                             .first = {.outcome = RUN_ENGINE_FAILED, .reason = "it was not asked for"}};
-        task[k] = (SimTask){.kind = BASELINES[k].scene, .x = x, .n_parts = n_records};
-        if (k > BASELINE_RIGID)
-            task[k] = (SimTask){.kind = BASELINES[k].scene, .x = x, .finds_device = 1, .parts = &found[k]};
+        found[k] = (DeviceSearch){.kind = BASELINES[k].scene, .x = x};
     }
+    if (n > BASELINE_TMD)
+        TRY(devices_find(p, n - BASELINE_TMD, found + BASELINE_TMD, err));
     for (size_t k = 0; k < n; k++)
-        if (!task[k].finds_device) {
-            task[k].result = &out[k].first;
-            task[k].summary = &sum[k];
-        }
-    TRY(tower_run(p, n, task, NULL, NULL, err));
-    for (size_t k = BASELINE_TMD; k < n; k++)
         task[k] = (SimTask){.kind = BASELINES[k].scene,
                             .x = x,
                             .device = found[k].device,
-                            .n_parts = n_records,
+                            .n_parts = tower_n_records(tower_of(p)),
                             .result = &out[k].first,
                             .summary = &sum[k]};
-    if (n > BASELINE_TMD)
-        TRY(tower_run(p, n - BASELINE_TMD, task + BASELINE_TMD, NULL, NULL, err));
+    TRY(tower_run(p, n, task, NULL, NULL, err));
     for (size_t k = 0; k < n; k++)
-        summarise(&sum[k], &task[k].device, &out[k]);
+        summarise(&sum[k], &found[k].device, &out[k]);
     return STATUS_OK;
 }

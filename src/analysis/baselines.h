@@ -6,12 +6,12 @@
  *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
  *
  * under the records of the study and by its rule (sim.robust): worst or mean, without replicates. Devices are found
- * by evaluate/device.h.
+ * by analysis/device.h.
  *
  * Threads  tasks of the queue; the numbers do not depend on how many workers there are */
 #pragma once
 
-#include "evaluate/device.h"
+#include "analysis/device.h"
 #include "evaluate/tower.h"
 
 typedef enum { BASELINE_NO_CORE, BASELINE_RIGID, BASELINE_TMD, BASELINE_LINKS, N_BASELINES } BaselineKind;

@@ -35,7 +35,7 @@ static void spread(const Measured *result, const Measured moved[], double sd[])
 static size_t list_tasks(const Problem *p, const SimTask *task, int moves, double x[], SimTask out[AGAIN],
                          Measured again[AGAIN])
 {
-    out[0] = (SimTask){.kind = task->kind, .x = task->x, .scene = task->scene, .is_finer = 1, .parts = again};
+    out[0] = (SimTask){.kind = task->kind, .x = task->x, .scene = task->scene, .level = 1, .parts = again};
     if (!moves || task->kind != SCENE_IMPACT)
         return 1;
     for (uint32_t i = 0; i < ESTIMATE_PATTERNS; i++) {

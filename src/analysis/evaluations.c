@@ -1,5 +1,6 @@
 #include "analysis/evaluations.h"
 
+#include "analysis/device.h"
 #include "analysis/estimate.h"
 #include "base/stat.h"
 #include "base/units.h"
@@ -122,21 +123,34 @@ static int finds_device(const Evaluations *e, size_t i, EvaluatedCase which)
            (!e->level || i % e->n_levels == e->n_levels / 2);
 }
 
-/* What does not wait for anything: devices are found, and simulated in the second round. */
 static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
 {
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
-    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
-        if (c < N_EVALUATED)
-            task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
-        else if (finds_device(e, i, c))
-            task[n++] = (SimTask){
-                .kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .finds_device = 1, .parts = &run->device[c]};
+    for (; n < N_EVALUATED; n++)
+        task[n] = (SimTask){.kind = EVALUATION_CASES[n].kind, .x = x, .scene = i, .result = &run->result[n]};
     run->error_known = e->is_estimated && !e->level;
     if (run->error_known && run->record->from_folder)
-        task[n++] = (SimTask){.x = x, .scene = i, .is_finer = 1, .parts = &run->finer};
+        task[n++] = (SimTask){.x = x, .scene = i, .level = 1, .parts = &run->finer};
     return n;
+}
+
+static Status find_devices(Evaluations *e, const double x[], Err *err)
+{
+    const size_t n_runs = e->n_records * e->n_levels;
+    DeviceSearch *search;
+    size_t n = 0;
+    TRY_ROOM(search, n_runs * N_WITH_DEVICES, "devices", err);
+    for (size_t i = 0; i < n_runs; i++)
+        for (EvaluatedCase c = N_EVALUATED; c < N_WITH_DEVICES; c++)
+            if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, c))
+                search[n++] = (DeviceSearch){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i};
+    const Status status = n > 0 ? devices_find(&e->tower, n, search, err) : STATUS_OK;
+    for (size_t k = 0; k < n; k++)
+        e->run[search[k].scene].device[search[k].kind == SCENE_TMD ? EVALUATED_TMD : EVALUATED_LINKS] =
+            search[k].device;
+    free(search);
+    return status;
 }
 
 /* One building has the same links under every record. */
@@ -150,10 +164,10 @@ static Status settle_links(Evaluations *e, Err *err)
     TRY_ROOM(found, e->n_records, "links", err);
     for (size_t i = 0; i < n_runs; i++)
         if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, EVALUATED_LINKS))
-            found[n++] = e->run[i].device[EVALUATED_LINKS].device.link_ns_m;
+            found[n++] = e->run[i].device[EVALUATED_LINKS].link_ns_m;
     sort_values(n, found);
     for (size_t i = 0; i < n_runs; i++)
-        e->run[i].device[EVALUATED_LINKS].device.link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
+        e->run[i].device[EVALUATED_LINKS].link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
     free(found);
     return STATUS_OK;
 }
@@ -167,7 +181,7 @@ static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask t
             task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind,
                                   .x = x,
                                   .scene = i,
-                                  .device = run->device[c].device,
+                                  .device = run->device[c],
                                   .result = &run->result[c]};
     return n;
 }
@@ -215,6 +229,7 @@ Status evaluations_run(Evaluations *e, size_t n_var, const double x[], Evaluatio
     if (e->tower.n_var != n_var)
         return bad_data(err, "the front has designs of %zu variables, this building has %zu", n_var, e->tower.n_var);
     TRY(run_round(e, first_tasks, x, told, err));
+    TRY(find_devices(e, x, err));
     TRY(settle_links(e, err));
     TRY(run_round(e, device_tasks, x, NULL, err));
     TRY(run_round(e, replicate_tasks, x, told, err));

@@ -44,7 +44,7 @@ typedef struct {
     const EvaluatedRecord *record;
     double pga_g, scale, stretch;
     SimResult result[N_WITH_DEVICES];
-    Measured device[N_WITH_DEVICES];          /* found under this record (evaluate/device.h) */
+    LinearDevice device[N_WITH_DEVICES];      /* found under this record (analysis/device.h) */
     ReplicateSummary replicates;              /* of the design, where there are some */
     Measured finer;                           /* the design with twice the steps, of records of a folder */
     double error[N_MEASURES], sd[N_MEASURES]; /* of the design (analysis/estimate.h), where error_known */

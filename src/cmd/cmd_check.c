@@ -16,7 +16,6 @@
 #include "settings/settings.h"
 #include "store/tables.h"
 #include "evaluate/adapter.h"
-#include "evaluate/device.h"
 #include "evaluate/limits.h"
 #include "evaluate/race.h"
 #include "evaluate/tower.h"
@@ -460,7 +459,7 @@ static void climb(Check *c, const CheckedScene *p)
     Err e = {0};
     Ladder *ladder = calloc(1, sizeof *ladder);
     const double period = 2 * M_PI / p->building.omega[0];
-    const Status status = ladder ? ladder_find(p->s, p->x, device_strong_part(&p->motion, period), 0, ladder, &e)
+    const Status status = ladder ? ladder_find(p->s, p->x, motion_strong_part(&p->motion, period), 0, ladder, &e)
                                  : fail_memory(&e, 1, "a ladder");
     if (note(c, status, "--ladder", &e)) {
         json_t *o = ladder_json(ladder);

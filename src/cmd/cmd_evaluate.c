@@ -174,10 +174,10 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
             json_object_set_new(o, EVALUATION_CASES[c].key,
                                 json_result(order, EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_has(e, run, EVALUATED_TMD))
-        json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].device.tmd_hz,
-                 run->device[EVALUATED_TMD].device.tmd_damping);
+        json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].tmd_hz,
+                 run->device[EVALUATED_TMD].tmd_damping);
     if (evaluated_has(e, run, EVALUATED_LINKS))
-        json_put(json_object_get(o, "links"), "link_ns_m=%g", run->device[EVALUATED_LINKS].device.link_ns_m);
+        json_put(json_object_get(o, "links"), "link_ns_m=%g", run->device[EVALUATED_LINKS].link_ns_m);
     if (run->error_known)
         put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
     if (e->replicates > 0)
@@ -273,7 +273,7 @@ static void add_case(json_t *table, const char *name, const MeasureOrder *order,
 {
     char label[400], device[DEVICE_TEXT_MAX] = "";
     if (c == EVALUATED_TMD || c == EVALUATED_LINKS)
-        baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c].device, device);
+        baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c], device);
     snprintf(label, sizeof label, "%s%s%s%s%s%s", name, *name ? "  " : "", EVALUATION_CASES[c].word,
              *device ? " (" : "", device, *device ? ")" : "");
     const int is_known = c == EVALUATED_DESIGN && run->error_known;

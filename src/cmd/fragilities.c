@@ -209,7 +209,7 @@ static void add_object(const Fragilities *f, const Evaluations *e, const Curve *
         json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
                  -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
     if (c->which == EVALUATED_LINKS)
-        json_put(o, "link_ns_m=%g", e->run[0].device[EVALUATED_LINKS].device.link_ns_m);
+        json_put(o, "link_ns_m=%g", e->run[0].device[EVALUATED_LINKS].link_ns_m);
     json_array_append_new(list, o);
 }
 

@@ -15,13 +15,25 @@ Status improve_open(Improve *m, const Args *args, const char *word, Err *err)
     return record_paths_find(m->run.settings, m->run.provenance, &moved, err);
 }
 
+static Status name_again(Improve *m, Err *err)
+{
+    const Settings *s = m->run.settings;
+    Adapter *a;
+    if (!named_are_known(s))
+        return STATUS_OK;
+    TRY(adapter_open(&a, s, err));
+    const Status status = named_simulate(m->store, s, adapter_problem(a), NULL, NULL, err);
+    adapter_close(a);
+    return status;
+}
+
 Status improve_store(Improve *m, const Evaluation *design, Err *err)
 {
     Run now;
     const Run *run = &m->run;
     TRY(store_polished(m->store, design, run->tried_to_polish, run->polished_at, &m->id, err));
     if (run->n_sessions > 0 && run->session[run->n_sessions - 1].is_final) /* else its search goes on */
-        TRY(named_simulate(m->store, run->settings, NULL, NULL, err));
+        TRY(name_again(m, err));
     TRY(store_write_front(m->store, &now, err));
     m->knee = now.n_front > 0 ? now.table.row[run_knee(&now)].id : 0;
     run_free(&now);

@@ -130,7 +130,6 @@ double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: 
 typedef struct {
     double value[N_MEASURES]; /* natural; NAN: not known */
     double seconds;
-    LinearDevice device; /* that was simulated, or was found (evaluate/device.h) */
     RunOutcome outcome;
     char reason[REASON_MAX];
 } Measured;

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include "base/hash.h"
-#include "evaluate/device.h"
 #include "evaluate/isolated.h"
 #include "evaluate/tasks.h"
 #include "motion/builtin.h"
@@ -46,7 +45,7 @@ struct Tower {
     Steps steps[DESIGN_VARIABLES_MAX];
     int has_kinds;      /* some are not real */
     Record *record;     /* (n_records) */
-    size_t n_places;    /* twice the scenes: the second half are the same with twice the steps */
+    size_t n_places;    /* the scenes, then the same at each level of steps */
     Place *place;       /* (n_places) */
     SimWorker **worker; /* (n_places, n_workers) NULL: it is not there */
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
@@ -66,8 +65,8 @@ static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err
     Settings *s = *out;
     *s = r->settings;
     memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
-    if (place >= r->n_scenes)
-        estimate_options(&r->settings.sim, &s->sim);
+    for (size_t level = place / r->n_scenes; level > 0; level--)
+        estimate_options(&s->sim, &s->sim);
     const unsigned needs = measures_need(s->sim.forces == FORCES_YES ? ~(MeasureSet)0 : t->judged);
     s->sim.filtered = (needs & NEEDS_FILTER) != 0;
     if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
@@ -158,6 +157,19 @@ static Status take_hold(Tower *t, size_t place, Err *err)
     return status;
 }
 
+Status tower_hold(const Problem *p, size_t scene, const Scenario **out, Err *err)
+{
+    Tower *t = p->self;
+    TRY(take_hold(t, scene, err));
+    *out = t->place[scene].scenario;
+    return STATUS_OK;
+}
+
+void tower_let_go(const Problem *p, size_t scene)
+{
+    let_go(p->self, scene);
+}
+
 static void leave(Tower *t, size_t place, size_t worker)
 {
     SimWorker **w = &t->worker[place * t->n_workers + worker];
@@ -190,34 +202,19 @@ static Status go_to(Tower *t, size_t place, size_t worker, SimWorker **out, Err 
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
-enum { FIND = N_SCENES }; /* Variant.kind - FIND: whose device is looked for */
-
-static Status find_device(Tower *t, size_t worker, const Task *task, Err *err)
-{
-    Shaken at[TOWER_RECORDS_MAX];
-    Measured *m = task->result;
-    const size_t n = t->plan.n_records;
-    for (size_t r = 0; r < n; r++) {
-        TRY(go_to(t, task->variant.scene + r, worker, &at[r].worker, err));
-        TRY(sim_worker_as_built(at[r].worker, NULL, err));
-        at[r].scenario = t->place[task->variant.scene + r].scenario;
-    }
-    *m = (Measured){.outcome = RUN_OK};
-    return device_find(&t->plan, n, at, (SceneKind)(task->variant.kind - FIND), task->x, &m->device, err);
-}
+enum { BRIEF = N_SCENES }; /* Variant.kind - BRIEF: to the end of the strong part of the motion */
 
 static Status simulate_here(void *self, size_t worker, const Task *task, Err *err)
 {
     Tower *t = self;
     const Settings *s = &t->recipe->settings;
     const size_t n = t->plan.n_records, k = task->repeat * t->plan.n_replicates + task->part / n;
-    const SceneKind kind = (SceneKind)task->variant.kind;
+    const int is_brief = task->variant.kind >= BRIEF;
+    const SceneKind kind = (SceneKind)(task->variant.kind - (is_brief ? BRIEF : 0));
     const LinearDevice device = {task->variant.device[0], task->variant.device[1], task->variant.device[2]};
     SimResult own, *result = task->size < sizeof(Whole) ? &own : &((Whole *)task->result)->result;
     Design design = {0};
     SimWorker *w;
-    if (task->variant.kind >= FIND)
-        return find_device(t, worker, task, err);
     const size_t place = task->variant.scene + task->part % n;
     TRY(go_to(t, place, worker, &w, err));
     if (kind != SCENE_NO_CORE)
@@ -228,14 +225,17 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
         const AsBuilt built = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
     }
+    const Scenario *scenario = t->place[place].scenario;
     sim_worker_device(w, &device);
+    sim_worker_until(
+        w, is_brief ? motion_strong_part(&scenario->motion, 2 * M_PI / scene_building(scenario->scene)->omega[0])
+                    : INFINITY);
     TRY(sim_run_built(w, kind, &design, result, err));
     result->rate_per_year = t->record[t->recipe->scene[place % t->recipe->n_scenes].record].rate_per_year;
     measures_chances(&t->order, result);
     if (kind == SCENE_IMPACT)
         measures_settle(result, t->judged);
     *(Measured *)task->result = measured(result);
-    ((Measured *)task->result)->device = device;
     return STATUS_OK;
 }
 
@@ -397,7 +397,7 @@ Status tower_space(const Settings *s, DesignSpace *out, Err *err)
 static Status make_room(Tower *t, Err *err)
 {
     const Recipe *r = t->recipe;
-    t->n_places = 2 * r->n_scenes;
+    t->n_places = (1 + TOWER_LEVELS) * r->n_scenes;
     t->record = calloc(r->n_records, sizeof *t->record);
     t->place = calloc(t->n_places, sizeof *t->place);
     t->worker = calloc(t->n_places * t->n_workers, sizeof(SimWorker *));
@@ -628,6 +628,11 @@ size_t tower_n_records(const Tower *t)
     return t->plan.n_records;
 }
 
+const ReplicatePlan *tower_plan(const Tower *t)
+{
+    return &t->plan;
+}
+
 const MeasureOrder *tower_measures(const Tower *t)
 {
     return &t->order;
@@ -640,13 +645,12 @@ const Scenario *tower_record(const Tower *t, size_t i)
 
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */
 
-static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)
+Variant tower_variant(const Tower *t, const SimTask *task)
 {
     const LinearDevice *d = &task->device;
-    const Variant variant = {task->kind + (task->finds_device ? FIND : 0),
-                             task->scene + (task->is_finer ? t->recipe->n_scenes : 0),
-                             {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
-    return queue_ask(q, &(Asked){.x = task->x, .variant = variant, .n_parts = task->n_parts ? task->n_parts : 1}, err);
+    return (Variant){task->kind + (task->is_brief ? BRIEF : 0),
+                     task->scene + task->level * t->recipe->n_scenes,
+                     {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
 }
 
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES])
@@ -685,7 +689,10 @@ static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult resul
     Finished done;
     for (size_t asked = 0, i = 0; i < n;) {
         if (asked < n && queue_pending(q) < 4 * p->n_workers) {
-            TRY(ask(q, p->self, &tasks[asked++], err));
+            const SimTask *task = &tasks[asked++];
+            const Asked design = {
+                .x = task->x, .variant = tower_variant(p->self, task), .n_parts = task->n_parts ? task->n_parts : 1};
+            TRY(queue_ask(q, &design, err));
             continue;
         }
         TRY(queue_next(q, &done, err));

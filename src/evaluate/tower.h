@@ -20,6 +20,8 @@
 
 typedef struct Tower Tower;
 
+enum { TOWER_LEVELS = 4 };
+
 typedef enum {
     TOWER_AS_SET, /* motion.record and motion.records, sim.replicates, sim.gap_tolerance_m, sim.robust */
     TOWER_SINGLE  /* motion.record alone, one replicate */
@@ -44,12 +46,17 @@ const Tower *tower_of(const Problem *p);
 int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
+const ReplicatePlan *tower_plan(const Tower *t);
 
 /* Standard errors (evaluate/replicates.h) of a design simulated once under each of the n_records. */
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES]);
 
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* of a search; 0: motion.record */
+
+/* A scene, open until it is let go. */
+Status tower_hold(const Problem *p, size_t scene, const Scenario **out, Err *err);
+void tower_let_go(const Problem *p, size_t scene);
 
 /* The ground motion of a scene, for motion_free. */
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);
@@ -60,15 +67,18 @@ typedef struct {
     SceneKind kind;
     const double *x;     /* (n_var); NULL for SCENE_NO_CORE */
     size_t scene;        /* of the tower, 0: the first */
-    int is_finer;        /* with twice the steps: estimate_options */
-    int finds_device;    /* the device of SCENE_TMD or SCENE_LINKS is looked for, result of Measured.device; else ... */
-    LinearDevice device; /* ... this one is simulated */
+    size_t level;        /* times that the steps are doubled (estimate_options), TOWER_LEVELS at most */
+    int is_brief;        /* to the end of the strong part of its motion (motion/motion.h) */
+    LinearDevice device; /* of SCENE_TMD or SCENE_LINKS */
     size_t
         n_parts; /* tower_n_records: under each of them; as the problem has them: with replicates. 0: one simulation */
     Measured *parts;           /* (n_parts) to be filled; NULL: not wanted */
     SimResult *result;         /* of the part that failed first, else of the first; NULL: not wanted */
     ReplicateSummary *summary; /* NULL: not wanted */
 } SimTask;
+
+/* What the queue is asked for then. */
+Variant tower_variant(const Tower *t, const SimTask *task);
 
 /* All n tasks, shared out over the workers. tell: how many are done, NULL: nobody asks. */
 typedef void SimTell(size_t n_done, void *user);

@@ -28,6 +28,20 @@ double motion_peak(const Motion *m)
     return peak;
 }
 
+double motion_strong_part(const Motion *m, double period)
+{
+    static const double ARIAS = 0.995, PERIODS = 3;
+    double whole = 0, sum = 0;
+    size_t k = 0;
+    if (m->n_force > 0)
+        return motion_duration(m);
+    for (size_t i = 0; i < m->n; i++)
+        whole += m->accel[i] * m->accel[i];
+    for (; k < m->n && sum < ARIAS * whole; k++)
+        sum += m->accel[k] * m->accel[k];
+    return (double)k * m->dt_s + PERIODS * period;
+}
+
 void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX])
 {
     const double peak_g = motion_peak(m) / GRAVITY;

@@ -42,6 +42,10 @@ static inline double motion_duration(const Motion *m) /* [s] */
     return (double)(m->n - 1) * m->dt_s;
 }
 
+/* [s] Until 99.5 % of int a^2 dt has passed, and three periods of a building, whose first is `period`. All of a motion
+ * with forces on floors: they may come late, on a ground that is at rest. */
+double motion_strong_part(const Motion *m, double period);
+
 /* "peak 0.348 g", of a motion that was scaled or stretched "peak 0.3 g (0.348 g x 0.862, time x 3.1)". */
 enum { MOTION_PEAK_TEXT_MAX = 96 };
 void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX]);

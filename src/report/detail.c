@@ -182,7 +182,7 @@ static Status take_ladder(const Settings *s, const Scenario *w, const double x[]
     if (s->sim.engine != ENGINE_FAST)
         return STATUS_OK;
     TRY_ROOM(d->ladder, 1, "a ladder", err);
-    if (ladder_find(s, x, device_strong_part(&w->motion, 1 / d->building_hz[0]), 1, d->ladder, &d->no_ladder)) {
+    if (ladder_find(s, x, motion_strong_part(&w->motion, 1 / d->building_hz[0]), 1, d->ladder, &d->no_ladder)) {
         free(d->ladder);
         d->ladder = NULL;
     }

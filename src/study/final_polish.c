@@ -1,7 +1,10 @@
 #include "study/final_polish.h"
 
 #include "base/json.h"
-#include "settings/options.h"
+#include "base/linalg.h"
+#include "evaluate/cluster.h"
+#include "evaluate/tasks.h"
+#include "settings/settings.h"
 #include "study/refine.h"
 
 /* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the
@@ -40,42 +43,64 @@ static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *
     return refine_design(run, row, &config, refined, err);
 }
 
-/* n_tried: designs tried so far, this one included. */
-static Status store_refined(RunStore *store, const FinalPolish *p, const Refined *refined, size_t n_tried, Err *err)
+typedef struct {
+    RunStore *store;
+    const FinalPolish *p;
+    size_t *n_tried, *n_better;
+} Polishing;
+
+/* status: of polishing the design, n_before have been tried before. One that cannot be polished, one that fails with
+ * more replicates say, is logged and left out. */
+static Status store_refined(const Polishing *w, size_t row, size_t n_before, const Refined *refined, Status status,
+                            const Err *why, Err *err)
 {
-    const Evaluation *better = refined_counts(refined) ? &refined->designs.row[1] : NULL;
-    return store_polished(store, better, n_tried, p->n_simulated, &(long){0}, err);
+    const Evaluation *better = NULL;
+    if (status == STATUS_BAD_DATA) {
+        TRY(store_event(w->store, json_of("event=%s row=%ld why=%s", "not polished", row + 1, why->text), err));
+    } else if (status == STATUS_OK) {
+        better = refined_counts(refined) ? &refined->designs.row[1] : NULL;
+        *w->n_better += better != NULL;
+        ++*w->n_tried;
+    } else {
+        *err = *why;
+        return status;
+    }
+    return store_polished(w->store, better, n_before + 1, w->p->n_simulated, &(long){0}, err);
 }
 
-/* A design that cannot be polished, one that fails with more replicates say, is logged and left out. */
-static Status leave_out(RunStore *store, const FinalPolish *p, size_t row, size_t n_tried, const Err *why, Err *err)
+/* Where other processes simulate, they open one simulator at a time. */
+static size_t side_by_side(const Settings *s, size_t n)
 {
-    TRY(store_event(store, json_of("event=%s row=%ld why=%s", "not polished", row + 1, why->text), err));
-    return store_polished(store, NULL, n_tried, p->n_simulated, NULL, err);
+    size_t n_ranks;
+    const size_t most = MIN_OF(n, threads_wanted(s->search.threads));
+    const int elsewhere =
+        cluster_executor(&n_ranks) || s->run.isolate == SWITCH_ON || s->problem.kind == PROBLEM_EXTERNAL;
+    return elsewhere || most < 2 || linalg_room(most, &(Err){0}) != STATUS_OK ? 1 : most;
 }
 
-static Status polish_chosen(RunStore *store, const FinalPolish *p, const Run *run, size_t *n_tried, size_t *n_better,
-                            Err *err)
+/* The workers are shared out; what comes out is stored in the order of the designs. */
+static Status polish_chosen(const Polishing *w, const Run *run, Err *err)
 {
     size_t rows[DESIGNS_MAX];
-    const size_t n = run_spread_out(run, n_designs(p->used), 0, rows);
-    for (size_t i = run->polished_at == (long)p->n_simulated ? run->tried_to_polish : 0; i < n; i++) {
+    const size_t n = run_spread_out(run, n_designs(w->p->used), 0, rows);
+    const size_t first = run->polished_at == (long)w->p->n_simulated ? run->tried_to_polish : 0;
+    const size_t n_threads = first < n ? side_by_side(w->p->used, n - first) : 1;
+    Settings settings = *run->settings;
+    Run own = *run;
+    Status all = STATUS_OK;
+    own.settings = &settings;
+    settings.search.threads = threads_wanted(w->p->used->search.threads) / n_threads;
+#pragma omp parallel for ordered schedule(dynamic, 1) num_threads((int)n_threads)
+    for (size_t i = first; i < n; i++) {
         Refined refined;
         Err why = {0};
-        Status status = refine(p, run, rows[i], &refined, &why);
-        if (status == STATUS_BAD_DATA) {
-            status = leave_out(store, p, rows[i], i + 1, &why, err);
-        } else if (status == STATUS_OK) {
-            status = store_refined(store, p, &refined, i + 1, err);
-            *n_better += refined_counts(&refined) != 0;
-            ++*n_tried;
-        } else {
-            *err = why;
-        }
+        const Status status = refine(w->p, &own, rows[i], &refined, &why);
+#pragma omp ordered
+        if (all == STATUS_OK)
+            all = store_refined(w, rows[i], i, &refined, status, &why, err);
         refined_free(&refined);
-        TRY(status);
     }
-    return STATUS_OK;
+    return all;
 }
 
 Status final_polish(RunStore *store, const FinalPolish *p, size_t *n_tried, size_t *n_better, Err *err)
@@ -85,7 +110,7 @@ Status final_polish(RunStore *store, const FinalPolish *p, size_t *n_tried, size
         return STATUS_OK;
     TRY(store_read(store, &run, err));
     run_drop_polished(&run);
-    const Status status = polish_chosen(store, p, &run, n_tried, n_better, err);
+    const Status status = polish_chosen(&(Polishing){store, p, n_tried, n_better}, &run, err);
     run_free(&run);
     return status;
 }

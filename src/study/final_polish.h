@@ -6,7 +6,8 @@
  * leaves too few for each there is no polishing. The better design is stored together with the note that this one was
  * tried: a run that is interrupted is resumed behind it.
  *
- * Threads  one */
+ * Threads  those of the search are shared out over several designs at a time; the results and their order do not
+ *          depend on how many there are */
 #pragma once
 
 #include "store/store.h"

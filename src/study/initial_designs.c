@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "base/csv.h"
-#include "evaluate/tower.h"
+#include "analysis/device.h"
 #include "store/run_read.h"
 
 static Status copy_columns(const Table *t, const char *where, const Schema *schema, double *X, Err *err)
@@ -137,7 +137,7 @@ static int put_device(const Problem *p, SceneKind kind, const LinearDevice *d, d
 }
 
 /* Which of them the space has at all. */
-static size_t ask_devices(const Problem *p, const DesignOptions *o, double X[], Measured found[], SimTask task[])
+static size_t ask_devices(const Problem *p, const DesignOptions *o, double X[], DeviceSearch search[])
 {
     static const SceneKind KIND[] = {SCENE_LINKS, SCENE_TMD};
     static const double WALL[] = {0.5, 0}; /* of a tuned mass the mass of the core is the objective */
@@ -147,27 +147,24 @@ static size_t ask_devices(const Problem *p, const DesignOptions *o, double X[], 
         double *x = X + n * p->n_var, unused[DESIGN_VARIABLES_MAX];
         set_core(p, space, WALL[i], x);
         if (KIND[i] == SCENE_LINKS ? o->link_exponent == 1 && design_put_links(space, 1, unused)
-                                   : design_put_mass(space, 1, 1, 1, unused)) {
-            task[n] = (SimTask){.kind = KIND[i], .x = x, .finds_device = 1, .parts = &found[n]};
-            n++;
-        }
+                                   : design_put_mass(space, 1, 1, 1, unused))
+            search[n++] = (DeviceSearch){.kind = KIND[i], .x = x};
     }
     return n;
 }
 
 Status initial_designs_of_devices(const Problem *p, const DesignOptions *o, double **X, size_t *n, Err *err)
 {
-    SimTask task[2];
-    Measured found[2];
+    DeviceSearch search[2];
     double more[2 * DESIGN_VARIABLES_MAX], building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], kg;
-    const size_t n_tasks = tower_of(p) ? ask_devices(p, o, more, found, task) : 0;
-    if (n_tasks == 0)
+    const size_t n_searches = tower_of(p) ? ask_devices(p, o, more, search) : 0;
+    if (n_searches == 0)
         return STATUS_OK;
-    TRY(tower_run(p, n_tasks, task, NULL, NULL, err));
-    for (size_t i = 0; i < n_tasks; i++) {
+    TRY(devices_find(p, n_searches, search, err));
+    for (size_t i = 0; i < n_searches; i++) {
         double *x = more + i * p->n_var;
         TRY(scene_frequencies(tower_record(tower_of(p), 0)->scene, x, building, core, both, &kg, err));
-        if (put_device(p, task[i].kind, &found[i].device, kg, x))
+        if (put_device(p, search[i].kind, &search[i].device, kg, x))
             TRY(append(p->n_var, x, 1, X, n, err));
     }
     return STATUS_OK;

@@ -2,12 +2,11 @@
 
 #include "analysis/estimate.h"
 #include "base/stat.h"
-#include "evaluate/cluster.h"
-#include "study/run_simulator.h"
 
-/* Times that the steps are doubled; copies of a design, first and where those disagree; designs looked at together,
- * before the front is formed again; how often, so that names which move again and again come to an end. */
-enum { LEVELS = 4, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 4, ROUNDS = 32 };
+/* Times that the steps are doubled, the last ones at once; copies of a design, first and where those disagree; designs
+ * looked at together, before the front is formed again; how often, so that names which move again and again come to an
+ * end. */
+enum { LEVELS = TOWER_LEVELS, ONE_BY_ONE = 2, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 16, ROUNDS = 32 };
 
 /* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
 static const double PROMISE[N_MEASURES] = {[MEASURE_J1] = 1e-3,  [MEASURE_J2] = 3e-3,     [MEASURE_J3] = 1e-2,
@@ -29,22 +28,21 @@ typedef struct {
     double violation, seconds;
     double student; /* sd times that is an error */
     size_t level;   /* at which it was simulated last */
-    int is_known;
+    size_t tried;   /* so many levels */
+    int is_known, has_all_copies;
+    size_t levels_asked, copies_asked, copies_level; /* of the wave of simulations that is under way */
 } Named;
 
 typedef struct {
     RunStore *store;
-    const Settings *used;
+    Problem problem;
+    Queue *queue;
     int (*go_on)(void *user);
     void *user;
     int is_first; /* round: something comes of every session, however short */
     Run run;
-    SimOptions sim[LEVELS + 1];         /* of each level; 0: as the run is set */
-    RunSimulator simulator[LEVELS + 1]; /* open where its level was wanted, so that records are not read again */
     size_t n;
-    Named named[TOGETHER], *asked[TOGETHER]; /* asked: whose designs are in X */
-    double *X;                               /* (COPIES n, n_var) */
-    EvaluationTable answers;
+    Named named[TOGETHER];
 } Work;
 
 int named_are_known(const Settings *s)
@@ -83,36 +81,10 @@ static void find(Work *w)
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */
 
-static Status ask_all(Work *w, Queue *q, size_t n, Err *err)
-{
-    Finished done;
-    for (size_t i = 0; i < n; i++)
-        TRY(queue_ask(q, &(Asked){.x = w->X + i * w->run.schema.n_var}, err));
-    for (w->answers.n = 0; w->answers.n < n;) {
-        TRY(queue_next(q, &done, err));
-        TRY(evaluation_table_append(&w->answers, done.evaluation, err));
-    }
-    return STATUS_OK;
-}
-
 static int may_go_on(void *work)
 {
     Work *w = work;
     return w->is_first || !w->go_on || w->go_on(w->user);
-}
-
-/* The first n designs in X. Where other processes simulate, they open one simulator at a time. */
-static Status simulate(Work *w, size_t level, size_t n, Err *err)
-{
-    RunSimulator *r = &w->simulator[level];
-    size_t n_ranks;
-    const int elsewhere = cluster_executor(&n_ranks) || w->used->run.isolate == SWITCH_ON;
-    for (size_t other = 0; other <= LEVELS && elsewhere; other++)
-        if (other != level)
-            run_simulator_close(&w->simulator[other]);
-    if (!r->queue)
-        TRY(run_simulator_open(r, w->used, &w->sim[level], may_go_on, w, err));
-    return ask_all(w, r->queue, n, err);
 }
 
 static double answer(const Evaluation *e, const Schema *s, size_t k)
@@ -137,40 +109,19 @@ static int is_within(const Schema *s, double part, const double value[], const d
 }
 
 /* A run that fails says nothing. */
-static void compare(const Schema *s, Named *d, const Evaluation *finer, size_t level)
+static void compare(const Schema *s, Named *d, const Evaluation *finer)
 {
-    d->seconds += finer->seconds;
-    if (finer->outcome != OUTCOME_OK)
+    d->tried++;
+    if (d->is_known || finer->outcome != OUTCOME_OK)
         return;
     for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
         d->error[k] = fabs(answer(finer, s, k) - d->value[k]);
         d->value[k] = answer(finer, s, k);
     }
     d->violation = finer->violation;
-    d->level = level;
+    d->level = d->tried;
     d->is_known = is_within(s, AGREED, d->value, d->error);
 }
-
-static Status climb(Work *w, Err *err)
-{
-    const Schema *s = &w->run.schema;
-    for (size_t level = 1; level <= LEVELS; level++) {
-        size_t n = 0;
-        for (size_t i = 0; i < w->n; i++)
-            if (!w->named[i].is_known) {
-                memcpy(w->X + n * s->n_var, run_x(&w->run, w->named[i].row), s->n_var * sizeof *w->X);
-                w->asked[n++] = &w->named[i];
-            }
-        if (n == 0)
-            break;
-        TRY(simulate(w, level, n, err));
-        for (size_t i = 0; i < n; i++)
-            compare(s, w->asked[i], &w->answers.row[i], level);
-    }
-    return STATUS_OK;
-}
-
-/* -- copies -------------------------------------------------------------------------------------------------------- */
 
 /* Signs as in the columns of a Hadamard matrix, so that no two copies move the gaps alike. */
 static void change_gaps(const Schema *s, size_t copy, double x[])
@@ -179,55 +130,75 @@ static void change_gaps(const Schema *s, size_t copy, double x[])
         x[j] = fmax(0.0, x[j] + (__builtin_popcountl((j + 1) & (copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M));
 }
 
-/* Of the design's own value and those of n copies. */
-static double deviation(size_t n, const Evaluation copies[], double own, const Schema *s, size_t k)
-{
-    double v[1 + COPIES] = {own}, mean, sd;
-    for (size_t c = 0; c < n; c++)
-        v[1 + c] = answer(&copies[c], s, k);
-    mean_and_sd_of(1 + n, v, &mean, &sd);
-    return sd;
-}
-
-/* Of the n designs in w->asked, by so many copies at that level, the patterns from `first` on. */
-static Status spread(Work *w, size_t level, size_t n, size_t n_copies, size_t first, Err *err)
+/* As a copy, by whose pattern; NULL: itself. */
+static Status ask(const Work *w, const Named *d, size_t level, const size_t *copy, Err *err)
 {
     const Schema *s = &w->run.schema;
-    for (size_t i = 0; i < n * n_copies; i++) {
-        memcpy(w->X + i * s->n_var, run_x(&w->run, w->asked[i / n_copies]->row), s->n_var * sizeof *w->X);
-        change_gaps(s, first + i % n_copies, w->X + i * s->n_var);
+    double x[DESIGN_VARIABLES_MAX];
+    memcpy(x, run_x(&w->run, d->row), s->n_var * sizeof *x);
+    if (copy)
+        change_gaps(s, *copy, x);
+    return queue_ask(
+        w->queue, &(Asked){.x = x, .variant = tower_variant(tower_of(&w->problem), &(SimTask){.level = level})}, err);
+}
+
+/* With the steps doubled until two runs agree, and two copies at once; then, where the steps or the copies disagree,
+ * more copies, by the steps that the design needs; where no steps agree, by few. */
+static Status ask_next(const Work *w, Named *d, Err *err)
+{
+    const int is_told = d->is_known && is_within(&w->run.schema, AGREED / STUDENT_FIRST, d->value, d->sd);
+    d->levels_asked = d->copies_asked = 0;
+    if (!d->is_known && d->tried < LEVELS) {
+        d->levels_asked = d->tried < ONE_BY_ONE ? 1 : LEVELS - d->tried;
+        d->copies_asked = d->tried == 0 ? COPIES_FIRST : 0;
+    } else if (!d->has_all_copies && !is_told) {
+        d->has_all_copies = 1;
+        d->copies_asked = COPIES;
     }
-    TRY(simulate(w, level, n * n_copies, err));
-    for (size_t i = 0; i < n; i++) {
-        Named *d = w->asked[i];
-        const Evaluation *copies = w->answers.row + i * n_copies;
-        d->student = first > 0 ? STUDENT : STUDENT_FIRST;
-        for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
-            d->sd[k] = deviation(n_copies, copies, level == 0 ? d->as_set[k] : d->value[k], s, k);
-        for (size_t c = 0; c < n_copies; c++)
-            d->seconds += copies[c].seconds;
-    }
+    d->copies_level = d->is_known ? d->level : 0;
+    for (size_t i = 1; i <= d->levels_asked; i++)
+        TRY(ask(w, d, d->tried + i, NULL, err));
+    for (size_t c = 0; c < d->copies_asked; c++)
+        TRY(ask(w, d, d->copies_level, &(size_t){d->has_all_copies ? COPIES_FIRST + c : c}, err));
     return STATUS_OK;
 }
 
-/* More copies of those whose first ones disagree, by the steps that the design needs; where no steps agree, by few. */
-static Status spread_all(Work *w, Err *err)
+/* The deviation is of the design's own value and those of its copies. */
+static Status take(const Work *w, Named *d, Err *err)
 {
-    for (size_t i = 0; i < w->n; i++)
-        w->asked[i] = &w->named[i];
-    TRY(spread(w, 0, w->n, COPIES_FIRST, 0, err));
-    for (size_t level = 0; level <= LEVELS; level++) {
-        size_t n = 0;
-        for (size_t i = 0; i < w->n; i++) {
-            Named *d = &w->named[i];
-            const int is_told = is_within(&w->run.schema, AGREED / STUDENT_FIRST, d->value, d->sd);
-            if (d->is_known ? d->level == level && !is_told : level == 0)
-                w->asked[n++] = d;
-        }
-        if (n > 0)
-            TRY(spread(w, level, n, COPIES, COPIES_FIRST, err));
+    const Schema *s = &w->run.schema;
+    double v[N_MEASURES][1 + COPIES], mean;
+    Finished done;
+    for (size_t i = 0; i < d->levels_asked; i++) {
+        TRY(queue_next(w->queue, &done, err));
+        d->seconds += done.evaluation->seconds;
+        compare(s, d, done.evaluation);
     }
+    for (size_t c = 0; c < d->copies_asked; c++) {
+        TRY(queue_next(w->queue, &done, err));
+        d->seconds += done.evaluation->seconds;
+        for (size_t k = 0; k < s->n_obj + s->n_extra; k++)
+            v[k][1 + c] = answer(done.evaluation, s, k);
+    }
+    for (size_t k = 0; k < s->n_obj + s->n_extra && d->copies_asked > 0; k++) {
+        v[k][0] = d->copies_level == 0 ? d->as_set[k] : d->value[k];
+        mean_and_sd_of(1 + d->copies_asked, v[k], &mean, &d->sd[k]);
+    }
+    d->student = d->has_all_copies ? STUDENT : STUDENT_FIRST;
     return STATUS_OK;
+}
+
+/* All designs side by side, wave by wave. */
+static Status simulate(Work *w, Err *err)
+{
+    do {
+        for (size_t i = 0; i < w->n; i++)
+            TRY(ask_next(w, &w->named[i], err));
+        if (queue_pending(w->queue) == 0)
+            return STATUS_OK;
+        for (size_t i = 0; i < w->n; i++)
+            TRY(take(w, &w->named[i], err));
+    } while (1);
 }
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
@@ -257,8 +228,6 @@ static Evaluation record_of(const Work *w, Named *d)
 static Status know(Work *w, Err *err)
 {
     const Schema *s = &w->run.schema;
-    w->answers = evaluation_table(s->n_var, s->n_obj, s->n_extra);
-    TRY_ROOM(w->X, COPIES * w->n * s->n_var, "designs", err);
     for (size_t i = 0; i < w->n; i++) {
         const Evaluation *e = &w->run.table.row[w->named[i].row];
         w->named[i].violation = e->violation;
@@ -267,8 +236,7 @@ static Status know(Work *w, Err *err)
             w->named[i].error[k] = NAN;
         }
     }
-    TRY(climb(w, err));
-    TRY(spread_all(w, err));
+    TRY(simulate(w, err));
     Evaluation better[TOGETHER];
     for (size_t i = 0; i < w->n; i++)
         better[i] = record_of(w, &w->named[i]);
@@ -280,30 +248,26 @@ static Status round_of_names(Work *w, Err *err)
     TRY(store_read(w->store, &w->run, err));
     find(w);
     const Status status = w->n > 0 ? know(w, err) : STATUS_OK;
-    evaluation_table_free(&w->answers);
-    free(w->X);
-    w->X = NULL;
     run_free(&w->run);
     return status;
 }
 
-Status named_simulate(RunStore *store, const Settings *used, int (*go_on)(void *), void *user, Err *err)
+Status named_simulate(RunStore *store, const Settings *used, const Problem *problem, int (*go_on)(void *), void *user,
+                      Err *err)
 {
     if (!named_are_known(used))
         return STATUS_OK;
     Work *w;
     TRY_ROOM(w, 1, "the designs that the study names", err);
-    *w = (Work){.store = store, .used = used, .go_on = go_on, .user = user, .is_first = 1, .n = 1};
-    w->sim[0] = used->sim;
-    for (size_t level = 0; level < LEVELS; level++)
-        estimate_options(&w->sim[level], &w->sim[level + 1]);
-    Status status = STATUS_OK;
+    *w = (Work){.store = store, .problem = *problem, .go_on = go_on, .user = user, .is_first = 1, .n = 1};
+    w->problem.observer = (Observer){.go_on = may_go_on, .user = w};
+    w->problem.order = NULL;
+    Status status = queue_open(&w->queue, &w->problem, QUEUE_AS_ASKED, 0, err);
     for (int round = 0; round < ROUNDS && status == STATUS_OK && w->n > 0; round++) {
         status = round_of_names(w, err);
         w->is_first = 0;
     }
-    for (size_t level = 0; level <= LEVELS; level++)
-        run_simulator_close(&w->simulator[level]);
+    queue_close(w->queue);
     free(w);
     return status;
 }

@@ -514,7 +514,8 @@ static Status know_named(Study *study, Err *err)
 {
     if (study->summary->stopped == STOP_ASKED)
         return STATUS_OK;
-    return note_stop(study, named_simulate(study->store, &study->used, may_go_on, study, err), err);
+    return note_stop(
+        study, named_simulate(study->store, &study->used, adapter_problem(study->adapter), may_go_on, study, err), err);
 }
 
 /* Of a search that is cut short, where it takes a moment: who asked for the end does not wait for more. */
@@ -527,7 +528,7 @@ static Status know_named_so_far(Study *study, Err *err)
     if (study->failing || cluster_executor(&n_ranks) ||
         !(each * SIMULATIONS <= MOMENT_S * adapter_threads(study->adapter)))
         return STATUS_OK;
-    return named_simulate(study->store, &study->used, NULL, NULL, err);
+    return named_simulate(study->store, &study->used, adapter_problem(study->adapter), NULL, NULL, err);
 }
 
 /* What the knee is compared with, and what the front says about its gaps. */
