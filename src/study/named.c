@@ -262,7 +262,7 @@ Status named_simulate(RunStore *store, const Settings *used, const Problem *prob
     *w = (Work){.store = store, .problem = *problem, .go_on = go_on, .user = user, .is_first = 1, .n = 1};
     w->problem.observer = (Observer){.go_on = may_go_on, .user = w};
     w->problem.order = NULL;
-    Status status = queue_open(&w->queue, &w->problem, QUEUE_AS_ASKED, 0, err);
+    Status status = queue_open(&w->queue, &w->problem, err);
     for (int round = 0; round < ROUNDS && status == STATUS_OK && w->n > 0; round++) {
         status = round_of_names(w, err);
         w->is_first = 0;
