@@ -2,12 +2,11 @@
  * thread of the queue (evaluate/tasks.h) gives each its tasks and waits for them, all by these rules:
  *
  *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a fresh
- *             worker is what it had no part in: its helper was lost; or, once, it had given answers before and ended by
+ *             worker is what it had no part in: its helper was killed; or, once, it had given answers before and ended by
  *             itself within a second of the request (may_leave)
- *   silent    for limit_s of our own running time, the same; where the whole machine was suspended none was silent
+ *   silent    for timeout_s of our own running time, the same: where the whole machine was suspended none was silent. A
+ *             rank says now and then that it lives; one that does not ends everything, to be resumed
  *   stopped   what is under way gets grace_s to end, then it counts as never begun
- *
- * An order is what processes of our own are asked, in plain bytes: Order, Task (n), x (n, n_var); and Answer the answer.
  *
  * Life cycle  pool_open -> pool_do ... -> pool_close ({0} is fine)
  * Threads     pool_do by several, each for a worker of its own

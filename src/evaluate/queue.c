@@ -588,7 +588,8 @@ static Status start(Queue *q, Err *err)
         TRY(e->start(&q->executing, q, &q->n_first, err));
     if (e ? !e->simulator : q->n_first == 1)
         return STATUS_OK;
-    const size_t n = e ? 2 * q->n_first : q->n_first;
+    const size_t n =
+        e && q->n_first > 1 ? 2 * q->n_first : q->n_first; /* of one the order of arrival is that of asking */
     TRY_ROOM(q->worker, n, "threads", err);
     for (; q->n_threads < n; q->n_threads++) {
         Worker *w = &q->worker[q->n_threads];

@@ -33,11 +33,11 @@ struct Service {
     double sent_s;
 };
 
-static void say(Service *s, int tag, const void *bytes, size_t n)
+static void say(Service *s, int tag)
 {
     pthread_mutex_lock(&s->talking);
     if (!s->has_said_left)
-        MPI_Send(bytes, (int)n, MPI_BYTE, 0, tag, MPI_COMM_WORLD);
+        MPI_Send(NULL, 0, MPI_BYTE, 0, tag, MPI_COMM_WORLD);
     s->has_said_left |= tag == TAG_LEFT;
     s->sent_s = clock_seconds();
     pthread_mutex_unlock(&s->talking);
@@ -169,7 +169,7 @@ static void exchange(Service *s)
             pause = PAUSE_MIN_S;
         }
         if (s->n_running > 0 && clock_seconds() > s->sent_s + ALIVE_S)
-            say(s, TAG_ALIVE, NULL, 0);
+            say(s, TAG_ALIVE);
         pause = longer_pause(pause, s->n_running > 0 ? PAUSE_BUSY_S : PAUSE_MAX_S);
         pause_s(pause);
     }
@@ -188,7 +188,7 @@ Status serve(ReopenFn reopen, Err *err)
     for (const double until = clock_seconds() + FAREWELL_S; s->n_running > 0 && clock_seconds() < until;)
         pause_s(1e-3);
     const int is_busy = s->n_running > 0;
-    say(s, TAG_LEFT, NULL, 0);
+    say(s, TAG_LEFT);
     if (is_busy)
         return STATUS_OK;
     close_problem(s);
