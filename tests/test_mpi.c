@@ -602,18 +602,18 @@ TEST(a_message_that_is_cut_or_of_no_worker_is_none)
     Answer *right = calloc(1, whole), bad = {.worker = 1, .why.code = STATUS_BAD_DATA};
     *right = (Answer){.worker = 3, .n_done = 1};
     for (size_t n = 0; n < whole + 2; n++) {
-        Errand e = {.task = &task, .n = 1};
+        Worker e = {.task = &task, .n = 1};
         assert_int_equal(order_take(right, n, &e), n == whole);
         assert_int_equal(e.n_done, n == whole);
-        assert_int_equal(is_answer(right, n, WORKERS), n >= sizeof *right);
+        assert_int_equal(is_answer_of(right, n, WORKERS), n >= sizeof *right);
     }
-    assert_false(is_answer(right, whole, 3));
-    assert_false(order_take(&bad, sizeof bad + PART, &(Errand){.task = &task, .n = 1})); /* a fault has no part */
-    assert_true(order_take(&bad, sizeof bad, &(Errand){.task = &task, .n = 1}));
+    assert_false(is_answer_of(right, whole, 3));
+    assert_false(order_take(&bad, sizeof bad + PART, &(Worker){.task = &task, .n = 1})); /* a fault has no part */
+    assert_true(order_take(&bad, sizeof bad, &(Worker){.task = &task, .n = 1}));
     bad.why.code = STATUS_COUNT;
-    assert_false(order_take(&bad, sizeof bad, &(Errand){.task = &task, .n = 1}));
+    assert_false(order_take(&bad, sizeof bad, &(Worker){.task = &task, .n = 1}));
     bad = (Answer){.n_done = 2};
-    assert_false(order_take(&bad, sizeof bad + 2 * PART, &(Errand){.task = &task, .n = 1}));
+    assert_false(order_take(&bad, sizeof bad + 2 * PART, &(Worker){.task = &task, .n = 1}));
     free(right);
 }
 

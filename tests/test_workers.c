@@ -138,4 +138,20 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     free(all);
 }
 
+/* Even where one of its processes can do nothing any more. */
+TEST(a_killed_run_of_isolated_simulations_goes_on_at_once)
+{
+    write_in_place("cut.ini",
+                   SIX_FLOORS_INI "[sim]\nduration_s = 5\n[search]\nmax_evals = 80\npolish = 0\nthreads = 2\n"
+                                  "[run]\nisolate = yes\n");
+    const pid_t pid = start("cut.ini", "cut");
+    for (int i = 0; i < 1000 && !signal_child_of(pid, "STOP"); i++)
+        rest(0.01);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    free(output_of("optimize @/cut.ini --out @/cut"));
+    free(output_of("optimize @/cut.ini --out @/uncut --set run.isolate=no"));
+    assert_same_files("cut/front.csv", "uncut/front.csv");
+}
+
 SUITE(prepare, clear_place)

@@ -31,7 +31,7 @@ const Tower *adapter_tower(const Adapter *a)
 
 int adapter_threads(const Adapter *a)
 {
-    return a->threads;
+    return a->problem.executor ? MAX_OF(a->threads, (int)threads_wanted(0)) : a->threads;
 }
 
 void adapter_observe(Adapter *a, const Observer *observer)

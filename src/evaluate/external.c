@@ -75,21 +75,21 @@ static char *write_design(const External *e, char *to, const Task *task)
 }
 
 /* A design, or a list of them, whole: half a request would be waited for. */
-static size_t write_request(void *self, const Errand *r, char *request)
+static size_t write_request(void *self, const Worker *w, char *request)
 {
     char *to = request;
-    for (size_t i = 0; i < r->n; i++) {
-        to += sprintf(to, "%s", i > 0 ? "," : r->n > 1 ? "[" : "");
-        to = write_design(self, to, &r->task[i]);
+    for (size_t i = 0; i < w->n; i++) {
+        to += sprintf(to, "%s", i > 0 ? "," : w->n > 1 ? "[" : "");
+        to = write_design(self, to, &w->task[i]);
     }
-    to += sprintf(to, "%s\n", r->n > 1 ? "]" : "");
+    to += sprintf(to, "%s\n", w->n > 1 ? "]" : "");
     return to - request;
 }
 
-static void tell(void *self, const Worker *w, const Task *task, Outcome outcome, const char *reason)
+static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
 {
     (void)self;
-    ExternalAnswer *a = task->result;
+    ExternalAnswer *a = w->task[w->n_done].result;
     a->outcome = outcome;
     a->seconds = clock_seconds() - w->asked;
     snprintf(a->reason, sizeof a->reason, "%s", reason);
@@ -160,7 +160,7 @@ static void take_design(External *e, Worker *w, const json_t *o, const char *lin
 {
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
-    const Task *task = &w->errand.task[w->errand.n_done];
+    const Task *task = &w->task[w->n_done];
     ExternalAnswer *a = task->result;
     if (!json_is_object(o) || !json_is_number(id))
         pool_settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
@@ -182,7 +182,7 @@ static void take_design(External *e, Worker *w, const json_t *o, const char *lin
 
 static int is_waited_for(const Worker *w)
 {
-    return w->errand.n_done < w->errand.n;
+    return w->n_done < w->n;
 }
 
 /* Of one design, or of a list of them the list of their answers. */
@@ -190,14 +190,14 @@ static void take_answer(External *e, Worker *w, char *line, size_t length)
 {
     json_error_t error;
     const char first = line[strspn(line, " \t\r")];
-    if (first == '{' || (first == '[' && w->errand.n > 1))
+    if (first == '{' || (first == '[' && w->n > 1))
         blank_words(line);
     json_t *o = json_loadb(line, length, 0, &error);
     w->n_answered++;
     if (!o && json_error_code(&error) == json_error_numeric_overflow)
-        pool_settle(w, OUTCOME_NOT_FINITE, w->errand.n > 1,
-                    "f is not %zu finite numbers: one is too large for a double", e->n_obj);
-    else if (json_is_array(o) && w->errand.n > 1)
+        pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
+                    e->n_obj);
+    else if (json_is_array(o) && w->n > 1)
         for (size_t i = 0; i < json_array_size(o) && is_waited_for(w); i++)
             take_design(e, w, json_array_get(o, i), line);
     else
@@ -322,6 +322,7 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
                                .work = {.words = e->words},
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,
                                .timeout_s = o->timeout_s,
+                               .grace_s = PROCESS_GRACE_S,
                                .may_leave = 1,
                                .write = write_request,
                                .look = look_for_answer,

@@ -13,8 +13,8 @@
  *
  * As a simulator  one part for each design, an ExternalAnswer. Worker i of the queue has a process of its own
  * Life cycle      external_open -> search ... -> problem_close
- * Processes       started without a shell, each in its own process group; standard error is shared with ours; one more
- *                 starts them, and kills them when we are killed (evaluate/helper.h)
+ * Processes       started without a shell, each in its own process group; standard error is shared with ours; one
+ *                 more beside each kills it when we are killed (evaluate/helper.h)
  * Stops           a process at work gets some seconds more to answer, then it is killed and its design counts as never
  *                 asked for
  * Errors          a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker does is not an error */

@@ -27,10 +27,10 @@ static void serve(void *self, size_t worker)
     }
 }
 
-static size_t write_order(void *self, const Errand *e, char *request)
+static size_t write_order(void *self, const Worker *w, char *request)
 {
     const Isolated *q = self;
-    return order_write((Order *)(void *)request, e, q->doer.n_var);
+    return order_write((Order *)(void *)request, w, q->doer.n_var);
 }
 
 static void look(void *self, Worker *w)
@@ -38,21 +38,21 @@ static void look(void *self, Worker *w)
     (void)self;
     const Answer *a = (const Answer *)(const void *)w->line;
     const size_t n_line = w->n_line;
-    if (n_line < sizeof *a || n_line < sizeof *a + (a->n_done > 0 ? w->errand.task->size : 0))
+    if (n_line < sizeof *a || n_line < sizeof *a + (a->n_done > 0 ? w->task->size : 0))
         return;
     w->n_line = 0;
-    if (!order_take(a, n_line, &w->errand))
+    if (!order_take(a, n_line, w))
         pool_settle(w, OUTCOME_GARBLED, 1, "its process answered what is no answer");
 }
 
-static void tell(void *self, const Worker *w, const Task *task, Outcome outcome, const char *reason)
+static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
 {
     (void)outcome;
     (void)reason;
     char words[REASON_MAX];
     snprintf(words, sizeof words, "its process ended: %s",
              WIFSIGNALED(w->how) ? strsignal(WTERMSIG(w->how)) : "no answer");
-    ((const Isolated *)self)->lost(task, words);
+    ((const Isolated *)self)->lost(&w->task[w->n_done], words);
 }
 
 Status isolated_open(Isolated *q, size_t n_workers, Err *err)
@@ -61,6 +61,7 @@ Status isolated_open(Isolated *q, size_t n_workers, Err *err)
                                .work = {.serve = serve, .self = q},
                                .request_bytes = order_bytes(1, q->doer.n_var),
                                .timeout_s = INFINITY,
+                               .grace_s = PROCESS_GRACE_S,
                                .write = write_order,
                                .look = look,
                                .tell = tell,

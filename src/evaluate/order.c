@@ -8,13 +8,13 @@ static double *numbers_of(Order *o)
     return (double *)((Task *)(o + 1) + o->n);
 }
 
-size_t order_write(Order *to, const Errand *e, size_t n_var)
+size_t order_write(Order *to, const Worker *w, size_t n_var)
 {
-    to->n = e->n;
-    memcpy(to + 1, e->task, e->n * sizeof *e->task);
-    for (size_t i = 0; i < e->n && n_var > 0; i++)
-        memcpy(numbers_of(to) + i * n_var, e->task[i].x, n_var * sizeof(double));
-    return order_bytes(e->n, n_var);
+    to->n = w->n;
+    memcpy(to + 1, w->task, w->n * sizeof *w->task);
+    for (size_t i = 0; i < w->n && n_var > 0; i++)
+        memcpy(numbers_of(to) + i * n_var, w->task[i].x, n_var * sizeof(double));
+    return order_bytes(w->n, n_var);
 }
 
 Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
@@ -41,15 +41,15 @@ Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
     return a;
 }
 
-int order_take(const Answer *answer, size_t n_bytes, Errand *e)
+int order_take(const Answer *answer, size_t n_bytes, Worker *w)
 {
-    const size_t size = e->task->size;
-    if (n_bytes < sizeof *answer || answer->n_done > e->n || answer->why.code >= STATUS_COUNT ||
-        (answer->n_done < e->n) != (answer->why.code != STATUS_OK) || n_bytes != sizeof *answer + answer->n_done * size)
+    const size_t size = w->task->size;
+    if (n_bytes < sizeof *answer || answer->n_done > w->n || answer->why.code >= STATUS_COUNT ||
+        (answer->n_done < w->n) != (answer->why.code != STATUS_OK) || n_bytes != sizeof *answer + answer->n_done * size)
         return 0;
     for (size_t i = 0; i < answer->n_done; i++)
-        memcpy(e->task[i].result, answer->parts + i * size, size);
-    e->n = e->n_done = answer->n_done;
-    e->why = answer->why;
+        memcpy(w->task[i].result, answer->parts + i * size, size);
+    w->n = w->n_done = answer->n_done;
+    w->why = answer->why;
     return 1;
 }

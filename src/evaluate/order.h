@@ -36,10 +36,10 @@ static inline size_t order_bytes(size_t n, size_t n_var)
 }
 
 /* Into room for it; its bytes. */
-size_t order_write(Order *to, const Errand *e, size_t n_var);
+size_t order_write(Order *to, const Worker *w, size_t n_var);
 
 /* As `worker`; the answer, to be freed, NULL: there is no memory. */
 Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes);
 
-/* What an answer of n_bytes says of the errand; 0: it is none to that. */
-int order_take(const Answer *answer, size_t n_bytes, Errand *e);
+/* What an answer of n_bytes says of the worker's tasks; 0: it is none to them. */
+int order_take(const Answer *answer, size_t n_bytes, Worker *w);

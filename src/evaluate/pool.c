@@ -19,33 +19,6 @@ static const double LEFT_BEFORE_S = 1.0;
 /* To end by itself when its input has. */
 static const double FAREWELL_S = 1.0;
 
-/* -- the rules ----------------------------------------------------------------------------------------------------- */
-
-Status pool_wait(const Transport *t, Errand *e, Err *err)
-{
-    double before = clock_seconds(), ending = 0.0; /* since when no more is wanted */
-    while (e->n_done < e->n) {
-        const int has_ended = t->listen(e, fmax(fmin(e->limit_s - e->silent_s, LOOK_S), 0.0));
-        const double now = clock_seconds();
-        e->silent_s += fmin(now - before, 2.0 * LOOK_S);
-        before = now;
-        if (e->n_done == e->n)
-            break;
-        if (has_ended || e->silent_s >= e->limit_s)
-            TRY(t->lose(e, has_ended, err));
-        if (ending > 0.0 && now > ending + t->grace_s) {
-            if (t->kill)
-                t->kill(e);
-            return fail(err, STATUS_STOPPED, "stopped");
-        }
-        if (ending == 0.0 && !e->task->may_go_on(e->task->user))
-            ending = now;
-    }
-    if (e->why.code != STATUS_OK)
-        *err = e->why;
-    return e->why.code;
-}
-
 /* -- one process --------------------------------------------------------------------------------------------------- */
 
 static int has_ended(const Worker *w)
@@ -64,14 +37,15 @@ static Status worker_start(Worker *w, Err *err)
 {
     const Protocol *how = &w->pool->protocol;
     int to[2] = {-1, -1}, from[2] = {-1, -1}; /* the worker */
-    const int why = pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0
-                        ? errno
-                        : helper_start(&w->helper, &how->work, w - w->pool->worker, to[0], from[1]);
-    close(from[1]);
-    w->reader = to[0];
-    w->in = to[1];
+    int why = (!how->send && pipe2(to, O_CLOEXEC) != 0) || pipe2(from, O_CLOEXEC) != 0 ? errno : 0;
+    if (!why && !how->send)
+        why = helper_start(&w->helper, &how->work, w - w->pool->worker, to[0], from[1]);
+    w->reader = how->send ? -1 : to[0];
+    w->in = how->send ? from[1] : to[1];
     w->out = from[0];
     w->n_line = w->n_answered = w->n_sent = 0;
+    if (!how->send)
+        close(from[1]);
     if (why) {
         close_pipes(w);
         return bad_data(err, "%s: %s cannot be started: %s", how->name,
@@ -90,70 +64,58 @@ static void worker_end(Worker *w)
     close_pipes(w);
 }
 
-static void send_more(Worker *w)
-{
-    const ssize_t n = write(w->in, w->request + w->n_sent, w->n_request - w->n_sent);
-    w->n_sent += n > 0 ? (size_t)n : 0;
-}
-
-static int read_more(Worker *w)
+/* Takes what comes. The end of a process counts where it left nothing to be read: a child of it may hold its output
+ * open. */
+static int listen_to(Worker *w, double seconds)
 {
     const Protocol *how = &w->pool->protocol;
-    const size_t room = LINE_MAX_BYTES - w->n_line;
-    const ssize_t n = read(w->out, w->line + w->n_line, MIN_OF(room, READ_BYTES));
-    if (n > 0) {
-        w->n_line += n;
-        how->look(how->self, w);
-    }
-    return n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR);
-}
-
-/* The end of a process counts where it left nothing to be read: a child of it may hold its output open. */
-static int listen_to(Errand *e, double seconds)
-{
-    Worker *w = (Worker *)e;
     struct pollfd ends[3] = {
         {w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}, {w->helper.to, POLLIN, 0}};
     if (poll(ends, 3, (int)ceil(1e3 * seconds)) <= 0)
         return 0;
-    if (ends[1].revents)
-        return read_more(w);
-    if (ends[2].revents)
+    if (!ends[1].revents && ends[2].revents)
         return 1;
-    send_more(w);
-    return 0;
+    const ssize_t n = ends[1].revents
+                          ? read(w->out, w->line + w->n_line, MIN_OF(LINE_MAX_BYTES - w->n_line, READ_BYTES))
+                          : write(w->in, w->request + w->n_sent, w->n_request - w->n_sent);
+    if (ends[1].revents && n > 0) {
+        w->n_line += n;
+        how->look(how->self, w);
+    } else if (n > 0) {
+        w->n_sent += n;
+    }
+    return ends[1].revents && (n == 0 || (n < 0 && errno != EAGAIN && errno != EINTR));
 }
 
 /* -- what becomes of its tasks ------------------------------------------------------------------------------------- */
 
 void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format, ...)
 {
-    Errand *e = &w->errand;
     const Protocol *how = &w->pool->protocol;
     char reason[REASON_MAX];
     va_list list;
     if (kill_it)
         worker_end(w);
-    if (kill_it && e->n > 1) { /* whose fault it was is not known */
-        e->n = e->n_done;
+    if (kill_it && w->n > 1 && !how->send) { /* whose fault it was is not known */
+        w->n = w->n_done;
         return;
     }
     va_start(list, format);
     vsnprintf(reason, sizeof reason, format, list);
     va_end(list);
-    how->tell(how->self, w, &e->task[e->n_done], outcome, reason);
-    e->n_done++;
+    how->tell(how->self, w, outcome, reason);
+    w->n_done += w->n_done < w->n;
     w->asked = clock_seconds();
 }
 
-static Status lose(Errand *e, int has_gone, Err *err)
+/* Of a worker that has ended, or is silent. */
+static Status lose(Worker *w, int has_gone, Err *err)
 {
-    Worker *w = (Worker *)e;
     const Protocol *how = &w->pool->protocol;
     const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
                             clock_seconds() < w->asked + LEFT_BEFORE_S;
     worker_end(w);
-    if (has_gone && e->n == 1 && (was_leaving || w->how == -1)) {
+    if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
         w->is_second = 1;
         return worker_start(w, err);
     }
@@ -164,27 +126,50 @@ static Status lose(Errand *e, int has_gone, Err *err)
     return STATUS_OK;
 }
 
-static void kill_it(Errand *e)
-{
-    worker_end((Worker *)e);
-}
-
-static const Transport PROCESSES = {.grace_s = 5.0, .listen = listen_to, .lose = lose, .kill = kill_it};
-
-static Status ask(Worker *w, size_t n, const Task tasks[], Err *err)
+Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
 {
     const Protocol *how = &w->pool->protocol;
-    w->errand = (Errand){.task = tasks, .n = n, .limit_s = how->timeout_s * (double)n};
+    w->task = tasks;
+    w->n = n;
+    w->n_done = 0;
+    w->silent_s = 0.0;
+    w->why = (Err){0};
     w->is_second = 0;
     if (w->helper.pid && has_ended(w))
         worker_end(w); /* it ended after its last answer: no fault of any design */
-    if (w->helper.pid == 0)
+    if (w->helper.pid == 0 && !how->send)
         TRY(worker_start(w, err));
-    w->n_request = how->write(how->self, &w->errand, w->request);
-    w->n_sent = 0;
+    w->n_request = how->write(how->self, w, w->request);
+    w->n_sent = how->send ? w->n_request : 0;
     w->asked = clock_seconds();
+    if (how->send)
+        how->send(how->self, w);
     how->look(how->self, w); /* a worker that wrote without being asked */
-    return pool_wait(&PROCESSES, &w->errand, err);
+    return STATUS_OK;
+}
+
+Status pool_wait(Worker *w, Err *err)
+{
+    const Protocol *how = &w->pool->protocol;
+    const double limit_s = how->timeout_s * (how->send ? 1.0 : (double)w->n);
+    double before = clock_seconds(), ending = 0.0; /* since when no more is wanted */
+    while (w->n_done < w->n) {
+        const int has_gone = listen_to(w, fmax(fmin(limit_s - w->silent_s, LOOK_S), 0.0));
+        const double now = clock_seconds();
+        w->silent_s += fmin(now - before, 2.0 * LOOK_S);
+        before = now;
+        if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s))
+            TRY(lose(w, has_gone, err));
+        if (w->n_done < w->n && ending > 0.0 && now > ending + how->grace_s) {
+            worker_end(w);
+            return fail(err, STATUS_STOPPED, "stopped");
+        }
+        if (ending == 0.0 && !w->task->may_go_on(w->task->user))
+            ending = now;
+    }
+    if (w->why.code != STATUS_OK)
+        *err = w->why;
+    return w->why.code;
 }
 
 /* What a process that failed left of a batch is asked one by one, so that the design at fault fails alone. */
@@ -193,10 +178,12 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
     Worker *w = &p->worker[worker];
     Status status = STATUS_OK;
     size_t most = TASKS_MAX;
-    for (*n_done = 0; status == STATUS_OK && *n_done < n; *n_done += w->errand.n_done) {
+    for (*n_done = 0; status == STATUS_OK && *n_done < n; *n_done += w->n_done) {
         const size_t asked = MIN_OF(MIN_OF(most, w->batch), n - *n_done);
-        status = ask(w, asked, tasks + *n_done, err);
-        most = w->errand.n_done < asked ? 1 : most;
+        status = pool_ask(w, asked, tasks + *n_done, err);
+        if (status == STATUS_OK)
+            status = pool_wait(w, err);
+        most = w->n_done < asked ? 1 : most;
     }
     return status;
 }
@@ -216,15 +203,14 @@ Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)
 {
     *p = (Pool){.protocol = *protocol};
     TRY_ROOM(p->worker, n_workers, "workers", err);
-    for (; p->n_workers < n_workers; p->n_workers++) {
-        Worker *w = &p->worker[p->n_workers];
-        *w = (Worker){.pool = p, .line = malloc(LINE_MAX_BYTES)};
+    while (p->n_workers < n_workers) {
+        Worker *w = &p->worker[p->n_workers++];
+        *w = (Worker){.pool = p, .helper.to = -1, .in = -1, .out = -1, .reader = -1, .line = malloc(LINE_MAX_BYTES)};
         pool_batch(w, 1);
-        if (!w->line || !w->request) {
-            free(w->line);
-            free(w->request);
+        if (!w->line || !w->request)
             return fail_memory(err, n_workers, "workers");
-        }
+        if (protocol->send)
+            TRY(worker_start(w, err));
     }
     return STATUS_OK;
 }
@@ -243,6 +229,8 @@ void pool_close(Pool *p)
         if (w->helper.pid)
             poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, (int)(1e3 * fmax(until - clock_seconds(), 0.0)));
         worker_end(w);
+        if (p->protocol.send)
+            close_pipes(w);
         free(w->line);
         free(w->request);
     }

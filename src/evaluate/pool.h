@@ -2,12 +2,11 @@
  * thread of the queue (evaluate/tasks.h) gives each its tasks and waits for them, all by these rules:
  *
  *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a fresh
- *             worker is what it had no part in: its helper was lost; or, once, it had given answers before and ended by
+ *             worker is what it had no part in: its helper was killed; or, once, it had given answers before and ended by
  *             itself within a second of the request (may_leave)
- *   silent    for limit_s of our own running time, the same; where the whole machine was suspended none was silent
+ *   silent    for timeout_s of our own running time, the same: where the whole machine was suspended none was silent. A
+ *             rank says now and then that it lives; one that does not ends everything, to be resumed
  *   stopped   what is under way gets grace_s to end, then it counts as never begun
- *
- * An order is what processes of our own are asked, in plain bytes: Order, Task (n), x (n, n_var); and Answer the answer.
  *
  * Life cycle  pool_open -> pool_do ... -> pool_close ({0} is fine)
  * Threads     pool_do by several, each for a worker of its own
@@ -18,35 +17,19 @@
 #include "evaluate/helper.h"
 #include "evaluate/problem.h"
 
-/* -- the rules ----------------------------------------------------------------------------------------------------- */
-
-/* Tasks of a worker, the first n_done are done. */
-typedef struct {
-    const Task *task;
-    size_t n, n_done; /* less n: the rest is given up */
-    double limit_s, silent_s;
-    Err why; /* of a fault that ends everything */
-} Errand;
-
-/* Of a worker, which is known by its errand. */
-typedef struct {
-    double grace_s;
-    int (*listen)(Errand *e, double seconds);           /* takes what comes; 1: it has ended */
-    Status (*lose)(Errand *e, int has_ended, Err *err); /* it has ended, or is silent */
-    void (*kill)(Errand *e);                            /* NULL: it ends when we do */
-} Transport;
-
-Status pool_wait(const Transport *t, Errand *e, Err *err);
-
-/* -- processes ----------------------------------------------------------------------------------------------------- */
-
 enum { LINE_MAX_BYTES = 1 << 20 };
+
+/* What is under way in a process, when no more is wanted. */
+static const double PROCESS_GRACE_S = 5.0;
 
 typedef struct Pool Pool;
 
 typedef struct {
-    Errand errand;
     const Pool *pool;
+    const Task *task; /* (n) under way, the first n_done are done; less n: the rest is given up */
+    size_t n, n_done;
+    double silent_s;
+    Err why; /* of a fault that ends everything */
     Helper helper;
     int in, out, reader; /* reader: of `in`, so that none of us ever writes to nobody */
     char *line;          /* (LINE_MAX_BYTES) what has come of an answer */
@@ -65,11 +48,15 @@ typedef struct {
     const char *name; /* of the setting */
     HelperWork work;
     size_t request_bytes; /* for one design */
-    double timeout_s;
+    double timeout_s;     /* for one; of a worker that is no process, between two signs of life */
+    double grace_s;
     int may_leave;
-    size_t (*write)(void *self, const Errand *e, char *request);
+    size_t (*write)(void *self, const Worker *w, char *request);
+    /* Another way than a process: sends the request; what comes is written to `in`, and read at `out`. NULL: a process */
+    void (*send)(void *self, const Worker *w);
     void (*look)(void *self, Worker *w); /* takes whole answers from `line`, each by pool_settle */
-    void (*tell)(void *self, const Worker *w, const Task *task, Outcome outcome, const char *reason);
+    /* reason: of an outcome, to be written into the task's part */
+    void (*tell)(void *self, Worker *w, Outcome outcome, const char *reason);
     void *self;
 } Protocol;
 
@@ -82,8 +69,10 @@ struct Pool {
 Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err);
 void pool_close(Pool *p);
 
-/* As Simulator.simulate_batch. */
+/* As Simulator.simulate_batch; and its two halves, for a worker that takes n at once. */
 Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
+Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err);
+Status pool_wait(Worker *w, Err *err);
 
 /* So many designs at once from now on, where there is memory. */
 void pool_batch(Worker *w, size_t n);

@@ -77,7 +77,7 @@ typedef struct {
     Status (*start)(void **self, Queue *queue, size_t *n_workers, Err *err);
     void (*help)(void *self);   /* called while the client waits: does something; NULL: needs no help */
     void (*stop)(void *self);   /* none is under way any more */
-    const Simulator *simulator; /* asked by a thread for each of n_workers; NULL: it takes tasks by itself */
+    const Simulator *simulator; /* asked by two threads for each of n_workers; NULL: it takes tasks by itself */
 } Executor;
 
 typedef struct {

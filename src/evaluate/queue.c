@@ -31,8 +31,9 @@ struct Queue {
     Slot **line; /* (head..head+n) pending designs in the order of asking, room for n_max */
     Slot *given; /* by the last queue_next */
     size_t n_pool, n_idle, n_max, head, n;
-    size_t next;    /* before it, counted from head, every design has all its parts taken */
-    size_t n_asked; /* ever */
+    size_t next;      /* before it, counted from head, every design has all its parts taken */
+    size_t n_asked;   /* ever */
+    size_t n_waiting; /* tasks that nobody has taken */
     size_t n_under_way;
     long last_id;
     int closed;
@@ -42,8 +43,9 @@ struct Queue {
     void *executing;  /* the problem's executor; without one: */
     Worker *worker;   /* (n_threads) */
     size_t n_threads; /* 0: the client itself is the worker, while it waits */
+    size_t n_first;   /* of these; the others take ahead, where there is enough for all */
     pthread_mutex_t lock, finishing;
-    pthread_cond_t work, news;
+    pthread_cond_t work, plenty, news; /* plenty: for those who take ahead */
 };
 
 const Problem *queue_problem(const Queue *q)
@@ -161,6 +163,7 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     s->variant = asked->variant;
     s->n_parts = asked->n_parts > 0 ? asked->n_parts : p->n_parts;
     s->sequence = q->n_asked++;
+    q->n_waiting += s->n_parts - (asked->cheap_parts ? p->n_cheap : 0);
     if (!asked->cheap_parts)
         return;
     memcpy(s->parts, asked->cheap_parts, p->n_cheap * p->part_size);
@@ -187,6 +190,8 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err)
             pthread_cond_broadcast(&q->work);
         else
             pthread_cond_signal(&q->work);
+        if (q->n_waiting >= q->n_first)
+            pthread_cond_signal(&q->plenty);
     }
     pthread_mutex_unlock(&q->lock);
     return status;
@@ -198,17 +203,16 @@ size_t queue_pending(const Queue *q)
     return q->n;
 }
 
-/* How many of the tasks that nobody has taken one worker takes, so that all get some: `most` at most. */
-static size_t share(Queue *q, size_t most)
+/* How many of those that wait one worker takes, so that all get some. */
+static size_t share(Queue *q)
 {
-    const size_t n_workers = q->problem->n_workers;
-    size_t n = 0;
     pthread_mutex_lock(&q->lock);
-    for (size_t i = q->next; i < q->n && n < most * n_workers; i++)
-        n += in_line(q, i)->n_parts - in_line(q, i)->n_taken;
+    const size_t n = 1 + q->n_waiting / q->n_first;
     pthread_mutex_unlock(&q->lock);
-    return MIN_OF(1 + n / n_workers, most);
+    return n;
 }
+
+static int take(Queue *q, size_t least, int wait, Task *task);
 
 /* One, or as many of those that wait as the worker wants. */
 static int do_tasks(Queue *q, size_t worker, int wait)
@@ -219,9 +223,10 @@ static int do_tasks(Queue *q, size_t worker, int wait)
     Task task[TASKS_MAX];
     Err why = {0};
     size_t n = 0, n_done = 0, n_wanted = s->batch ? s->batch(self, worker) : 1;
-    for (; n < n_wanted && queue_take(q, wait && n == 0, &task[n]); n++)
+    const size_t least = worker < q->n_first ? 1 : q->n_first;
+    for (; n < n_wanted && take(q, least, wait && n == 0, &task[n]); n++)
         if (n == 0 && n_wanted > 1)
-            n_wanted = share(q, n_wanted);
+            n_wanted = MIN_OF(n_wanted, share(q));
     if (n == 0)
         return 0;
     const Status status = simulate_tasks(s, self, worker, n, task, &n_done, &why);
@@ -296,12 +301,15 @@ static void end(Queue *q, size_t rank, Status status, const char *why)
         q->status = fail(&q->why, status, "%s", why);
     }
     pthread_cond_broadcast(&q->work);
+    pthread_cond_broadcast(&q->plenty);
     pthread_cond_broadcast(&q->news);
 }
 
-/* The first design that has parts to be taken, or NULL. */
-static Slot *find_work(Queue *q)
+/* The first design that has parts to be taken, or NULL: there are not that many. */
+static Slot *find_work(Queue *q, size_t least)
 {
+    if (q->n_waiting < least)
+        return NULL;
     while (q->next < q->n && in_line(q, q->next)->n_taken == in_line(q, q->next)->n_parts)
         q->next++;
     return q->next < q->n ? in_line(q, q->next) : NULL;
@@ -322,14 +330,15 @@ static void hand_out(Queue *q, Slot *s, Task *task)
                    .user = q,
                    .slot = s->index};
     q->n_under_way++;
+    q->n_waiting--;
 }
 
-int queue_take(Queue *q, int wait, Task *task)
+static int take(Queue *q, size_t least, int wait, Task *task)
 {
     Slot *s = NULL;
     pthread_mutex_lock(&q->lock);
-    while (!q->closed && q->status == STATUS_OK && !(s = find_work(q)) && wait)
-        pthread_cond_wait(&q->work, &q->lock);
+    while (!q->closed && q->status == STATUS_OK && !(s = find_work(q, least)) && wait)
+        pthread_cond_wait(least > 1 ? &q->plenty : &q->work, &q->lock);
     if (q->closed || q->status != STATUS_OK) {
         s = NULL;
     } else if (s && !may_go_on(q)) {
@@ -340,6 +349,11 @@ int queue_take(Queue *q, int wait, Task *task)
         hand_out(q, s, task);
     pthread_mutex_unlock(&q->lock);
     return s != NULL;
+}
+
+int queue_take(Queue *q, int wait, Task *task)
+{
+    return take(q, 1, wait, task);
 }
 
 /* As a run stores them: 0 has no sign, and what is not finite is not known. */
@@ -434,11 +448,13 @@ static void *work(void *user)
 static Status start(Queue *q, Err *err)
 {
     const Executor *e = q->problem->executor;
-    size_t n = q->problem->n_workers;
+    q->n_first = q->problem->n_workers;
     if (e)
-        TRY(e->start(&q->executing, q, &n, err));
-    if (e ? !e->simulator : n == 1)
+        TRY(e->start(&q->executing, q, &q->n_first, err));
+    if (e ? !e->simulator : q->n_first == 1)
         return STATUS_OK;
+    const size_t n =
+        e && q->n_first > 1 ? 2 * q->n_first : q->n_first; /* of one the order of arrival is that of asking */
     TRY_ROOM(q->worker, n, "threads", err);
     for (; q->n_threads < n; q->n_threads++) {
         Worker *w = &q->worker[q->n_threads];
@@ -460,6 +476,7 @@ Status queue_open(Queue **out, const Problem *problem, Err *err)
     pthread_mutex_init(&q->lock, NULL);
     pthread_mutex_init(&q->finishing, NULL);
     pthread_cond_init(&q->work, NULL);
+    pthread_cond_init(&q->plenty, NULL);
     pthread_cond_init(&q->news, NULL);
     const Status status = start(q, err);
     if (status == STATUS_OK)
@@ -476,6 +493,7 @@ void queue_close(Queue *q)
     pthread_mutex_lock(&q->lock);
     q->closed = 1;
     pthread_cond_broadcast(&q->work);
+    pthread_cond_broadcast(&q->plenty);
     pthread_mutex_unlock(&q->lock);
     for (size_t i = 0; i < q->n_threads; i++)
         pthread_join(q->worker[i].thread, NULL);
@@ -485,6 +503,7 @@ void queue_close(Queue *q)
     pthread_mutex_destroy(&q->lock);
     pthread_mutex_destroy(&q->finishing);
     pthread_cond_destroy(&q->work);
+    pthread_cond_destroy(&q->plenty);
     pthread_cond_destroy(&q->news);
     for (size_t i = 0; i < q->n_pool; i++)
         free(q->pool[i]);

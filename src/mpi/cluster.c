@@ -45,11 +45,10 @@ static Status compare(const Hello hello[], Err *err)
     return STATUS_OK;
 }
 
-/* The verdict of rank 0 is that of all; the reason is rank 0's to tell. */
+/* All come to one verdict, whose reason is rank 0's to tell. */
 static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VERSION_MAX], Err *err)
 {
     Hello mine = {.arguments = HASH_SEED};
-    int verdict = STATUS_OK;
     Hello *all = calloc(n_ranks(), sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
@@ -57,12 +56,10 @@ static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VER
     memcpy(mine.version, version, sizeof mine.version);
     for (int i = 1; i < argc; i++)
         mine.arguments = hash_fnv1a(argv[i], strlen(argv[i]) + 1, mine.arguments);
-    MPI_Gather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, 0, MPI_COMM_WORLD);
-    if (rank_of_this() == 0)
-        verdict = compare(all, err);
-    MPI_Bcast(&verdict, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, MPI_COMM_WORLD);
+    const Status verdict = compare(all, err);
     free(all);
-    return (Status)verdict;
+    return verdict;
 }
 
 /* Launchers signal every rank: rank 0 alone decides what a signal means. */
@@ -98,8 +95,9 @@ int message_receive(int from, int tag, Message *m)
 {
     MPI_Message message;
     MPI_Status about;
-    int there, n;
-    MPI_Improbe(from, tag, MPI_COMM_WORLD, &there, &message, &about);
+    int there = 0, n;
+    for (int tries = 0; tries < 2 && !there; tries++) /* the first may only have it come in */
+        MPI_Improbe(from, tag, MPI_COMM_WORLD, &there, &message, &about);
     if (!there)
         return 0;
     MPI_Get_count(&about, MPI_BYTE, &n);
@@ -135,7 +133,7 @@ void cluster_leave(int exit_code)
         return;
     if (rank_of_this() == 0) {
         for (int i = 1; i < n_ranks(); i++)
-            MPI_Send(NULL, 0, MPI_BYTE, i, TAG_LEAVE, MPI_COMM_WORLD);
+            MPI_Send(NULL, 0, MPI_BYTE, i, TAG_OPEN, MPI_COMM_WORLD);
         is_whole = wait_until_all_left();
     } else {
         is_whole = exit_code == 0;

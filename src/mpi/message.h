@@ -4,7 +4,7 @@
  *   TASK   an Order (evaluate/order.h) of one of its workers   ->  does it
  *                                                              <-  DONE    an Answer
  *                                                              <-  ALIVE   while it has tasks, every ALIVE_S
- *   LEAVE                                                      ->  ends
+ *   OPEN   without a task                                      ->  ends
  *                                                              <-  LEFT
  *
  * epoch: of the queue that the tasks are of; what comes late from an earlier one is dropped.
@@ -17,8 +17,7 @@
 
 /* TAG_TASK + worker of the rank, 0 ...; the opener is one more, whose task is to open a problem: x is the recipe, and
  * the part Opened. */
-enum { TAG_DONE = 1, TAG_ALIVE, TAG_LEAVE, TAG_LEFT, TAG_OPEN, TAG_TASK };
-enum { OPENER = TAG_OPEN - TAG_TASK };
+enum { TAG_DONE = 1, TAG_ALIVE, TAG_LEFT, TAG_OPEN, TAG_TASK };
 
 enum { HOST_MAX = 64 };
 
@@ -43,7 +42,7 @@ typedef struct {
 int message_receive(int from, int tag, Message *m);
 
 /* Are those n bytes from one of n_workers? */
-static inline int is_answer(const Answer *a, size_t n, size_t n_workers)
+static inline int is_answer_of(const Answer *a, size_t n, size_t n_workers)
 {
     return n >= sizeof *a && a->worker < n_workers;
 }

@@ -2,6 +2,7 @@
 #include <mpi.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "evaluate/tasks.h"
@@ -9,66 +10,65 @@
 
 /* Tasks go to a worker for so long in all, so that the way of a message is little beside them; of tasks that take longer
  * than SINGLE_S one at a time, so that a short batch ends earlier. */
-static const double AHEAD_S = 0.04, SINGLE_S = 0.2;
+static const double AHEAD_S = 0.005, SINGLE_S = 0.2;
 
 static const double PAUSE_MAX_S = 5e-4;
 
 /* To read records and build scenes, on machines that share a file system. */
 static const double OPEN_S = 600.0;
 
-typedef struct Ranks Ranks;
-
 typedef struct {
     Opened opened;
     Task opening;
-    size_t n_heard;
-    int is_wrong;
+    size_t n_workers; /* that are asked */
 } Rank;
 
-/* A worker of a rank. */
 typedef struct {
-    Errand errand;
-    Ranks *ranks;
-    int rank, number; /* number: of the rank's workers */
-    size_t n_heard;   /* of the rank, at the last look */
-    Order *order;
-    Message answer;
-    pthread_cond_t news;
-} Proxy;
-
-struct Ranks {
     const Problem *problem;
     int n;
-    Rank *rank; /* (n + 1); [0], this one, is not used */
-    size_t n_proxies;
-    Proxy *proxy;
+    Rank *rank;     /* (n + 1); [0], this one, is not used */
+    size_t n_seats; /* workers of all */
+    Pool pool[2];   /* those who open the problem, one of each rank, and two for each of their workers: while
+                   * one is done, another waits */
+    int is_open;
     int64_t epoch;
-    _Atomic double task_s; /* [s] a task takes, over the last ones */
     atomic_int ending;
     int is_running;
     pthread_t thread;
     pthread_mutex_t lock; /* who has it may call MPI */
-};
+} Ranks;
+
+typedef struct {
+    int rank, tag;
+} Seat;
+
+/* Where a worker of the pool sits. */
+static Seat seat_of(const Ranks *r, size_t worker)
+{
+    int i = 1;
+    for (worker %= r->n_seats; worker >= r->rank[i].n_workers; i++)
+        worker -= r->rank[i].n_workers;
+    return (Seat){i, r->is_open ? TAG_TASK + (int)worker : TAG_OPEN};
+}
 
 /* -- messages ------------------------------------------------------------------------------------------------------ */
 
-/* What comes is for the proxy that waits for it; r->lock is held. */
-static void hear(Ranks *r, const Message *m)
+/* An answer is for the worker that waits for it, whatever else a sign of life for all of the rank, as is an answer that
+ * is none: that is no good one. r->lock is held. */
+static void hear(Ranks *r, Message *m)
 {
+    const Pool *p = &r->pool[r->is_open];
     const Answer *a = m->bytes;
-    Rank *rank = &r->rank[m->from];
-    Proxy *p = NULL;
-    rank->n_heard++;
-    if (m->tag == TAG_DONE && (m->n < sizeof *a || a->epoch == r->epoch)) {
-        p = is_answer(a, m->n, r->n_proxies) ? &r->proxy[a->worker] : NULL;
-        rank->is_wrong |= !p || p->rank != m->from || p->answer.bytes;
-    }
-    if (!p || rank->is_wrong) {
+    const int is_answer = m->tag == TAG_DONE && (m->n < sizeof *a || a->epoch == r->epoch);
+    const int is_right = is_answer && is_answer_of(a, m->n, p->n_workers) && seat_of(r, a->worker).rank == m->from;
+    if (!is_right) {
         free(m->bytes);
-        return;
+        *m = (Message){.from = m->from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
     }
-    p->answer = *m;
-    pthread_cond_signal(&p->news);
+    for (size_t i = 0; i < p->n_workers; i++)
+        if (is_right ? i == a->worker : seat_of(r, i).rank == m->from)
+            if (write(p->worker[i].in, m, sizeof *m) < 0)
+                continue; /* it is full of signs of life */
 }
 
 static void *receive(void *user)
@@ -89,121 +89,88 @@ static void *receive(void *user)
     return NULL;
 }
 
-/* Sends an errand; the message has come when its answer has. */
-static Status ask(Proxy *p, const Errand *errand, size_t n_var, Err *err)
+/* -- as workers of a pool ------------------------------------------------------------------------------------------ */
+
+static size_t write_order(void *self, const Worker *w, char *request)
 {
-    const size_t n = order_bytes(errand->n, n_var);
-    Ranks *r = p->ranks;
+    const Ranks *r = self;
+    Order *order = (Order *)(void *)request;
+    order->epoch = r->epoch;
+    order->worker = w - w->pool->worker;
+    return order_write(order, w, r->is_open ? r->problem->n_var : r->problem->recipe_size / sizeof(double));
+}
+
+/* The message has come when its answer has. */
+static void send_order(void *self, const Worker *w)
+{
+    Ranks *r = self;
+    const Seat seat = seat_of(r, w - w->pool->worker);
     MPI_Request request;
-    p->errand = *errand;
-    p->order = calloc(1, n);
-    if (!p->order)
-        return fail_memory(err, errand->n, "tasks under way");
-    order_write(p->order, errand, n_var);
-    p->order->epoch = r->epoch;
-    p->order->worker = p - r->proxy;
     pthread_mutex_lock(&r->lock);
-    MPI_Isend(p->order, (int)n, MPI_BYTE, p->rank, TAG_TASK + p->number, MPI_COMM_WORLD, &request);
+    MPI_Isend(w->request, (int)w->n_request, MPI_BYTE, seat.rank, seat.tag, MPI_COMM_WORLD, &request);
     MPI_Request_free(&request);
     pthread_mutex_unlock(&r->lock);
-    return STATUS_OK;
 }
 
-/* -- as a worker of the pool --------------------------------------------------------------------------------------- */
-
-static int take_answer(Proxy *p)
+/* A rank that is not to be asked any more ends everything. */
+static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
 {
-    Ranks *r = p->ranks;
-    const Answer *a = p->answer.bytes;
-    const int is_taken = order_take(a, p->answer.n, &p->errand);
-    const double task_s = a->seconds / (double)p->errand.n;
-    if (is_taken && a->n_done > 0)
-        r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * task_s : task_s;
-    free(p->order);
-    free(p->answer.bytes);
-    p->answer.bytes = NULL;
-    return is_taken;
+    (void)reason;
+    const Ranks *r = self;
+    const int i = seat_of(r, w - w->pool->worker).rank;
+    if (outcome == OUTCOME_TIMEOUT)
+        fail(&w->why, STATUS_STOPPED, "rank %d on %s was taken for dead (silent for %g s)", i, r->rank[i].opened.host,
+             w->pool->protocol.timeout_s);
+    else
+        fail(&w->why, STATUS_INTERNAL, "rank %d on %s sends results of tasks that it does not have", i,
+             r->rank[i].opened.host);
+    w->n = w->n_done;
 }
 
-static int listen_to(Errand *e, double seconds)
+static void look(void *self, Worker *w)
 {
-    Proxy *p = (Proxy *)e;
-    Ranks *r = p->ranks;
-    const Rank *rank = &r->rank[p->rank];
-    const double until = clock_seconds() + seconds;
-    const struct timespec at = {(time_t)until, (long)(1e9 * (until - floor(until)))};
-    pthread_mutex_lock(&r->lock);
-    if (!p->answer.bytes)
-        pthread_cond_clockwait(&p->news, &r->lock, CLOCK_MONOTONIC, &at);
-    if (rank->n_heard != p->n_heard)
-        e->silent_s = 0.0;
-    p->n_heard = rank->n_heard;
-    const int is_wrong = rank->is_wrong, is_there = p->answer.bytes != NULL;
-    pthread_mutex_unlock(&r->lock);
-    return is_wrong || (is_there && !take_answer(p));
+    Message m;
+    (void)self;
+    for (size_t at = 0; at < w->n_line; at += sizeof m) { /* written whole */
+        memcpy(&m, w->line + at, sizeof m);
+        const Answer *a = m.bytes;
+        w->silent_s = 0.0;
+        if (m.tag == TAG_DONE && (!a || !order_take(a, m.n, w)))
+            pool_settle(w, OUTCOME_GARBLED, 0, "%s", "");
+        else if (a && a->n_done > 0 && a->seconds < SINGLE_S * (double)a->n_done)
+            pool_batch(w, (size_t)fmin(ceil(AHEAD_S * (double)a->n_done / a->seconds), TASKS_MAX));
+        else if (a)
+            pool_batch(w, 1);
+        free(m.bytes);
+    }
+    w->n_line = 0;
 }
-
-static Status lose(Errand *e, int is_wrong, Err *err)
-{
-    const Proxy *p = (const Proxy *)e;
-    const char *host = p->ranks->rank[p->rank].opened.host;
-    return is_wrong
-               ? fail(err, STATUS_INTERNAL, "rank %d on %s sends results of tasks that it does not have", p->rank, host)
-               : fail(err, STATUS_STOPPED, "rank %d on %s was taken for dead (silent for %g s)", p->rank, host,
-                      e->limit_s);
-}
-
-/* mpirun allows a second before it kills. */
-static const Transport RANKS = {.grace_s = 0.6, .listen = listen_to, .lose = lose};
 
 static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
 {
-    Ranks *r = self;
-    Proxy *p = &r->proxy[worker];
-    *n_done = 0;
-    TRY(ask(p, &(Errand){.task = tasks, .n = n, .limit_s = SILENT_S}, r->problem->n_var, err));
-    const Status status = pool_wait(&RANKS, &p->errand, err);
-    *n_done = p->errand.n_done;
-    return status;
+    return pool_do(&((Ranks *)self)->pool[1], worker, n, tasks, n_done, err);
 }
 
 static size_t batch(void *self, size_t worker)
 {
-    (void)worker;
-    const double task_s = ((Ranks *)self)->task_s;
-    return task_s > 0.0 && task_s < SINGLE_S ? (size_t)fmin(ceil(AHEAD_S / task_s), TASKS_MAX) : 1;
+    return ((const Ranks *)self)->pool[1].worker[worker].batch;
 }
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-static void free_proxies(Ranks *r)
+static Status open_pool(Ranks *r, int is_open, size_t n, Err *err)
 {
-    for (size_t i = 0; i < r->n_proxies; i++) {
-        free(r->proxy[i].answer.bytes);
-        pthread_cond_destroy(&r->proxy[i].news);
-    }
-    free(r->proxy);
-}
-
-/* As many as the ranks have workers, from number `first` on, in the place of those that there are. */
-static Status make_proxies(Ranks *r, int first, Err *err)
-{
-    size_t n = 0;
-    Proxy *p;
-    for (int i = 1; i <= r->n; i++)
-        n += r->rank[i].opened.n_workers;
-    TRY_ROOM(p, n, "workers", err);
-    pthread_mutex_lock(&r->lock);
-    free_proxies(r);
-    r->proxy = p;
-    r->n_proxies = n;
-    for (int i = 1; i <= r->n; i++)
-        for (size_t k = 0; k < r->rank[i].opened.n_workers; k++, p++) {
-            *p = (Proxy){.ranks = r, .rank = i, .number = first + (int)k};
-            pthread_cond_init(&p->news, NULL);
-        }
-    pthread_mutex_unlock(&r->lock);
-    return STATUS_OK;
+    const Problem *p = r->problem;
+    const Protocol protocol = {.name = "mpi",
+                               .request_bytes = order_bytes(1, is_open ? p->n_var : p->recipe_size / sizeof *p->lower),
+                               .timeout_s = is_open ? SILENT_S : OPEN_S,
+                               .grace_s = 0.6, /* mpirun allows a second before it kills */
+                               .write = write_order,
+                               .send = send_order,
+                               .look = look,
+                               .tell = tell,
+                               .self = r};
+    return pool_open(&r->pool[is_open], &protocol, n, err);
 }
 
 static int go_on(void *observer)
@@ -212,10 +179,11 @@ static int go_on(void *observer)
     return !o->go_on || o->go_on(o->user);
 }
 
-/* Every rank has a worker that opens problems: a task whose x is the recipe, and its part Opened. */
+/* A task whose x is the recipe, and its part Opened. */
 static Status open_problem(Ranks *r, Err *err)
 {
     const Problem *p = r->problem;
+    size_t n = 0;
     for (int i = 1; i <= r->n; i++) {
         Rank *rank = &r->rank[i];
         rank->opening = (Task){.x = p->recipe,
@@ -223,18 +191,25 @@ static Status open_problem(Ranks *r, Err *err)
                                .size = sizeof rank->opened,
                                .may_go_on = go_on,
                                .user = (void *)(uintptr_t)&p->observer};
-        TRY(ask(&r->proxy[i - 1], &(Errand){.task = &rank->opening, .n = 1, .limit_s = OPEN_S},
-                p->recipe_size / sizeof(double), err));
+        TRY(pool_ask(&r->pool[0].worker[i - 1], 1, &rank->opening, err));
     }
     for (int i = 1; i <= r->n; i++) {
         const Opened *o = &r->rank[i].opened;
-        TRY(pool_wait(&RANKS, &r->proxy[i - 1].errand, err));
+        TRY(pool_wait(&r->pool[0].worker[i - 1], err));
         if (o->inputs != p->inputs)
             return bad_data(err,
                             "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
                             "): records and building must be the same on every machine",
                             i, o->host, o->inputs, p->inputs);
+        n += o->n_workers;
     }
+    TRY(open_pool(r, 1, 2 * n, err));
+    pthread_mutex_lock(&r->lock);
+    r->n_seats = n;
+    for (int i = 1; i <= r->n; i++)
+        r->rank[i].n_workers = r->rank[i].opened.n_workers;
+    r->is_open = 1;
+    pthread_mutex_unlock(&r->lock);
     return STATUS_OK;
 }
 
@@ -244,7 +219,8 @@ static void stop(void *self)
     r->ending = 1;
     if (r->is_running)
         pthread_join(r->thread, NULL);
-    free_proxies(r);
+    pool_close(&r->pool[0]);
+    pool_close(&r->pool[1]);
     pthread_mutex_destroy(&r->lock);
     free(r->rank);
     free(r);
@@ -258,18 +234,19 @@ static Status start(void **self, Queue *q, size_t *n_workers, Err *err)
     *self = r;
     pthread_mutex_init(&r->lock, NULL);
     cluster_executor(&n);
+    r->n = (int)n;
+    r->n_seats = n;
     r->problem = queue_problem(q);
     r->epoch = (int64_t)(1e9 * clock_seconds());
     TRY_ROOM(r->rank, n + 1, "ranks", err);
-    for (r->n = (int)n; n > 0; n--)
-        r->rank[n].opened.n_workers = 1;
-    TRY(make_proxies(r, OPENER, err));
+    for (size_t i = 1; i <= n; i++)
+        r->rank[i].n_workers = 1;
+    TRY(open_pool(r, 0, n, err));
     r->is_running = pthread_create(&r->thread, NULL, receive, r) == 0;
     if (!r->is_running)
         return fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);
     TRY(open_problem(r, err));
-    TRY(make_proxies(r, 0, err));
-    *n_workers = r->n_proxies;
+    *n_workers = r->n_seats;
     return STATUS_OK;
 }
 

@@ -17,6 +17,8 @@ typedef struct {
     Service *service;
     int number;
     pthread_t thread;
+    Answer *answer; /* the last one, which is on its way */
+    MPI_Request request;
 } Seat;
 
 struct Service {
@@ -27,15 +29,15 @@ struct Service {
     Seat *seat;
     size_t n_workers;        /* that run */
     pthread_mutex_t talking; /* who calls MPI */
-    int has_said_left;
+    int has_said_left, rank;
     double sent_s;
 };
 
-static void say(Service *s, int tag, const void *bytes, size_t n)
+static void say(Service *s, int tag)
 {
     pthread_mutex_lock(&s->talking);
     if (!s->has_said_left)
-        MPI_Send(bytes, (int)n, MPI_BYTE, 0, tag, MPI_COMM_WORLD);
+        MPI_Send(NULL, 0, MPI_BYTE, 0, tag, MPI_COMM_WORLD);
     s->has_said_left |= tag == TAG_LEFT;
     s->sent_s = clock_seconds();
     pthread_mutex_unlock(&s->talking);
@@ -49,16 +51,6 @@ static int hear(Service *s, int tag, Message *m)
     return there;
 }
 
-/* "rank 2 on HOST: why" */
-static Status fail_here(Err *err, Status status, const char *why)
-{
-    char host[HOST_MAX];
-    int rank;
-    host_name(host);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    return fail(err, status, "rank %d on %s: %s", rank, host, why);
-}
-
 /* -- tasks --------------------------------------------------------------------------------------------------------- */
 
 static int may_go_on(void *user)
@@ -66,21 +58,28 @@ static int may_go_on(void *user)
     return !((Service *)user)->closing;
 }
 
-static void do_order(Service *s, size_t worker, Order *order, const Simulator *simulator, void *self)
+/* The answer is not waited for, but the one before. */
+static void do_order(Seat *w, Order *order, const Simulator *simulator, void *self)
 {
+    Service *s = w->service;
     const Doer doer = {simulator, self, s->problem.n_var, may_go_on, s};
-    Answer none = {.epoch = order->epoch, .worker = order->worker};
-    size_t n = sizeof none;
-    Answer *a = order_do(order, worker, &doer, &n);
+    size_t n;
+    Answer *a = order_do(order, (size_t)w->number, &doer, &n);
     if (!a)
-        fail_here(&none.why, STATUS_NO_MEMORY, "no memory for the results of a task");
-    say(s, TAG_DONE, a ? a : &none, n);
-    free(a);
+        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
+    pthread_mutex_lock(&s->talking);
+    MPI_Wait(&w->request, MPI_STATUS_IGNORE);
+    free(w->answer);
+    w->answer = a;
+    if (!s->has_said_left)
+        MPI_Isend(a, (int)n, MPI_BYTE, 0, TAG_DONE, MPI_COMM_WORLD, &w->request);
+    s->sent_s = clock_seconds();
+    pthread_mutex_unlock(&s->talking);
 }
 
 static void *work(void *user)
 {
-    const Seat *w = user;
+    Seat *w = user;
     Service *s = w->service;
     Message m;
     for (double pause = PAUSE_MIN_S; !s->closing; pause = longer_pause(pause, PAUSE_MAX_S)) {
@@ -89,7 +88,7 @@ static void *work(void *user)
             continue;
         }
         s->n_running++;
-        do_order(s, (size_t)w->number, m.bytes, s->problem.simulator, s->problem.self);
+        do_order(w, m.bytes, s->problem.simulator, s->problem.self);
         s->n_running--;
         free(m.bytes);
         pause = PAUSE_MIN_S;
@@ -102,8 +101,11 @@ static void *work(void *user)
 static void close_problem(Service *s)
 {
     s->closing = 1;
-    for (size_t i = 0; i < s->n_workers; i++)
+    for (size_t i = 0; i < s->n_workers; i++) {
         pthread_join(s->seat[i].thread, NULL);
+        MPI_Wait(&s->seat[i].request, MPI_STATUS_IGNORE);
+        free(s->seat[i].answer);
+    }
     s->n_workers = s->closing = 0;
     free(s->seat);
     s->seat = NULL;
@@ -118,7 +120,7 @@ static Status start_workers(Service *s, Err *err)
     TRY_ROOM(s->seat, n, "threads", err);
     for (; s->n_workers < n; s->n_workers++) {
         Seat *w = &s->seat[s->n_workers];
-        *w = (Seat){.service = s, .number = (int)s->n_workers};
+        *w = (Seat){.service = s, .number = (int)s->n_workers, .request = MPI_REQUEST_NULL};
         if (pthread_create(&w->thread, NULL, work, w) != 0)
             return fail(err, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", s->n_workers + 1, n);
     }
@@ -147,7 +149,7 @@ static Status open_problem(void *self, size_t worker, const Task *task, Err *err
     if (status == STATUS_OK)
         return STATUS_OK;
     s->held.n = 0;
-    return fail_here(err, status, why.text);
+    return fail(err, status, "rank %d on %s: %s", s->rank, opened->host, why.text);
 }
 
 static const Simulator OPENS = {.simulate = open_problem};
@@ -157,18 +159,20 @@ static const Simulator OPENS = {.simulate = open_problem};
 static void exchange(Service *s)
 {
     Message *m = &s->heard;
-    for (double pause = PAUSE_MIN_S; !hear(s, TAG_LEAVE, m);) {
+    Seat opener = {.service = s, .request = MPI_REQUEST_NULL};
+    double pause = PAUSE_MIN_S;
+    for (m->n = 1; m->n > 0;) {
         if (hear(s, TAG_OPEN, m)) {
-            do_order(s, 0, m->bytes, &OPENS, s);
+            if (m->n > 0)
+                do_order(&opener, m->bytes, &OPENS, s);
             free(m->bytes);
             pause = PAUSE_MIN_S;
         }
         if (s->n_running > 0 && clock_seconds() > s->sent_s + ALIVE_S)
-            say(s, TAG_ALIVE, NULL, 0);
+            say(s, TAG_ALIVE);
         pause = longer_pause(pause, s->n_running > 0 ? PAUSE_BUSY_S : PAUSE_MAX_S);
         pause_s(pause);
     }
-    free(m->bytes);
 }
 
 /* A task that takes longer than a moment ends with the process. */
@@ -177,13 +181,14 @@ Status serve(ReopenFn reopen, Err *err)
     Service *s;
     TRY_ROOM(s, 1, "a rank", err);
     s->reopen = reopen;
+    MPI_Comm_rank(MPI_COMM_WORLD, &s->rank);
     pthread_mutex_init(&s->talking, NULL);
     exchange(s);
     s->closing = 1;
     for (const double until = clock_seconds() + FAREWELL_S; s->n_running > 0 && clock_seconds() < until;)
         pause_s(1e-3);
     const int is_busy = s->n_running > 0;
-    say(s, TAG_LEFT, NULL, 0);
+    say(s, TAG_LEFT);
     if (is_busy)
         return STATUS_OK;
     close_problem(s);

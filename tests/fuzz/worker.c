@@ -24,7 +24,7 @@ static void hear(External *e, const uint8_t *data, size_t size)
         task[i] = (Task){.id = (long)i + 1, .result = answers + i * one};
     for (size_t at = 0; answers && w.line && at < N_DESIGNS && size > 0;) {
         if (!is_waited_for(&w))
-            w.errand = (Errand){.task = task + at, .n = at < 2 ? 1 : N_DESIGNS - at};
+            w.task = task + at, w.n = at < 2 ? 1 : N_DESIGNS - at, w.n_done = 0;
         const size_t piece = size < 7 + w.n_line ? size : 7 + w.n_line, room = LINE_MAX_BYTES - w.n_line;
         const size_t n = piece < room ? piece : room;
         memcpy(w.line + w.n_line, data, n);
@@ -34,9 +34,9 @@ static void hear(External *e, const uint8_t *data, size_t size)
         look_for_answer(e, &w);
         if (is_waited_for(&w))
             continue;
-        for (size_t i = 0; i < w.errand.n_done; i++)
-            demand_numbers(w.errand.task[i].result);
-        at += w.errand.n_done > 0 ? w.errand.n_done : 1;
+        for (size_t i = 0; i < w.n_done; i++)
+            demand_numbers(w.task[i].result);
+        at += w.n_done > 0 ? w.n_done : 1;
     }
     free(w.request);
     free(w.line);
