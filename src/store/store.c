@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <pthread.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -27,8 +28,6 @@ struct RunStore {
 
     size_t n_stored;             /* evaluations of the search */
     int is_lost;                 /* a transaction was rolled back: nothing more is written */
-    double last_commit;          /* [s] of the clock */
-    double last_generation;      /* ... */
     size_t n_known;              /* designs of finished generations */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
     uint64_t front;              /* digest of those on it */
@@ -36,6 +35,17 @@ struct RunStore {
     size_t n_measured;           /* designs that it has seen */
     RunSession session;
     int is_ready; /* for a session: what happens is written down */
+
+    pthread_mutex_t writing; /* held by who uses the database, while a session may commit beside */
+    pthread_mutex_t lock;    /* of what follows, held for a moment alone */
+    pthread_cond_t news;     /* for the thread that commits */
+    pthread_t committing;
+    int has_thread;          /* 0: it ends */
+    EvaluationTable waiting; /* to be inserted */
+    int is_open;             /* there is something to commit */
+    double last_commit;      /* [s] of the clock */
+    Status status;           /* of the thread */
+    Err why;
 };
 
 const char *store_folder(const RunStore *store)
@@ -166,6 +176,13 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     *out = NULL;
     RunStore *store;
     TRY_ROOM(store, 1, "a run", err);
+    pthread_condattr_t clock;
+    pthread_condattr_init(&clock);
+    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
+    pthread_cond_init(&store->news, &clock);
+    pthread_mutex_init(&store->writing, NULL);
+    pthread_mutex_init(&store->lock, NULL);
+    pthread_condattr_destroy(&clock);
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(store_folder(store), "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);
@@ -210,6 +227,8 @@ static Status write_origin(const RunStore *store, const Settings *used, const ch
 /* Ready for a session. */
 static Status make_ready(RunStore *store, const Settings *used, const char *provenance, Err *err)
 {
+    const Schema *schema = store->schema;
+    store->waiting = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra);
     folder_note(&store->folder, store->n_stored);
     TRY(write_origin(store, used, provenance, err));
     TRY(folder_log(store_folder(store), "", err));
@@ -230,6 +249,16 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
 
 /* -- transactions -------------------------------------------------------------------------------------------------- */
 
+static void set_open(RunStore *store, int is_open)
+{
+    pthread_mutex_lock(&store->lock);
+    store->is_open = is_open;
+    if (!is_open)
+        store->last_commit = clock_seconds();
+    pthread_cond_signal(&store->news);
+    pthread_mutex_unlock(&store->lock);
+}
+
 static Status begin(RunStore *store, Err *err)
 {
     if (store->is_lost)
@@ -238,6 +267,7 @@ static Status begin(RunStore *store, Err *err)
         return STATUS_OK;
     const Status status = database_begin(store->db, err);
     store->is_lost = status != STATUS_OK;
+    set_open(store, status == STATUS_OK);
     return status;
 }
 
@@ -247,6 +277,7 @@ static Status lose(RunStore *store, Status status)
     if (database_in_transaction(store->db))
         database_do(store->db, NULL, "ROLLBACK", "");
     store->is_lost = 1;
+    set_open(store, 0);
     return status;
 }
 
@@ -254,20 +285,11 @@ static Status commit(RunStore *store, Status status, Err *err)
 {
     if (status == STATUS_OK)
         status = database_do(store->db, err, "COMMIT", "");
-    return status == STATUS_OK ? STATUS_OK : lose(store, status);
-}
-
-Status store_flush(RunStore *store, Err *err)
-{
-    if (store->is_lost || !store->db || !database_in_transaction(store->db))
-        return STATUS_OK;
-    TRY(commit(store, STATUS_OK, err));
-    store->last_commit = clock_seconds();
-    folder_note(&store->folder, store->n_stored);
+    if (status != STATUS_OK)
+        return lose(store, status);
+    set_open(store, 0);
     return STATUS_OK;
 }
-
-/* -- a session ----------------------------------------------------------------------------------------------------- */
 
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
@@ -275,6 +297,84 @@ static Status insert(RunStore *store, const Evaluation *e, Err *err)
     row.id = id_of(store, e->id - 1);
     return rows_insert(store->db, ROWS_EVALUATION, store->schema, &row, err);
 }
+
+/* Before anything else is written. */
+static Status insert_waiting(RunStore *store, Err *err)
+{
+    pthread_mutex_lock(&store->lock);
+    EvaluationTable rows = store->waiting;
+    Status status = store->status;
+    *err = store->why;
+    store->waiting = evaluation_table(rows.n_var, rows.n_obj, rows.n_extra);
+    pthread_mutex_unlock(&store->lock);
+    if (status == STATUS_OK && rows.n > 0)
+        status = begin(store, err);
+    for (size_t i = 0; i < rows.n && status == STATUS_OK; i++) {
+        status = insert(store, &rows.row[i], err);
+        store->n_stored += status == STATUS_OK;
+    }
+    evaluation_table_free(&rows);
+    return status == STATUS_OK || database_in_transaction(store->db) ? status : lose(store, status);
+}
+
+/* Also where what waits cannot be written any more. */
+static Status flush(RunStore *store, Err *err)
+{
+    const Status status = insert_waiting(store, err);
+    if (store->is_lost || !store->db || !database_in_transaction(store->db))
+        return status;
+    TRY(commit(store, STATUS_OK, status == STATUS_OK ? err : NULL));
+    folder_note(&store->folder, store->n_stored);
+    return status;
+}
+
+/* Then the file should still be in its place. */
+static Status flush_and_look(RunStore *store, Err *err)
+{
+    TRY(flush(store, err));
+    return database_check_place(store->db, err);
+}
+
+/* COMMIT_S after the last one: a commit waits for the disk, and nobody who simulates should. */
+static void *commit_in_time(void *user)
+{
+    RunStore *store = user;
+    pthread_mutex_lock(&store->lock);
+    while (store->has_thread) {
+        const double due = store->last_commit + COMMIT_S;
+        const struct timespec at = {(time_t)due, (long)(1e9 * (due - floor(due)))};
+        Err why;
+        if (store->status != STATUS_OK || (!store->is_open && store->waiting.n == 0)) {
+            pthread_cond_wait(&store->news, &store->lock);
+        } else if (clock_seconds() < due) {
+            pthread_cond_timedwait(&store->news, &store->lock, &at);
+        } else {
+            pthread_mutex_unlock(&store->lock);
+            pthread_mutex_lock(&store->writing);
+            const Status status = flush_and_look(store, &why);
+            pthread_mutex_unlock(&store->writing);
+            pthread_mutex_lock(&store->lock);
+            store->status = status;
+            store->why = why;
+        }
+    }
+    pthread_mutex_unlock(&store->lock);
+    return NULL;
+}
+
+Status store_flush(RunStore *store, Err *err)
+{
+    pthread_mutex_lock(&store->lock);
+    const int had_thread = store->has_thread;
+    store->has_thread = 0;
+    pthread_cond_signal(&store->news);
+    pthread_mutex_unlock(&store->lock);
+    if (had_thread)
+        pthread_join(store->committing, NULL);
+    return flush(store, err);
+}
+
+/* -- a session ----------------------------------------------------------------------------------------------------- */
 
 /* Without what is_of_the_next has left out. */
 static Status renew_unfinished(RunStore *store, Err *err)
@@ -322,7 +422,12 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
     gethostname(s->host, sizeof s->host - 1);
     snprintf(s->program, sizeof s->program, "%s", program);
     TRY(put_session(store, err));
-    return store_flush(store, err);
+    TRY(flush(store, err));
+    store->has_thread = 1;
+    if (pthread_create(&store->committing, NULL, commit_in_time, store) == 0)
+        return STATUS_OK;
+    store->has_thread = 0;
+    return fail(err, STATUS_NO_MEMORY, "no thread for the commits of a run");
 }
 
 typedef struct {
@@ -357,13 +462,17 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
 
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 {
-    TRY(begin(store, err));
-    const Status status = insert(store, e, err);
+    pthread_mutex_lock(&store->lock);
+    const size_t n = store->waiting.n;
+    Status status = store->status;
+    *err = store->why;
+    if (status == STATUS_OK)
+        status = evaluation_table_append(&store->waiting, e, err);
     if (status != STATUS_OK)
-        return database_in_transaction(store->db) ? status : lose(store, status);
-    store->n_stored++;
-    return e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S ? store_flush(store, err)
-                                                                                      : STATUS_OK;
+        store->waiting.n = n; /* without half a row */
+    pthread_cond_signal(&store->news);
+    pthread_mutex_unlock(&store->lock);
+    return status;
 }
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
@@ -504,20 +613,11 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
     return store_state(store, v, err);
 }
 
-/* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk.
- * */
-static int is_due(RunStore *store, const SearchView *v)
-{
-    const double now = clock_seconds(), before = store->last_generation;
-    store->last_generation = now;
-    return v->reason != STOP_NONE || now >= store->last_commit + COMMIT_S || now >= before + GENERATION_S;
-}
-
 /* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
  * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
-Status store_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
+static Status write_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
 {
-    TRY(measure_front(store, v->all, v->reason != STOP_NONE, err));
+    TRY(insert_waiting(store, err));
     TRY(begin(store, err));
     TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
     store->session.seconds = s->session;
@@ -532,10 +632,16 @@ Status store_generation(RunStore *store, const SearchView *v, const SessionTimes
                        database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") == STATUS_OK
                    ? status
                    : lose(store, status);
-    if (!is_due(store, v))
-        return STATUS_OK;
-    TRY(store_flush(store, err));
-    return database_check_place(store->db, err);
+    return v->reason != STOP_NONE ? flush_and_look(store, err) : STATUS_OK;
+}
+
+Status store_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
+{
+    TRY(measure_front(store, v->all, v->reason != STOP_NONE, err));
+    pthread_mutex_lock(&store->writing);
+    const Status status = write_generation(store, v, s, err);
+    pthread_mutex_unlock(&store->writing);
+    return status;
 }
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
@@ -583,7 +689,9 @@ static Status end_session(RunStore *store, const char *stopped, int is_final, do
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
 {
     Run last = {0};
-    Status status = end_session(store, stopped, is_final, session, err);
+    Status status = store_flush(store, err);
+    if (status == STATUS_OK)
+        status = end_session(store, stopped, is_final, session, err);
     if (status == STATUS_OK)
         status = store_write_front(store, &last, err);
     store_free(store);
@@ -598,6 +706,11 @@ void store_free(RunStore *store)
 {
     if (!store)
         return;
+    store_flush(store, &(Err){0});
+    pthread_mutex_destroy(&store->writing);
+    pthread_mutex_destroy(&store->lock);
+    pthread_cond_destroy(&store->news);
+    evaluation_table_free(&store->waiting);
     database_close(store->db);
     run_free(&store->run);
     free(store->was_on_front);

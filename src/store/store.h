@@ -7,21 +7,20 @@
  *   log.jsonl         what happened when
  *   lock              which process works on it (store/folder.h)
  *
- * One evaluation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
- * COMMIT_S after the one before, and at the end of its batch. Generations that take less than GENERATION_S are
- * committed together, likewise. What a kill can cost is what was under way and COMMIT_S of evaluations. The end of a
- * generation is whole or not there: kinds, front, hypervolume, state of the search.
+ * One evaluation is one row. A thread of the session commits what is there COMMIT_S after the last commit, so that
+ * neither who simulates nor the search waits for the disk: what a kill can cost is what was under way and COMMIT_S of
+ * evaluations. The end of a generation is whole or not there: kinds, front, hypervolume, state of the search.
  *
  * Rivals      what another process writes, as where `lock` was removed, ends the session (database_begin)
  * Faults      on a full disk or without memory SQLite may roll back all that is not committed: then nothing more is
  *             written in this session, what waits is dropped, and the run is resumed from the last commit
  * Damage      digests of all rows but those of `session` are checked when a run is read (store/tables.h), and the text
  *             of the tables. A run that lost its journal is refused: `lock` knows of more evaluations. A database
- *             that is removed while the run goes on is put back at the end of a generation, which ends the session
+ *             that is removed while the run goes on is put back with the next commit, which ends the session
  *
  * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
  *             store_open -> store_polished -> store_write_front -> store_free
- * Threads     one at a time
+ * Threads     one at a time; store_evaluation any, beside it. A fault of a commit is told by the next call
  * Errors      STATUS_IO with file and cause */
 #pragma once
 
@@ -33,7 +32,7 @@
 
 typedef struct RunStore RunStore;
 
-static const double COMMIT_S = 0.2, GENERATION_S = 0.025;
+static const double COMMIT_S = 0.2;
 
 /* Takes the folder, made where it is not there, and its lock. fresh: the first of folder, folder-2, folder-3, ... that
  * holds no run. */
@@ -51,7 +50,7 @@ const unsigned char *store_on_front(const RunStore *store);
 /* The finished evaluations of the search in their order; for SearchStart, of whose `each` the store is the user. */
 Status store_each_finished(EvaluationFn take, void *search, void *store, Err *err);
 
-/* All of the run as it is now, for run_free; what waits is committed. */
+/* All of the run as it is now, for run_free, behind store_flush: the search is over, or has not begun. */
 Status store_read(RunStore *store, Run *run, Err *err);
 
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
@@ -67,7 +66,7 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
 
 /* Its id is its number in the search; its kind comes with the end of the generation (KIND_UNFINISHED). */
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err);
-Status store_flush(RunStore *store, Err *err); /* commits what waits */
+Status store_flush(RunStore *store, Err *err); /* commits what waits; from then on every call commits itself */
 
 /* [s] of work on the run, of this session; of its search, and of that waiting for evaluations and choosing designs. */
 typedef struct {
