@@ -209,7 +209,7 @@ Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)
         pool_batch(w, 1);
         if (!w->line || !w->request)
             return fail_memory(err, n_workers, "workers");
-        if (protocol->send)
+        if (!protocol->work.words) /* forks, while no thread holds a lock */
             TRY(worker_start(w, err));
     }
     return STATUS_OK;

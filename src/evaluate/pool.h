@@ -11,7 +11,7 @@
  * Life cycle  pool_open -> pool_do ... -> pool_close ({0} is fine)
  * Threads     pool_do by several, each for a worker of its own
  * Processes   each in its own process group, killed with it when it is done with (evaluate/helper.h); standard error is
- *             shared with ours. One is started by the first task it gets, and kept */
+ *             shared with ours. A command is started by the first task it gets, and kept */
 #pragma once
 
 #include "evaluate/helper.h"

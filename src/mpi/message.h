@@ -21,7 +21,7 @@ enum { TAG_DONE = 1, TAG_ALIVE, TAG_LEFT, TAG_OPEN, TAG_TASK };
 
 enum { HOST_MAX = 64 };
 
-/* A rank with tasks sends something so often; one that did not for SILENT_S of rank 0's own running time is given
+/* A rank with tasks says so often that it lives; one that did not for SILENT_S of rank 0's own running time is given
  * up. */
 static const double ALIVE_S = 2.0, SILENT_S = 20.0;
 

@@ -30,7 +30,7 @@ struct Service {
     size_t n_workers;        /* that run */
     pthread_mutex_t talking; /* who calls MPI */
     int has_said_left, rank;
-    double sent_s;
+    double said_s;
 };
 
 static void say(Service *s, int tag)
@@ -39,7 +39,7 @@ static void say(Service *s, int tag)
     if (!s->has_said_left)
         MPI_Send(NULL, 0, MPI_BYTE, 0, tag, MPI_COMM_WORLD);
     s->has_said_left |= tag == TAG_LEFT;
-    s->sent_s = clock_seconds();
+    s->said_s = clock_seconds();
     pthread_mutex_unlock(&s->talking);
 }
 
@@ -73,7 +73,6 @@ static void do_order(Seat *w, Order *order, const Simulator *simulator, void *se
     w->answer = a;
     if (!s->has_said_left)
         MPI_Isend(a, (int)n, MPI_BYTE, 0, TAG_DONE, MPI_COMM_WORLD, &w->request);
-    s->sent_s = clock_seconds();
     pthread_mutex_unlock(&s->talking);
 }
 
@@ -168,7 +167,7 @@ static void exchange(Service *s)
             free(m->bytes);
             pause = PAUSE_MIN_S;
         }
-        if (s->n_running > 0 && clock_seconds() > s->sent_s + ALIVE_S)
+        if (s->n_running > 0 && clock_seconds() > s->said_s + ALIVE_S)
             say(s, TAG_ALIVE);
         pause = longer_pause(pause, s->n_running > 0 ? PAUSE_BUSY_S : PAUSE_MAX_S);
         pause_s(pause);
