@@ -7,7 +7,7 @@
 #include "evaluate/evaluation.h"
 #include "settings/search_options.h"
 
-enum { SEARCH_CENTRES = 600 }; /* of the surrogate at most */
+enum { SEARCH_CENTRES = 400 }; /* of the surrogate at most */
 
 typedef struct {
     uint32_t seed;

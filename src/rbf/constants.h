@@ -18,6 +18,7 @@ static const double NUGGET_START = 1e-4;    /* smallest nugget that tuning start
 
 /* -- kernel.c: the additive part of a kernel; tune.c --------------------------------------------------------------- */
 
-static const double ADDITIVE_REACH = 0.1;  /* of the unit cube */
-static const double ADDITIVE_GAIN = 0.8;   /* of the mean square leave-one-out error, to take it */
-static const double ADDITIVE_ERROR = 1e-3; /* mean square error, in variances, below which it is not tried */
+static const double ADDITIVE_REACH = 0.1;       /* of the unit cube, of RBF_ADDITIVE */
+static const double ADDITIVE_REACH_LONG = 0.25; /* ... of RBF_ADDITIVE_LONG */
+static const double ADDITIVE_GAIN = 0.8;        /* of the mean square leave-one-out error, to take it */
+static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in variances, below which it is not tried */

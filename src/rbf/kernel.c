@@ -220,10 +220,15 @@ CLONED void kernel_weigh(size_t n, const double slope[], const double w[], doubl
         v[i] = (w[i] * w_j / s2 - v[i]) * slope[i];
 }
 
-CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t count, double a[],
-                            double b[])
+static double inverse_reach(RbfKernel kernel)
 {
-    const double by_reach = 1.0 / ADDITIVE_REACH, each = 0.5 / (double)n_dim;
+    return 1.0 / (kernel == RBF_ADDITIVE ? ADDITIVE_REACH : ADDITIVE_REACH_LONG);
+}
+
+CLONED void kernel_additive(RbfKernel kernel, size_t n_dim, size_t stride, const double U[], const double x[],
+                            size_t count, double a[], double b[])
+{
+    const double by_reach = inverse_reach(kernel), each = 0.5 / (double)n_dim;
     double sum[KERNEL_CHUNK] = {0};
     for (size_t d = 0; d < n_dim; d++) {
         const double *u = U + d * stride, at = x[d * RBF_BLOCK];
@@ -237,4 +242,21 @@ CLONED void kernel_additive(size_t n_dim, size_t stride, const double U[], const
 #pragma omp simd
         for (size_t i = 0; i < count; i++)
             values[i] *= 0.5 + each * sum[i];
+}
+
+/* psi' = -12 t (1 - t)^2 */
+CLONED_V3 void kernel_additive_slopes(RbfKernel kernel, size_t n_dim, size_t stride, const double U[], const double x[],
+                                      size_t count, const double w[], double g[])
+{
+    const double by_reach = inverse_reach(kernel), each = -6.0 * by_reach / (double)n_dim;
+    for (size_t d = 0; d < n_dim; d++) {
+        const double *u = U + d * stride, at = x[d * RBF_BLOCK];
+        double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+        for (size_t i = 0; i < count; i++) {
+            const double t = (at - u[i]) * by_reach, off = fabs(t), left = off < 1.0 ? 1.0 - off : 0.0;
+            sum += w[i] * t * left * left;
+        }
+        g[d] += each * sum;
+    }
 }

@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-/* RBF_ADDITIVE: Matern, times what kernel_additive says. */
-typedef enum { RBF_GAUSS, RBF_MATERN, RBF_ADDITIVE, RBF_N_KERNELS } RbfKernel;
+/* From RBF_ADDITIVE on: Matern, times what kernel_additive says, of either reach. */
+typedef enum { RBF_GAUSS, RBF_MATERN, RBF_ADDITIVE, RBF_ADDITIVE_LONG, RBF_N_KERNELS } RbfKernel;
 
 /* RBF_BLOCK: points that are evaluated together. */
 enum { KERNEL_LANES = 8, KERNEL_CHUNK = 64, RBF_BLOCK = 4 };
@@ -51,11 +51,15 @@ double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double
 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
                     double q[RBF_BLOCK][KERNEL_CHUNK], double *G);
 
-/* Multiplies a and, where it is not NULL, b by 1/2 + 1/2 mean_d psi(|x_d - u_d| / ADDITIVE_REACH), with psi(t) =
+/* Multiplies a and, where it is not NULL, b by 1/2 + 1/2 mean_d psi(|x_d - u_d| / reach), with psi(t) =
  * (1 - t)^3 (1 + 3 t), 0 beyond t = 1, of `count` <= KERNEL_CHUNK centres U (n_dim, stride) and the first point of a
  * block x (n_dim, RBF_BLOCK), neither warped nor scaled. */
-void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t count, double a[],
-                     double b[]);
+void kernel_additive(RbfKernel kernel, size_t n_dim, size_t stride, const double U[], const double x[], size_t count,
+                     double a[], double b[]);
+
+/* Adds sum_i w[i] times its derivatives by x to g (n_dim). */
+void kernel_additive_slopes(RbfKernel kernel, size_t n_dim, size_t stride, const double U[], const double x[],
+                            size_t count, const double w[], double g[]);
 
 /* v[i] = (w[i] w_j / s2 - v[i]) slope[i]: the terms of the likelihood's gradient of one column. */
 void kernel_weigh(size_t n, const double slope[], const double w[], double w_j, double s2, double v[]);

@@ -117,8 +117,9 @@ void model_matrix(const Rbf *m, Worker *k, size_t n, const double C[], const dou
                     kernel_values_and_slopes(form.kernel, count, r2[p], k->A + at, slope + at);
                 else
                     kernel_values(form.kernel, count, r2[p], k->A + at);
-                if (form.kernel == RBF_ADDITIVE)
-                    kernel_additive(m->n_dim, m->stride, C + i, u + p, count, k->A + at, slope ? slope + at : NULL);
+                if (form.kernel >= RBF_ADDITIVE)
+                    kernel_additive(form.kernel, m->n_dim, m->stride, C + i, u + p, count, k->A + at,
+                                    slope ? slope + at : NULL);
             }
         }
         for (size_t p = j; p < j + RBF_BLOCK && p < n; p++)
@@ -280,7 +281,7 @@ void model_fit(Rbf *m)
 
 int rbf_is_additive(const Rbf *m, size_t output)
 {
-    return m->output[output].form.kernel == RBF_ADDITIVE;
+    return m->output[output].form.kernel >= RBF_ADDITIVE;
 }
 
 size_t rbf_left_out(const Rbf *m)
@@ -375,8 +376,8 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
         for (size_t p = 0; p < n; p++) {
             kernel_values(o->form.kernel, count, r2[p], phi);
-            if (o->form.kernel == RBF_ADDITIVE)
-                kernel_additive(m->n_dim, m->stride, m->C + first, P + p, count, phi, NULL);
+            if (o->form.kernel >= RBF_ADDITIVE)
+                kernel_additive(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, phi, NULL);
             value[p] += kernel_dot(count, o->weight + first, phi);
             if (error)
                 kernel_errors(count, r2[p], o->leave_one_out + first, &square[p], &weights[p]);
@@ -409,22 +410,28 @@ static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
 
 /* Sums over the centres; of variables first. */
 typedef struct {
-    double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX]; /* (n_dim, RBF_BLOCK) */
-    double G[RBF_BLOCK * RBF_DIM_MAX];                                /* (RBF_BLOCK, n_dim) */
+    double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX];     /* (n_dim, RBF_BLOCK) */
+    double G[RBF_BLOCK * RBF_DIM_MAX], additive[RBF_BLOCK * RBF_DIM_MAX]; /* (RBF_BLOCK, n_dim) */
     double value[RBF_BLOCK], sum[RBF_BLOCK];
 } Slopes;
 
 static void slope_chunk(const Rbf *m, const Output *o, size_t n, const double P[], size_t first, size_t count,
                         Slopes *s)
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], w[KERNEL_CHUNK];
+    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], w[KERNEL_CHUNK], phi[KERNEL_CHUNK];
     if (n < RBF_BLOCK || count < KERNEL_CHUNK)
         memset(q, 0, sizeof q);
     kernel_distances(m->n_dim, m->stride, o->S, s->x, first, count, r2);
     for (size_t p = 0; p < n; p++) {
         memcpy(w, o->weight + first, count * sizeof *w);
-        if (o->form.kernel == RBF_ADDITIVE)
-            kernel_additive(m->n_dim, m->stride, m->C + first, P + p, count, w, NULL);
+        if (o->form.kernel >= RBF_ADDITIVE) {
+            kernel_values(o->form.kernel, count, r2[p], phi);
+            for (size_t i = 0; i < count; i++)
+                phi[i] *= w[i];
+            kernel_additive_slopes(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, phi,
+                                   s->additive + p * m->n_dim);
+            kernel_additive(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, w, NULL);
+        }
         s->value[p] += kernel_slopes(o->form.kernel, count, r2[p], w, q[p], &s->sum[p]);
     }
     kernel_project(m->n_dim, m->stride, o->S, first, count, q, s->G);
@@ -438,6 +445,7 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
     const size_t n_dim = m->n_dim;
     Slopes s;
     memset(s.G, 0, RBF_BLOCK * n_dim * sizeof *s.G);
+    memset(s.additive, 0, RBF_BLOCK * n_dim * sizeof *s.additive);
     memset(s.value, 0, sizeof s.value);
     memset(s.sum, 0, sizeof s.sum);
     scale_points(m, o, P, s.x);
@@ -451,7 +459,7 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
         for (size_t d = 0; d < n_dim; d++)
             J[p * m->n_out * n_dim + d] =
                 o->scale * (2.0 * (s.x[d * RBF_BLOCK + p] * s.sum[p] - s.G[p * n_dim + d]) * s.by_u[d * RBF_BLOCK + p] +
-                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
+                            s.additive[p * n_dim + d] + tail_slope(n_dim, o, d, X[p * n_dim + d]));
     }
 }
 

@@ -5,7 +5,7 @@
  *                                                  millimetres differs more from the next than one of half a metre
  *
  *   phi     Gaussian or Matern 5/2, positive definite; where leave-one-out errors are smaller, times an additive part
- *             1/2 + 1/2 mean_d psi(10 |x_d - c_jd|),  psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1 (Wendland)
+ *             1/2 + 1/2 mean_d psi(|x_d - c_jd| / reach),  psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1 (Wendland)
  *           functions of single variables, waves say, whose height the rest modulates: as many data as waves along one
  *           variable times variables tell them, where a product alone needs as many as waves to the power of variables
  *   p       constant, linear or diagonal quadratic tail
@@ -54,8 +54,7 @@ Status rbf_tune(Rbf *m, size_t n, const double X[], const double F[], const doub
  * one. */
 void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[]);
 
-/* F (n, n_out) and its derivatives J (n, n_out, n_dim), those of an additive part left out: what descends by J follows
- * the rest. */
+/* F (n, n_out) and its derivatives J (n, n_out, n_dim). */
 void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[]);
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */

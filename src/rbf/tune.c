@@ -185,7 +185,7 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
  * part must be worth it where there is none yet, and is not tried where the others leave nothing to explain. */
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
 {
-    const int is_new = form.kernel == RBF_ADDITIVE && o->form.kernel != RBF_ADDITIVE;
+    const int is_new = form.kernel >= RBF_ADDITIVE && o->form.kernel < RBF_ADDITIVE;
     if (is_new && k->min_error < ADDITIVE_ERROR)
         return;
     model_copy_shape(m, &k->shape, &o->shape);
