@@ -256,9 +256,4 @@ static inline int signal_child_of(pid_t parent, const char *signal)
     return system(command) == 0;
 }
 
-static inline int shoot_child_of(pid_t parent)
-{
-    return signal_child_of(parent, "KILL");
-}
-
 #endif

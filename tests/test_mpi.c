@@ -293,7 +293,7 @@ TEST(an_isolated_simulation_that_crashes_ends_its_design_alone_on_a_rank_too)
     const pid_t rank[] = {process_of(pid, 1), process_of(pid, 2)};
     for (int n = 0, k = 0; n < 3 && kill(pid, 0) == 0; k++) {
         rest(0.005);
-        n += shoot_child_of(rank[k % 2]);
+        n += signal_child_of(rank[k % 2], "KILL");
     }
     expect_code(pid, 0);
     char *all = all_of("shot");
@@ -595,26 +595,23 @@ TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
 
 TEST(a_message_that_is_cut_or_of_no_worker_is_none)
 {
-    enum { PART = 24, WORKERS = 4 };
-    char part[PART + 16];
-    const Task task = {.result = part, .size = PART};
-    const size_t whole = sizeof(Answer) + PART;
-    Answer *right = calloc(1, whole), bad = {.worker = 1, .why.code = STATUS_BAD_DATA};
-    *right = (Answer){.worker = 3, .n_done = 1};
+    struct {
+        Answer head;
+        char part[64];
+    } right = {{.worker = 3, .n_done = 1}, {0}}, bad = {{.why.code = STATUS_BAD_DATA}, {0}};
+    char part[16];
+    const Task task = {.result = part, .size = sizeof part};
+    const size_t none = sizeof(Answer), whole = none + sizeof part;
     for (size_t n = 0; n < whole + 2; n++) {
-        Worker e = {.task = &task, .n = 1};
-        assert_int_equal(order_take(right, n, &e), n == whole);
-        assert_int_equal(e.n_done, n == whole);
-        assert_int_equal(is_answer_of(right, n, WORKERS), n >= sizeof *right);
+        assert_int_equal(order_take(&right.head, n, &(Worker){.task = &task, .n = 1}), n == whole);
+        assert_int_equal(order_take(&bad.head, n, &(Worker){.task = &task, .n = 1}), n == none);
+        assert_int_equal(is_answer_of(&right.head, n, 4), n >= none);
+        assert_false(is_answer_of(&right.head, n, 3));
     }
-    assert_false(is_answer_of(right, whole, 3));
-    assert_false(order_take(&bad, sizeof bad + PART, &(Worker){.task = &task, .n = 1})); /* a fault has no part */
-    assert_true(order_take(&bad, sizeof bad, &(Worker){.task = &task, .n = 1}));
-    bad.why.code = STATUS_COUNT;
-    assert_false(order_take(&bad, sizeof bad, &(Worker){.task = &task, .n = 1}));
-    bad = (Answer){.n_done = 2};
-    assert_false(order_take(&bad, sizeof bad + 2 * PART, &(Worker){.task = &task, .n = 1}));
-    free(right);
+    right.head.n_done = 2;
+    assert_false(order_take(&right.head, whole + sizeof part, &(Worker){.task = &task, .n = 1}));
+    bad.head.why.code = STATUS_COUNT;
+    assert_false(order_take(&bad.head, none, &(Worker){.task = &task, .n = 1}));
 }
 
 static int prepare(void **state)

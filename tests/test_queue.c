@@ -262,29 +262,12 @@ TEST(a_fault_of_the_observer_ends_everything)
     queue_close(q);
 }
 
-/* Without a worker of its own: tasks are taken and given here. */
-static Status start_none(void **self, Queue *queue, size_t *n, Err *err)
-{
-    (void)n;
-    (void)err;
-    *self = queue;
-    return STATUS_OK;
-}
-
-static void stop_none(void *self)
-{
-    (void)self;
-}
-
-static const Executor NONE = {.start = start_none, .stop = stop_none};
-
 TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 {
     Finished done;
     Task task[3 * PARTS];
     Err err = {0};
     forget();
-    bench.problem.executor = &NONE;
     Queue *q = open_queue(1);
     ask(q, 3);
     for (int k = 0; k < 3 * PARTS; k++) {
@@ -343,8 +326,6 @@ static int go_on(void *user)
     return 1;
 }
 
-static const Simulator DIES = {.simulate = double_or_die};
-
 static void note_lost(const Task *t, const char *reason)
 {
     *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
@@ -352,7 +333,7 @@ static void note_lost(const Task *t, const char *reason)
 
 TEST(a_simulation_that_crashes_ends_its_own_task_alone)
 {
-    Isolated q = {.doer = {.simulator = &DIES, .n_var = 1}, .lost = note_lost};
+    Isolated q = {.doer = {.simulator = &(Simulator){.simulate = double_or_die}, .n_var = 1}, .lost = note_lost};
     Err err = {0};
     CHECK_OK(isolated_open(&q, WORKERS, &err), &err);
     for (int i = 0; i < DESIGNS; i++) {

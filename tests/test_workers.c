@@ -104,11 +104,18 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
     free(sizes);
 }
 
+/* Nor does a kill: the run goes on at once, even where one of them could do nothing any more. */
 TEST(processes_of_their_own_change_no_byte)
 {
-    write_in_place("isolated.ini", ISOLATED);
-    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/apart"));
-    free(output_of("optimize @/isolated.ini --set sim.duration_s=5 --out @/here --set run.isolate=no --threads 1"));
+    write_in_place("isolated.ini", SIX_FLOORS_INI "[sim]\nduration_s = 5\n[search]\nmax_evals = 80\npolish = 0\n"
+                                                  "threads = 2\n[run]\nisolate = yes\n");
+    const pid_t pid = start("isolated.ini", "apart");
+    for (int i = 0; i < 1000 && !signal_child_of(pid, "STOP"); i++)
+        rest(0.01);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    free(output_of("optimize @/isolated.ini --out @/apart"));
+    free(output_of("optimize @/isolated.ini --out @/here --set run.isolate=no --threads 1"));
     assert_same_files("apart/front.csv", "here/front.csv");
 }
 
@@ -122,7 +129,7 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     int status;
     while (waitpid(pid, &status, WNOHANG) == 0) {
         rest(0.02);
-        n_shot += (size_t)shoot_child_of(pid);
+        n_shot += (size_t)signal_child_of(pid, "KILL");
     }
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 0);
@@ -136,22 +143,6 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     assert_true(n_lost >= 1 && n_lost <= n_shot);
     assert_non_null(strstr(all, "its process ended: Killed"));
     free(all);
-}
-
-/* Even where one of its processes can do nothing any more. */
-TEST(a_killed_run_of_isolated_simulations_goes_on_at_once)
-{
-    write_in_place("cut.ini",
-                   SIX_FLOORS_INI "[sim]\nduration_s = 5\n[search]\nmax_evals = 80\npolish = 0\nthreads = 2\n"
-                                  "[run]\nisolate = yes\n");
-    const pid_t pid = start("cut.ini", "cut");
-    for (int i = 0; i < 1000 && !signal_child_of(pid, "STOP"); i++)
-        rest(0.01);
-    kill(pid, SIGKILL);
-    wait_end(pid);
-    free(output_of("optimize @/cut.ini --out @/cut"));
-    free(output_of("optimize @/cut.ini --out @/uncut --set run.isolate=no"));
-    assert_same_files("cut/front.csv", "uncut/front.csv");
 }
 
 SUITE(prepare, clear_place)

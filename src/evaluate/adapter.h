@@ -23,8 +23,8 @@ const Problem *adapter_problem(const Adapter *a);
 const Schema *adapter_schema(const Adapter *a);
 const Tower *adapter_tower(const Adapter *a); /* NULL: it is another problem */
 
-/* For what this process computes beside simulations: those of the settings; on rank 0 of a cluster, whose simulations are
- * elsewhere, at least all that it may use. */
+/* For what this process computes beside simulations: those of the settings; on rank 0 of a cluster, which simulates
+ * nothing, at least all that it may use. */
 int adapter_threads(const Adapter *a);
 
 /* From now on the answers of an external problem have n constraint values: columns g_1 to g_n, each <= 0 where it is

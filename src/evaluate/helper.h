@@ -1,10 +1,10 @@
-/* evaluate/helper.h -- a worker process, and beside it a process of our own that kills it with all that it has started
- * when we end, however that is: by a signal, out of memory, kill -9.
+/* evaluate/helper.h -- a worker process, and beside it one of our own that kills it with all that it has started when
+ * we end, however that is: by a signal, out of memory, kill -9.
  *
- * The helper has one end of a pair of sockets; the other one closes with us. The worker has a process group of its own,
- * which gets SIGKILL then. Where the helper itself is killed the kernel kills the worker: Linux sends a child the signal
- * of PR_SET_PDEATHSIG when the thread that started it ends, and the helper has one thread. Of what we have open (locks,
- * a store) neither keeps anything.
+ * The helper has one end of a pair of sockets; the other closes with us. The worker has a process group of its own,
+ * which gets SIGKILL then. Where the helper itself is killed the kernel kills the worker: Linux sends a child the
+ * signal of PR_SET_PDEATHSIG when the thread that started it ends, and the helper has one thread. Of what we have open
+ * (locks, a store) neither keeps anything.
  *
  * Life cycle  helper_start -> helper_end
  * Threads     any

@@ -1,8 +1,8 @@
-/* evaluate/isolated.h -- simulations in processes of their own (run.isolate), as workers of a pool: one that crashes ends
- * its design alone.
+/* evaluate/isolated.h -- simulations in processes of their own (run.isolate), as workers of a pool: one that crashes
+ * ends its design alone.
  *
- * They are forks of a helper that is forked at the opening, which has the problem open and nothing else of ours: no lock,
- * no store. An answer comes whole or not at all. */
+ * They are forked at the opening, with the problem open and nothing else of ours: no lock, no store. One that has ended
+ * is replaced by a fork with the next task. An answer comes whole or not at all. */
 #pragma once
 
 #include "evaluate/order.h"

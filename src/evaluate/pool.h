@@ -1,9 +1,9 @@
 /* evaluate/pool.h -- workers that are elsewhere: processes of this machine, and the ranks of a cluster (src/mpi). A
  * thread of the queue (evaluate/tasks.h) gives each its tasks and waits for them, all by these rules:
  *
- *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a fresh
- *             worker is what it had no part in: its helper was killed; or, once, it had given answers before and ended by
- *             itself within a second of the request (may_leave)
+ *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a
+ *             fresh worker is what it had no part in: its helper was killed; or, once, it had given answers before and
+ *             ended by itself within a second of the request (may_leave)
  *   silent    for timeout_s of our own running time, the same: where the whole machine was suspended none was silent. A
  *             rank says now and then that it lives; one that does not ends everything, to be resumed
  *   stopped   what is under way gets grace_s to end, then it counts as never begun
@@ -52,7 +52,7 @@ typedef struct {
     double grace_s;
     int may_leave;
     size_t (*write)(void *self, const Worker *w, char *request);
-    /* Another way than a process: sends the request; what comes is written to `in`, and read at `out`. NULL: a process */
+    /* Of what is no process: sends the request; what comes is written to `in`, and read at `out`. NULL: a process */
     void (*send)(void *self, const Worker *w);
     void (*look)(void *self, Worker *w); /* takes whole answers from `line`, each by pool_settle */
     /* reason: of an outcome, to be written into the task's part */

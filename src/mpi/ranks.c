@@ -8,8 +8,8 @@
 #include "evaluate/tasks.h"
 #include "mpi/message.h"
 
-/* Tasks go to a worker for so long in all, so that the way of a message is little beside them; of tasks that take longer
- * than SINGLE_S one at a time, so that a short batch ends earlier. */
+/* Tasks go to a worker for so long in all, so that the way of a message is little beside them; of tasks that take
+ * longer than SINGLE_S one at a time, so that a short batch ends earlier. */
 static const double AHEAD_S = 0.005, SINGLE_S = 0.2;
 
 static const double PAUSE_MAX_S = 5e-4;

@@ -336,7 +336,7 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const doubl
 
 /* -- prediction ---------------------------------------------------------------------------------------------------- */
 
-/* u, log u and log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: P (3, n_dim, RBF_BLOCK) */
+/* u, log u, log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: P (3, n_dim, RBF_BLOCK) */
 static void place_points(const Rbf *m, size_t n, const double X[], double P[])
 {
     for (size_t d = 0; d < m->n_dim; d++)
