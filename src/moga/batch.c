@@ -32,6 +32,7 @@ size_t batch_add(Batch *b, const Common *c, size_t n, const double x[], Evaluati
     memcpy(b->X + n * n_var, x, n_var * sizeof *x);
     b->repeat[n] = 0;
     b->kind[n] = kind;
+    b->criterion[n] = INFILL_KINDS;
     return n + 1;
 }
 

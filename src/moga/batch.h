@@ -6,11 +6,12 @@
 #include "moga/common.h"
 
 typedef struct {
-    size_t size_max;     /* designs at most */
-    size_t room;         /* ... by the evaluations that are left */
-    double *X;           /* (size_max, n_var) */
-    unsigned char *kind; /* (size_max) EvaluationKind */
-    size_t *repeat;      /* (size_max) replicates that the design has already */
+    size_t size_max;          /* designs at most */
+    size_t room;              /* ... by the evaluations that are left */
+    double *X;                /* (size_max, n_var) */
+    unsigned char *kind;      /* (size_max) EvaluationKind */
+    unsigned char *criterion; /* (size_max) InfillKind that picked it, INFILL_KINDS: none */
+    size_t *repeat;           /* (size_max) replicates that the design has already */
 } Batch;
 
 /* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates; no more

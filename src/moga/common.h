@@ -10,6 +10,7 @@
 #include "moga/config.h"
 #include "moga/constants.h"
 #include "moga/convergence.h"
+#include "moga/credit.h"
 #include "moga/infill.h"
 #include "moga/pending.h"
 
@@ -22,11 +23,12 @@ typedef struct {
     Convergence convergence;
 } Common;
 
-/* Infill criteria, which share a batch evenly, measured on the same front and offered the same offspring: what is
- * picked lowers the values to beat. */
+/* Infill criteria, measured on the same front and offered the same offspring: what is picked lowers the values to beat.
+ * */
 typedef struct {
     Directions vectors; /* reference vectors */
     Infill *select[INFILL_KINDS];
+    Credit credit;
 } Criteria;
 
 /* Evaluations with which the search ends. */

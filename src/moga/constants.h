@@ -53,6 +53,7 @@ static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's deriv
 
 /* -- offspring.c: infill selection --------------------------------------------------------------------------------- */
 
+static const double CREDIT_WEIGHT = 0.1, CREDIT_POWER = 16.0; /* of a step in running means; see moga/credit.h */
 static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */

@@ -51,7 +51,8 @@ static Status ask(Search *s, size_t n_new, size_t n, Err *err)
         Question q = {.x = b->X + i * c->problem->n_var,
                       .repeat = b->repeat[i],
                       .kind = i < n_new ? (EvaluationKind)b->kind[i] : again,
-                      .generation = c->generation};
+                      .generation = c->generation,
+                      .criterion = i < n_new ? b->criterion[i] : INFILL_KINDS};
         if (s->screening.is_on && q.kind != KIND_FINISHED) {
             q.n_parts = c->problem->n_cheap;
             q.kind = KIND_SCREENED;
@@ -62,11 +63,23 @@ static Status ask(Search *s, size_t n_new, size_t n, Err *err)
     return STATUS_OK;
 }
 
-static Status enter_first(Search *s, Err *err)
+/* What a result gained, for the criterion that had picked it. */
+static void credit(const Search *s, const Place *place, const double f[], CreditResults *results)
+{
+    const size_t n_obj = s->common.problem->n_obj, by = place->q.criterion;
+    if (by == INFILL_KINDS)
+        return;
+    results->designs[by] += 1.0;
+    for (int k = 0; k < INFILL_KINDS && place->ok && violation_of(s->common.problem->n_con, f + n_obj) == 0.0; k++)
+        results->gain[k][by] += infill_gain(s->criteria.select[k], f);
+}
+
+static Status enter_first(Search *s, CreditResults *results, Err *err)
 {
     Common *c = &s->common;
     const Place *place = pending_at(&c->pending, 0);
     const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
+    credit(s, place, f, results);
     const EvaluationKind kind = place->q.kind;
     const size_t generation = place->q.generation;
     TRY(screening_take(&s->screening, c, &(Answer){x, f, g, kind, place->ok, place->parts}, err));
@@ -256,8 +269,12 @@ Status generation_enter(Search *s, Err *err)
 {
     Common *c = &s->common;
     const size_t first = s->n_before = c->archive.n;
+    CreditResults results = {0};
+    if (c->generation > 0 && s->population.n > 0)
+        measure_front(s);
     while (c->pending.n > s->allowed)
-        TRY(enter_first(s, err));
+        TRY(enter_first(s, &results, err));
+    credit_learn(&s->criteria.credit, &results);
     pareto_archive_update_noise(&c->archive);
     TRY(screening_update(&s->screening, c, err));
     renew_population(s, first); /* 6 */

@@ -202,6 +202,15 @@ double infill_distance(Infill *q, const double f[])
     return nearest;
 }
 
+double infill_gain(Infill *q, const double f[])
+{
+    double gain = 0.0;
+    values_of(q, f, q->row);
+    for (size_t r = 0; r < q->n_dir; r++)
+        gain += fmax(q->best_value[r] - q->row[r], 0.0);
+    return gain;
+}
+
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[],
                   const double chance[])
 {

@@ -42,6 +42,9 @@ double infill_length(const Infill *q, const double f[]);
 /* min_w value(f, w) - best_w: 0 on the front, small near it. */
 double infill_distance(Infill *q, const double f[]);
 
+/* sum_w max(0, best_w - value(f, w)). */
+double infill_gain(Infill *q, const double f[]);
+
 /* Row of the front that is best for a vector; value of f for it, with its derivatives by f (n_obj). */
 size_t infill_best(const Infill *q, size_t vector);
 double infill_slope(const Infill *q, size_t vector, const double f[], double slope[]);

@@ -155,13 +155,22 @@ static void deal_vectors(Offspring *o, const Common *c, size_t n_vectors, size_t
     }
 }
 
+/* Of a group, of which either criterion gets a design at least. */
+static double part_of_hypervolume(const Breeding *w)
+{
+    const size_t size = batch_size(w->common);
+    const double one = 1.0 / (double)MAX_OF(size, 2);
+    return fmin(fmax(1.0 - credit_part(&w->criteria->credit), one), 1.0 - one);
+}
+
 /* Descents along reference vectors, as many as the population at most; the criteria share them. */
 static void add_descended(Offspring *o, const Breeding *w)
 {
     const Common *c = w->common;
     const Problem *p = c->problem;
     const size_t n_vectors = w->criteria->vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(c),
-                 wanted = MIN_OF(two_each, c->config->population), n = MIN_OF(wanted, n_vectors), first = n / 2;
+                 wanted = MIN_OF(two_each, c->config->population), n = MIN_OF(wanted, n_vectors),
+                 first = (size_t)(part_of_hypervolume(w) * (double)n);
     size_t *vector = o->descent_vector;
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
@@ -238,20 +247,25 @@ static void offer(Offspring *o, const Breeding *w)
     }
 }
 
-/* Of the first `count` members those with the greatest gain beside what is picked already, by both criteria in turn,
- * up to `limit` in the batch. */
+/* Of the first `count` members those with the greatest gain beside what is picked already, by both criteria as they
+ * share the group, up to `limit` in it. */
 static size_t pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size_t count)
 {
+    const double part = part_of_hypervolume(w), turn = (double)common_asked(w->common) + 0.5;
     size_t n = 0;
     memset(o->allowed, 0, o->members.n);
     memset(o->allowed, 1, count);
     while (n < limit) {
-        const InfillKind criterion = n % 2 == 0 ? INFILL_HYPERVOLUME : INFILL_PBI;
+        const double before = floor(part * (turn + (double)n)), now = floor(part * (turn + (double)n + 1.0));
+        const InfillKind criterion = now > before ? INFILL_HYPERVOLUME : INFILL_PBI;
         const size_t i = infill_pick(w->criteria->select[criterion], o->allowed);
         if (i == SIZE_MAX)
             break;
         infill_take(w->criteria->select[criterion == INFILL_PBI ? INFILL_HYPERVOLUME : INFILL_PBI], i);
-        n = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_INFILL);
+        const size_t added = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_INFILL);
+        if (added > n)
+            b->criterion[n] = criterion;
+        n = added;
     }
     return n;
 }

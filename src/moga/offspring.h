@@ -15,7 +15,7 @@ typedef struct {
     Population pool;   /* of a generation on the surrogate */
     size_t n_unpicked; /* probes, or by variation: as many as fit into the batch are evaluated */
     size_t n_pending;
-    size_t n_dealt; /* reference vectors of descents so far */
+    size_t n_dealt;         /* reference vectors of descents so far */
     unsigned char *allowed; /* (pool) may be picked now */
     double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
     size_t *survivors;      /* (pool) of the environmental selection */

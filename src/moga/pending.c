@@ -128,12 +128,14 @@ void pending_pack(Pending *p, Pack *pack)
             q = pending_at(p, i)->q;
             memcpy(x, pending_x(p, i), p->n_var * sizeof *x);
         }
-        size_t kind = q.kind;
+        size_t kind = q.kind, criterion = q.criterion;
         pack_numbers(pack, x, p->n_var, -DBL_MAX, DBL_MAX);
         pack_size(pack, &q.repeat, UINT32_MAX);
         pack_size(pack, &kind, KIND_COUNT - 1);
         pack_size(pack, &q.n_parts, UINT32_MAX);
         pack_size(pack, &q.generation, UINT32_MAX);
+        pack_size(pack, &criterion, UINT8_MAX);
+        q.criterion = (unsigned char)criterion;
         q.kind = (EvaluationKind)kind;
         if (pack->reading && !pack->faulty)
             pack->faulty = pending_add(p, &q, &(Err){0}) != STATUS_OK;

@@ -9,6 +9,7 @@ typedef struct {
     size_t repeat;   /* evaluations of this design that there are already */
     EvaluationKind kind;
     size_t generation;       /* that it belongs to */
+    unsigned char criterion; /* of infill that picked it (moga/infill.h); INFILL_KINDS: none */
     size_t n_parts;          /* the first parts alone; 0: all */
     const void *cheap_parts; /* (Problem.n_cheap) parts of this design that are there; NULL: none */
 } Question;

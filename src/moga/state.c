@@ -21,6 +21,7 @@ static void layout(void *search, Carve *c)
     Scratch *w = &s->scratch;
     CARVE(c, b->X, b->size_max * n_var);
     CARVE(c, b->kind, b->size_max);
+    CARVE(c, b->criterion, b->size_max);
     CARVE(c, b->repeat, b->size_max);
     CARVE(c, o->allowed, n_members);
     CARVE(c, o->survivors, n_pool);
@@ -40,6 +41,7 @@ static void layout(void *search, Carve *c)
 static Status create_criteria(Search *s, size_t n_pool, Err *err)
 {
     Criteria *q = &s->criteria;
+    q->credit = (Credit){0.5, 0.5};
     TRY(directions_spread(&q->vectors, s->common.problem->n_obj, n_vectors(&s->common), err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, s->common.problem->aspire, err));
@@ -140,6 +142,7 @@ void state_pack(Search *s, Pack *p)
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->common.convergence, p);
     pack_size(p, &s->screening.is_on, 1);
+    credit_pack(&s->criteria.credit, p);
     pending_pack(&s->common.pending, p);
     pack_moment(s, p);
 }

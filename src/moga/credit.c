@@ -1,0 +1,34 @@
+#include "moga/credit.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "moga/constants.h"
+
+double credit_part(const Credit *c)
+{
+    const double first = pow(c->gain / c->designs, CREDIT_POWER),
+                 second = pow((1.0 - c->gain) / (1.0 - c->designs), CREDIT_POWER);
+    return first + second > 0.0 ? first / (first + second) : 0.5;
+}
+
+/* Nothing is learnt where one criterion had no result, or there was no gain. */
+void credit_learn(Credit *c, const CreditResults *r)
+{
+    double share = 0.0, measures = 0.0;
+    for (int k = 0; k < INFILL_KINDS; k++) {
+        const double all = r->gain[k][0] + r->gain[k][1];
+        share += all > 0.0 ? r->gain[k][0] / all : 0.0;
+        measures += all > 0.0;
+    }
+    if (measures == 0.0 || r->designs[0] == 0.0 || r->designs[1] == 0.0)
+        return;
+    c->gain += CREDIT_WEIGHT * (share / measures - c->gain);
+    c->designs += CREDIT_WEIGHT * (r->designs[0] / (r->designs[0] + r->designs[1]) - c->designs);
+}
+
+void credit_pack(Credit *c, Pack *p)
+{
+    pack_numbers(p, &c->gain, 1, 0.0, 1.0);
+    pack_numbers(p, &c->designs, 1, DBL_MIN, 1.0 - DBL_EPSILON);
+}
