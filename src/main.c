@@ -145,20 +145,13 @@ static void hold_standard_streams(void)
             return;
 }
 
-/* On another rank: with the kernels of the first. */
-static Status open_by_recipe(Problem *p, const void *recipe, size_t size, Err *err)
-{
-    linalg_use(((const Recipe *)recipe)->settings.search.blas);
-    return simulator_open(p, recipe, size, err);
-}
-
 /* A rank of a cluster other than the first evaluates for that one and runs no command. */
 static Status run_here(int argc, char *argv[], Err *err)
 {
     char version[CLUSTER_VERSION_MAX] = "";
     int serves;
     program_identity(sizeof version, version);
-    TRY(cluster_join(&argc, &argv, version, open_by_recipe, &serves, err));
+    TRY(cluster_join(&argc, &argv, version, simulator_open, &serves, err));
     return serves ? STATUS_OK : run(argc, argv, err);
 }
 
@@ -167,8 +160,7 @@ int main(int argc, char *argv[])
     Err err = {0};
     hold_standard_streams();
     json_set_alloc_funcs(json_memory, free);
-    linalg_use(KERNELS_PINNED);
-    Status status = run_here(argc, argv, &err);
+    Status status = linalg_pin() ? run_here(argc, argv, &err) : fail(&err, STATUS_NO_MEMORY, "no memory to begin with");
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
         status = fail(&err, STATUS_IO, "standard output: cannot be written");
     if (status != STATUS_OK)

@@ -36,7 +36,6 @@ static void prepare_search(Told *a, long ahead, size_t max_evals)
         (Problem){.n_var = VAR, .n_obj = OBJ, .lower = a->lower, .upper = a->upper, .n_parts = 1, .n_workers = 1};
     a->config = search_config(3, 24, 60);
     a->config.initial = 20;
-    a->config.generations = 1000;
     a->config.max_evals = max_evals;
     a->config.ahead = ahead;
 }

@@ -600,7 +600,7 @@ TEST(random_calls_end_in_errors_at_most)
 
 static int begin(void **state)
 {
-    linalg_use(KERNELS_PINNED);
+    linalg_pin();
     return prepare(state);
 }
 

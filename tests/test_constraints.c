@@ -10,7 +10,7 @@ static void write_bounded(const char *name, const char *mode, const char *search
     snprintf(text, sizeof text,
              "[problem]\nkind = external\ncommand = sh tests/worker.sh %s\nvariables = 3\nobjectives = 2\nlower = 0\n"
              "upper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 90\n"
-             "generations = 200\nthreads = 1\n%s",
+             "threads = 1\n%s",
              mode, search);
     write_in_place(name, text);
 }

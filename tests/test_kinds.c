@@ -99,7 +99,7 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 TEST(a_space_smaller_than_the_budget_is_searched_whole)
 {
     write_in_place("tiny.ini", "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nkinds = int, choice:a|b\n"
-                               "[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\ngenerations = 200\n");
+                               "[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\n");
     free(output_of("optimize @/tiny.ini --out @/tiny"));
     assert_int_equal(finished_in("tiny"), 22);
 }

@@ -347,7 +347,7 @@ TEST(python_does_what_its_tests_say)
 
 static int begin(void **state)
 {
-    linalg_use(KERNELS_PINNED);
+    linalg_pin();
     return prepare(state);
 }
 

@@ -269,7 +269,6 @@ static SearchConfig config(uint32_t seed, double repeats)
 {
     SearchConfig c = search_config(seed, 16, 24);
     c.initial = 20;
-    c.generations = 1000;
     c.max_evals = 200;
     c.surrogate = SURROGATE_OFF;
     c.replicate_share = repeats;

@@ -26,7 +26,7 @@ static int set_up(void **state)
     Err err = {0};
     char path[PATH_MAX];
     const char *records[] = {"builtin:sylmar-like"};
-    linalg_use(KERNELS_PINNED); /* as the program does: other threads, other last digits, other impacts */
+    linalg_pin(); /* as the program does: other threads, other last digits, other impacts */
     if (make_place(state) != 0)
         return 1;
     expect(0, "",

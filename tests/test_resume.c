@@ -73,7 +73,6 @@ static SearchConfig config(size_t initial, size_t max_evals)
 {
     SearchConfig c = search_config(7, 24, 40);
     c.initial = initial;
-    c.generations = 60;
     c.max_evals = max_evals;
     return c;
 }
@@ -293,7 +292,6 @@ TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
 {
     world(&here, 3, 2, 0);
     SearchConfig c = config(20, 290);
-    c.generations = 79;
     c.stop_after = 100;
     check_every_moment(&c, 5);
     run(&here, &c, NULL, &whole);
@@ -368,7 +366,7 @@ TEST(a_pack_reads_what_it_wrote_and_keeps_the_first_fault)
 static int quiet(void **state)
 {
     (void)state;
-    linalg_use(KERNELS_PINNED);
+    linalg_pin();
     omp_set_num_threads(1); /* more than one has a test of its own */
     return 0;
 }

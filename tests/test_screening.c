@@ -114,7 +114,6 @@ static void open_world(World *w, size_t n_workers)
 static SearchConfig config_of(void)
 {
     SearchConfig c = search_config(7, 12, 600);
-    c.generations = 1000;
     c.max_evals = EVALS;
     c.fidelity = FIDELITY_REPLICATES;
     return c;
@@ -186,7 +185,7 @@ static void forget(World *w, Seen *s)
 
 static int set_up(void **state)
 {
-    linalg_use(KERNELS_PINNED);
+    linalg_pin();
     (void)state;
     open_world(&world, 1);
     run(&world, &seen, NULL);
@@ -288,21 +287,6 @@ TEST(resumed_anywhere_it_makes_the_same_bytes)
         assert_same_search();
         forget(&other_world, &other);
     }
-}
-
-TEST(a_search_that_ends_by_its_generations_finishes_designs_too)
-{
-    SearchConfig config = config_of();
-    StopReason reason;
-    Err err = {0};
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 1);
-    config.generations = 5;
-    CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
-    assert_int_equal(reason, STOP_GENERATIONS);
-    assert_less(other.n_evaluations, EVALS / 2 + EVALS / 4);
-    assert_int_equal(other.n_finished, other.n_screened / 5 > LEVEL_PAIRS ? other.n_screened / 5 : LEVEL_PAIRS);
-    forget(&other_world, &other);
 }
 
 /* Row i is one of the sample, and a later one has all of its simulations. */

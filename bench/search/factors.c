@@ -60,7 +60,6 @@ Status search_course(const Settings *settings, const Problem *p, SurrogateUse su
     Settings s = *settings;
     StopReason reason;
     s.search.max_evals = (long)c->n_max;
-    s.search.generations = 1000000;
     s.search.surrogate = surrogate;
     const SearchConfig config = search_config_of(&s);
     return search_run(p, &config, note, c, &reason, err);

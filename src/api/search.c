@@ -85,10 +85,10 @@ void handle_free(imtet_search *s)
     free(s);
 }
 
-static const char *const KEYS[] = {
-    "search.max_evals", "search.seed",       "search.population",   "search.initial",   "search.generations",
-    "search.max_hours", "search.stop_after", "search.failures_max", "search.surrogate", "search.nondominated_share",
-    "search.threads",   "search.aspire",     "search.ahead"};
+static const char *const KEYS[] = {"search.max_evals",    "search.seed",      "search.population",
+                                   "search.initial",      "search.max_hours", "search.stop_after",
+                                   "search.failures_max", "search.surrogate", "search.nondominated_share",
+                                   "search.threads",      "search.aspire",    "search.ahead"};
 
 /* The others are of runs, towers, or of evaluations that answer differently each time. */
 static Status take_settings(Settings *s, const char *const list[], Err *err)

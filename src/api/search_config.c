@@ -8,7 +8,6 @@ SearchConfig search_config_of(const Settings *s)
         .seed = (uint32_t)s->search.seed,
         .population = s->search.population,
         .initial = MIN_OF(s->search.initial, s->search.max_evals),
-        .generations = s->search.generations,
         .max_evals = s->search.max_evals,
         .surrogate_max = SEARCH_CENTRES,
         .surrogate = s->search.surrogate,

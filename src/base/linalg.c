@@ -70,17 +70,18 @@ void linalg_end(void)
 }
 
 /* The variable is gone again before another process is started, whose BLAS is its own affair. */
-void linalg_use(LinalgKernels kernels)
+int linalg_pin(void)
 {
     static const char VARIABLE[] = "OPENBLAS_CORETYPE", PINNED[] = "Haswell";
     openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
-    if (getenv(VARIABLE) || !can_choose() || (kernels == KERNELS_PINNED && strcmp(linalg_kernel_name(), PINNED) == 0))
-        return;
-    if (kernels == KERNELS_PINNED)
-        setenv(VARIABLE, PINNED, 1);
+    if (getenv(VARIABLE) || !can_choose() || strcmp(linalg_kernel_name(), PINNED) == 0)
+        return 1;
+    if (setenv(VARIABLE, PINNED, 1) != 0)
+        return 0;
     gotoblas_dynamic_quit();
     gotoblas_dynamic_init();
     unsetenv(VARIABLE);
+    return 1;
 }
 
 /* ---- memory ---------------------------------------------------------------------------------------------------- */

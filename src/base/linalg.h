@@ -4,17 +4,12 @@
  * Threads  no state; BLAS is expected to run on one thread (linalg_use) */
 #pragma once
 
-#include "base/option.h"
 #include "base/status.h"
 
-/* The kernels of OpenBLAS that are used: those that it has for the processor, whose rounding no other processor may
- * share, or everywhere those of Haswell, which wherever there are AVX2 and FMA give the same bytes. Where
- * OPENBLAS_CORETYPE is set, or there is no choice, both are what they are. */
-#define LINALG_KERNELS_LIST(X) X(KERNELS_PINNED, "pinned") X(KERNELS_NATIVE, "native")
-typedef enum { LINALG_KERNELS_LIST(CHOICE_NAME) } LinalgKernels;
-
-/* Changes BLAS for the whole process: for a program to call, before it starts threads, never for a library. */
-void linalg_use(LinalgKernels kernels);
+/* From now on OpenBLAS uses the kernels of Haswell, which wherever there are AVX2 and FMA give the same bytes, but where
+ * OPENBLAS_CORETYPE is set or there is no choice. Changes BLAS for the whole process: for a program to call, before it
+ * starts threads, never for a library. 0: no memory. */
+int linalg_pin(void);
 const char *linalg_kernel_name(void); /* "Haswell" */
 
 /* For a library: between the two BLAS has one thread, and then again as many as before. The number is one of the whole

@@ -301,7 +301,6 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     }
     if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
         return first;
-    linalg_use(s->search.blas);
     return outputs_spare(args, s, err);
 }
 

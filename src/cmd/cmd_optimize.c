@@ -327,7 +327,7 @@ static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
     SETTING("--out", "DIR", "run.out", "the run's folder; a run that it holds is resumed"),
     SWITCH("--new", "a new run in any case: a number is added to a folder that holds one"),
-    SWITCH("--force-settings", "resume with lower limits (simulations, generations, hours); greater ones need no word"),
+    SWITCH("--force-settings", "resume with lower limits (simulations, hours); greater ones need no word"),
     SETTING("--seed", "N", "search.seed", "same seed, same settings: same front"),
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),

@@ -44,11 +44,12 @@ static inline size_t common_asked(const Common *c)
     return c->archive.n + c->pending.n;
 }
 
-/* Designs that may be under way when the next group is made. */
+/* Designs that may be under way when the next group is made; an eighth of a small budget. */
 static inline size_t common_ahead(const SearchConfig *c, size_t asked)
 {
-    const size_t share = asked / AHEAD_SHARE, most = MIN_OF(share, AHEAD_MAX);
-    return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, AHEAD_MIN);
+    const size_t budget = c->planned_evals > 0 ? c->planned_evals : c->max_evals, least = MIN_OF(budget / 8, AHEAD_MIN),
+                 share = asked / AHEAD_SHARE, most = MIN_OF(share, AHEAD_MAX);
+    return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
 }
 
 /* Evaluations that are left to be asked for. */

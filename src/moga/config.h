@@ -11,7 +11,7 @@ enum { SEARCH_CENTRES = 400 }; /* of the surrogate at most */
 
 typedef struct {
     uint32_t seed;
-    size_t population, generations, max_evals, surrogate_max;
+    size_t population, max_evals, surrogate_max;
     size_t planned_evals; /* 0: max_evals. Initial sample and reference vectors of infill are those of so many
                                   evaluations: of two searches that differ in max_evals only, one begins the other */
     size_t initial;       /* size of the initial sample; 0: by the number of variables */

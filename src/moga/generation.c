@@ -36,8 +36,7 @@ static size_t allowed_now(const Search *s)
 {
     const Common *c = &s->common;
     const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
-    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE ||
-                              screening_room(&s->screening, c, 1) == 0 || c->generation >= c->config->generations;
+    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0;
     return waits_for_all ? 0 : MIN_OF(ahead, most);
 }
 
@@ -183,6 +182,7 @@ static Status sample_again(Search *s, Err *err)
 {
     s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
     const size_t n = add_samples(s, 0, s->common.config->population);
+    s->n_vain = n > 0 ? 0 : s->n_vain + 1;
     surrogate_drop(s->surrogate); /* a resumed search has none here either */
     return ask(s, n, n, err);
 }

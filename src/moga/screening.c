@@ -449,14 +449,9 @@ Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
     return STATUS_OK;
 }
 
-int screening_is_due(const Screening *q, const Common *c)
-{
-    return q->is_on && q->n_open > 0 && finish_due(q, c, 0) > 0 && left(q, c) >= q->cost.rest;
-}
-
 Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
 {
-    const int is_last = c->generation > c->config->generations || screening_room(q, c, 1) == 0;
+    const int is_last = screening_room(q, c, 1) == 0;
     if (*n > 0 || q->n == 0 || !q->is_on || !is_last)
         return STATUS_OK;
     return append_best(q, c, b, n, size_with(q, c, b, 0, batch_size(c)), err);

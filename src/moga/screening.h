@@ -56,4 +56,3 @@ const void *screening_parts(const Screening *q, const Common *c, const double x[
 /* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
 Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
 Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
-int screening_is_due(const Screening *q, const Common *c); /* designs are to be finished, and there is room */

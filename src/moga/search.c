@@ -7,8 +7,8 @@ const char *stop_reason_words(StopReason reason)
 {
     static const char *const words[] = {
         [STOP_NONE] = "not stopped",
-        [STOP_GENERATIONS] = "all generations done",
         [STOP_EVALUATIONS] = "all simulations spent",
+        [STOP_EXHAUSTED] = "no design is left that was not simulated",
         [STOP_TIME] = "time limit reached",
         [STOP_SHARE] = "the wanted share of the archive is nondominated",
         [STOP_CONVERGED] = "the last search.stop_after simulations gained nothing above the noise of hypervolume",
@@ -24,8 +24,8 @@ static StopReason reason_to_stop(const Search *s)
     const Archive *a = &s->common.archive;
     if (screening_is_spent(&s->screening, &s->common))
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
-    if (s->common.generation >= c->generations && !screening_is_due(&s->screening, &s->common))
-        return STOP_GENERATIONS;
+    if (s->n_vain == 100)
+        return STOP_EXHAUSTED;
     return c->nondominated_share < 1.0 && a->n_front >= c->nondominated_share * (double)a->n ? STOP_SHARE : STOP_NONE;
 }
 

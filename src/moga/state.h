@@ -35,6 +35,7 @@ struct Search {
     Scratch scratch;
     Phase phase;
     size_t n_before;   /* rows before the last step */
+    size_t n_vain;     /* samples one after the other in which every design was known */
     size_t allowed;    /* questions that may be under way when the next answers enter */
     StopReason reason; /* STOP_NONE: it goes on; else what is under way enters, and it is over */
     int shows_results; /* between a step and what follows: of what is screened the archive has the results */

@@ -41,8 +41,7 @@ typedef struct {
 /* -- [search], [run] -- */
 
 typedef struct {
-    long seed, threads, population, initial, generations, max_evals;
-    LinalgKernels blas;
+    long seed, threads, population, initial, max_evals;
     double max_hours; /* OPTION_WORD: by the Slurm job */
     double nondominated_share;
     SurrogateUse surrogate;

@@ -150,7 +150,9 @@ static void cut_note(char *value)
 
 /* Keys of earlier versions, which stand in their runs; what a file of today is told. */
 static const char *const FORMER[][2] = {
-    {"search.asynchronous", "search.asynchronous is no setting any more: every search looks ahead (search.ahead)"}};
+    {"search.asynchronous", "search.asynchronous is no setting any more: every search looks ahead (search.ahead)"},
+    {"search.generations", "search.generations is no setting any more: search.max_evals limits a search"},
+    {"search.blas", "search.blas is no setting any more: OPENBLAS_CORETYPE in the environment chooses other kernels"}};
 
 /* 1: it is one of those, and a fault where a file has it. */
 static int is_former(Reading *r, const char *key, Place at)

@@ -14,9 +14,6 @@ double progress_left(const Progress *p, const SearchOptions *o)
     double left = ((double)o->max_evals - (double)p->simulated) / progress_rate(p);
     if (!isfinite(left))
         return NAN;
-    if (p->session_generations > 0)
-        left = fmin(left, p->session_s / (double)p->session_generations *
-                              ((double)o->generations + 1.0 - (double)p->generations));
     if (o->max_hours > 0.0)
         left = fmin(left, 3600.0 * o->max_hours - p->session_s);
     return fmax(left, 0.0);
@@ -115,8 +112,6 @@ static void take_session(Standing *out, const Run *run, const RunSession *last)
     out->seconds += is_running ? fmax(p->session_s - stored, 0.0) : 0.0;
     p->all_s = out->seconds;
     p->session_simulated = run_evaluations(run, last->simulated_before);
-    for (size_t g = 0; g < run->n_generations; g++)
-        p->session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
 }
 
 void standing_of(Standing *out, const char *folder, const Run *run)
@@ -128,7 +123,6 @@ void standing_of(Standing *out, const char *folder, const Run *run)
                  : last && last->ended[0]             ? RUN_PAUSED
                                                       : RUN_INTERRUPTED;
     count(out, run);
-    out->progress.generations = run->n_generations;
     const size_t n = run_first_polished(run);
     out->n_lost = out->state != RUN_RUNNING && out->holder.n_stored > n ? out->holder.n_stored - n : 0;
     if (run->n_generations > 0)

@@ -7,14 +7,13 @@
 
 /* Of the search and of this start of it. */
 typedef struct {
-    size_t simulated, generations;                 /* so far */
-    size_t session_simulated, session_generations; /* since this start */
-    double session_s, all_s;                       /* of this start; of all */
+    size_t simulated, session_simulated; /* so far; since this start */
+    double session_s, all_s;             /* of this start; of all */
 } Progress;
 
 double progress_rate(const Progress *p); /* simulations of this start, else of all; NAN: none yet */
 
-/* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
+/* Seconds until simulations or hours are spent, whichever is first; NAN: unknown. */
 double progress_left(const Progress *p, const SearchOptions *o);
 
 /* "1:05 min", "3:20 h"; "-" where it is not finite. */

@@ -111,9 +111,7 @@ static void show_progress(const Study *study, const SearchView *view, size_t now
     const StudyProgress p = {.view = view,
                              .hypervolume = store_hypervolume(study->store),
                              .progress = {.simulated = now,
-                                          .generations = study->generation,
                                           .session_simulated = now > before ? now - before : 0,
-                                          .session_generations = study->generation - study->first_generation,
                                           .session_s = session_seconds(study),
                                           .all_s = study->seconds_before + session_seconds(study)},
                              .settings = &study->used};
@@ -306,7 +304,7 @@ static int came_to_its_end(const Run *run, StopReason *stopped)
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     if (!last || !last->is_final)
         return 0;
-    for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
+    for (*stopped = STOP_EVALUATIONS; *stopped < STOP_ASKED; ++*stopped)
         if (strcmp(stop_reason_words(*stopped), last->stopped) == 0)
             break;
     return 1;

@@ -113,9 +113,12 @@ const tried = {
     const live = start("optimize", join(root, "a", "settings.ini"), "--max-evals", "100", "--out", join(root, "live"));
     live.stdout.resume();
     const log = join(root, "live", "log.jsonl"), seen = () => (existsSync(log) ? readFileSync(log, "utf8").split("\n").filter((l) => l.startsWith("{") && l.endsWith("}")).map((l) => JSON.parse(l)).filter((e) => e.event === "generation").map((e) => e.number) : []);
-    while (!seen().length) await pause(10);
-    live.kill("SIGSTOP"); // however long the page takes, the run has not ended
-    const first = seen().at(-1), shows = (generation) => until(`+document.getElementById("live").dataset.generation >= ${generation}`);
+    const stored = () => { try { return JSON.parse(execFileSync(imtet, ["status", join(root, "live"), "--json"], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })).generations.length; } catch { return 0; } };
+    for (; ; live.kill("SIGCONT"), await pause(20)) {
+      live.kill("SIGSTOP"); // however long the page takes, the run has not ended
+      if (stored()) break;
+    }
+    const first = stored() - 1, shows = (generation) => until(`+document.getElementById("live").dataset.generation >= ${generation}`);
     await open("live");
     await shows(first);
     assert.equal(await page.evaluate("document.getElementById('live').dataset.state"), "running");
