@@ -12,6 +12,7 @@
 #include "bench/throughput.h"
 #include "bench/promise.h"
 #include "bench/paper.h"
+#include "bench/problem.h"
 #include "bench/schedule.h"
 #include "cmd/args.h"
 #include "motion/motion_scale.h"
@@ -337,6 +338,15 @@ static const ArgOption SCHEDULE_OPTIONS[] = {
     OPTION_END,
 };
 
+static const ArgOption PROBLEM_OPTIONS[] = {
+    SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
+    SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
+    SETTING("--threads", "N", "search.threads", "0: one per processor"),
+    OPTION_CSV,
+    OPTION_SET,
+    OPTION_END,
+};
+
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
 static const Command COMMANDS[] = {
@@ -404,6 +414,17 @@ static const Command COMMANDS[] = {
                 "simulations from the same first designs: a row of every iteration and generation, as CSV.",
      .options = LOOP_OPTIONS,
      .run = run_loop,
+     .program = "imtet-bench"},
+    {.name = "problem",
+     .operand = "NAME",
+     .summary = "the search on a problem from a textbook: dtlz2, wfg4",
+     .example = "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
+     .details =
+         "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one row\n"
+         "each in their order: variables, then objectives. With problem.noise the noisy objectives of the search\n"
+         "stand before the exact ones.",
+     .options = PROBLEM_OPTIONS,
+     .run = problem_run,
      .program = "imtet-bench"},
     {.name = "schedule",
      .operand = "RUN",

@@ -11,10 +11,10 @@ enum { WORKERS_MAX = 4096 };
 typedef struct {
     const SchedulePlan *plan;
     const Run *run;
-    size_t n;       /* designs of the search */
-    double *end;    /* (n) [s] when they are there */
-    double *choose; /* (n_generations) [s] of one processor for the questions of each */
-    double work;
+    size_t n;                         /* designs of the search */
+    double *end;                      /* (n) [s] when they are there */
+    double *choose;                   /* (n_generations) [s] of one processor for the questions of each */
+    double work, worker[WORKERS_MAX]; /* worker: [s] when each is free */
 } Replay;
 
 typedef struct {
@@ -60,7 +60,7 @@ static void simulate(Replay *r, size_t *next, long group, double now, double wor
 
 static Replayed replay(Replay *r, size_t n_workers)
 {
-    static double worker[WORKERS_MAX];
+    double *worker = r->worker;
     const Run *run = r->run;
     Replayed out = {0};
     double now = 0.0;

@@ -350,8 +350,7 @@ static pid_t start_with_workers(const char *command, int *end)
     if (pid == 0) {
         dup2(ends[1], STDERR_FILENO);
         close(ends[1]);
-        if (external_open(&p, &options, 2, &err) == STATUS_OK &&
-            queue_open(&q, &p, &err) == STATUS_OK)
+        if (external_open(&p, &options, 2, &err) == STATUS_OK && queue_open(&q, &p, &err) == STATUS_OK)
             queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
         _exit(1);
     }

@@ -126,8 +126,8 @@ typedef struct {
 static void is_the_changed_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
     Changed *c = user;
-    static const char *const LIMITS[] = {"search.max_evals", "search.max_hours",
-                                         "search.nondominated_share", "search.stop_after",  "problem.timeout_s"};
+    static const char *const LIMITS[] = {"search.max_evals", "search.max_hours", "search.nondominated_share",
+                                         "search.stop_after", "problem.timeout_s"};
     static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",
                                        "run.isolate",    "search.start",        "motion.record",
                                        "motion.records", "motion.forces",       "building.model"};

@@ -6,9 +6,9 @@
 
 #include "base/status.h"
 
-/* From now on OpenBLAS uses the kernels of Haswell, which wherever there are AVX2 and FMA give the same bytes, but where
- * OPENBLAS_CORETYPE is set or there is no choice. Changes BLAS for the whole process: for a program to call, before it
- * starts threads, never for a library. 0: no memory. */
+/* From now on OpenBLAS uses the kernels of Haswell, which wherever there are AVX2 and FMA give the same bytes, but
+ * where OPENBLAS_CORETYPE is set or there is no choice. Changes BLAS for the whole process: for a program to call,
+ * before it starts threads, never for a library. 0: no memory. */
 int linalg_pin(void);
 const char *linalg_kernel_name(void); /* "Haswell" */
 

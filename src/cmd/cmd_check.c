@@ -270,9 +270,10 @@ static void scene_json(Check *c, const CheckedScene *p)
 
 /* What a study does beside its simulations, for the time that it takes: per design and objective or limit, growing with
  * the root of the variables, at its surrogate and the search; and to find the devices of the baselines, by floor and
- * record. Source: processor time of `imtet problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7 objectives,
- * within 30 %, and of `imtet evaluate` of the quick study and of configs/engineer.ini. Their simulations: of 16 designs
- * for the gaps, and some with baselines; and of a design that is named 6 to 25 by their time, with more steps. */
+ * record. Source: processor time of `imtet-bench problem dtlz2 --max-evals 400` of 8 x 3 to 62 variables x 7
+ * objectives, within 30 %, and of `imtet evaluate` of the quick study and of configs/engineer.ini. Their simulations:
+ * of 16 designs for the gaps, and some with baselines; and of a design that is named 6 to 25 by their time, with more
+ * steps. */
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 2;
 enum { CLOSING_SIMULATIONS = 24, NAMED_SIMULATIONS = 12 };
 

@@ -16,7 +16,6 @@
     X(SERVE)                                                                                                           \
     X(BUILDING)                                                                                                        \
     X(SPECTRUM)                                                                                                        \
-    X(PROBLEM)                                                                                                         \
     X(CHECK)                                                                                                           \
     X(NEW)                                                                                                             \
     X(SETTINGS)

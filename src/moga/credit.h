@@ -2,9 +2,9 @@
  *
  *   part of i = (g_i / n_i)^p / sum_j (g_j / n_j)^p          p = CREDIT_POWER
  *
- * g_i and n_i are running means of its share of the gain and of the designs. The gain of a result is what it adds to the
- * front before it (infill_gain), measured by both criteria alike. Probability matching with a power: Thierens, GECCO
- * 2005, 1539-1546.
+ * g_i and n_i are running means of its share of the gain and of the designs. The gain of a result is what it adds to
+ * the front before it (infill_gain), measured by both criteria alike. Probability matching with a power: Thierens,
+ * GECCO 2005, 1539-1546.
  *
  * Threads  pure functions of their arguments */
 #pragma once

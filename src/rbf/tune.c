@@ -181,8 +181,8 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
     return n;
 }
 
-/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. An additive
- * part must be worth it where there is none yet, and is not tried where the others leave nothing to explain. */
+/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. An
+ * additive part must be worth it where there is none yet, and is not tried where the others leave nothing. */
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
 {
     const int is_new = form.kernel >= RBF_ADDITIVE && o->form.kernel < RBF_ADDITIVE;

@@ -477,8 +477,8 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
 
-/* A box about the first designs that succeeded, when all of their generation are there, as those of the first sample are
- * from the first step on: from a fifth of their range below the best to the worst. */
+/* A box about the first designs that succeeded, when all of their generation are there, as those of the first sample
+ * are from the first step on: from a fifth of their range below the best to the worst. */
 static Status create_cover(RunStore *store, const Archive *a, int is_last, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];

@@ -1,6 +1,9 @@
-#include <omp.h>
+#include "bench/problem.h"
 
-#include "cmd/commands.h"
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
 #include "api/search_config.h"
 #include "evaluate/textbook.h"
 #include "store/output.h"
@@ -72,7 +75,7 @@ static Status search(const Args *args, const Settings *s, const Adapter *adapter
     return output_close(&o, err);
 }
 
-static Status run(const Args *args, Err *err)
+Status problem_run(const Args *args, Err *err)
 {
     const char *names[16];
     int n_names = 0, known = 0;
@@ -83,7 +86,7 @@ static Status run(const Args *args, Err *err)
         known |= strcmp(args->operand, names[n_names]) == 0;
     }
     if (!known)
-        return args_unknown("problem", args->operand, names, n_names, "`imtet problem --help`", err);
+        return args_unknown("problem", args->operand, names, n_names, "`imtet-bench problem --help`", err);
     if (!args_has(args, "--csv"))
         return misused(err, "--csv FILE is missing: where the table goes");
     settings_defaults(&s);
@@ -96,25 +99,3 @@ static Status run(const Args *args, Err *err)
     adapter_close(adapter);
     return status;
 }
-
-static const ArgOption OPTIONS[] = {
-    SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
-    SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
-    SETTING("--threads", "N", "search.threads", "0: one per processor"),
-    OPTION_CSV,
-    OPTION_SET,
-    OPTION_END,
-};
-
-const Command CMD_PROBLEM = {
-    .name = "problem",
-    .operand = "NAME",
-    .summary = "the search on a problem from a textbook: dtlz2, wfg4",
-    .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
-    .details =
-        "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
-        "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
-        "noisy objectives of the search stand before the exact ones.",
-    .options = OPTIONS,
-    .run = run,
-};
