@@ -89,8 +89,8 @@ typedef struct {
     const char *const *settings;  /* "search.KEY=VALUE" as `imtet settings` lists them, NULL behind the last;
                                                 NULL: none. search.max_evals, seed, population, initial,
                                                 max_hours, stop_after, failures_max, surrogate, nondominated_share,
-                                                ahead, threads (of the search itself), aspire (objectives are f1, f2, ...:
-                                                "search.aspire=f1 0.5,f2 3") */
+                                                ahead, threads (of the search itself), aspire (objectives are
+                                                f1, f2, ...: "search.aspire=f1 0.5,f2 3") */
 } imtet_search_options;
 
 /* A new search; *out is NULL where it fails. */

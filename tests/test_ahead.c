@@ -41,7 +41,7 @@ static void prepare_search(Told *a, long ahead, size_t max_evals)
 }
 
 typedef struct {
-    size_t n, most, number[ROWS_MAX];
+    size_t n, number[ROWS_MAX];
 } Out;
 
 /* All that may be asked now. 1: the search waits for answers; 0: it is over. */
@@ -60,7 +60,6 @@ static int ask_all(Told *a, Search *s, Out *out)
         a->kind[q.number - 1] = (unsigned char)q.kind;
         a->n = MAX_OF(a->n, q.number);
         out->number[out->n++] = q.number;
-        out->most = MAX_OF(out->most, out->n);
     }
 }
 
@@ -219,9 +218,9 @@ static long failed_where_one_waits(const char *name, int tenths, const char *mor
         "optimize @/uneven.ini --out @/%s --max-evals 60 --set 'problem.command=sh tests/worker.sh waits @/%s.ids 38 "
         "%d' %s",
         name, name, tenths, more);
-    free(output_of(words));
+    free(output_of("%s", words));
     snprintf(words, sizeof words, "status @/%s --json", name);
-    json_t *o = json_of(words);
+    json_t *o = json_of("%s", words);
     const long failed = (long)number(o, "failed");
     assert_same_number(number(o, "simulated"), 60);
     json_decref(o);

@@ -187,7 +187,7 @@ static void optimize(const Exercise *e, Run *run)
     write_in_place(name, e->ini);
     snprintf(command, sizeof command, "optimize @/%s.ini --out @/%s", e->name, e->name);
     if (access(path_of(e->name, path), F_OK) != 0)
-        free(output_of(command));
+        free(output_of("%s", command));
     CHECK_OK(run_read(run, path, &err), &err);
     assert_int_equal(run->table.n, e->n);
 }

@@ -330,7 +330,7 @@ TEST(other_commands_give_their_tasks_to_the_ranks)
     if (lines_in("alone/front.csv") == 0)
         free(output_of("optimize @/tower.ini --out @/alone"));
     for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        alone = output_of(commands[i]);
+        alone = output_of("%s", commands[i]);
         expect_code(launch(3, "%s", commands[i]), 0);
         said = read_in_place("said");
         assert_string_equal(said, alone);
@@ -595,10 +595,10 @@ TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
 
 TEST(a_message_that_is_cut_or_of_no_worker_is_none)
 {
-    struct {
+    union {
         Answer head;
-        char part[64];
-    } right = {{.worker = 3, .n_done = 1}, {0}}, bad = {{.why.code = STATUS_BAD_DATA}, {0}};
+        char bytes[sizeof(Answer) + 64];
+    } right = {.head = {.worker = 3, .n_done = 1}}, bad = {.head = {.why.code = STATUS_BAD_DATA}};
     char part[16];
     const Task task = {.result = part, .size = sizeof part};
     const size_t none = sizeof(Answer), whole = none + sizeof part;

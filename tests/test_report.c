@@ -623,7 +623,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
                  "simulate @/several/settings.ini --design @/several:knee --set motion.records=none --record "
                  "builtin:%s-like --json",
                  RECORDS[i]);
-        json_t *alone = json_of(arguments);
+        json_t *alone = json_of("%s", arguments);
         j1 = fmax(j1, number(alone, "j1_m"));
         stress = fmax(stress, number(alone, "core_stress_pa"));
         json_decref(alone);
@@ -635,7 +635,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     assert_non_null(strstr(page, "By what the study judges: worst of 3 records."));
     assert_non_null(strstr(page, "Forces and strokes under builtin:kobe-like, the first of 3 records."));
     assert_int_equal(sscanf(strstr(page, "<code>imtet "), "<code>imtet %799[^<]", command), 1);
-    json_t *again = json_of(command);
+    json_t *again = json_of("%s", command);
     assert_close(cell(page, "The response, by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
     assert_int_equal(cell(page, "The response, by", "accuracy fine", 8), number(again, "impacts"));
     json_decref(again);

@@ -292,8 +292,9 @@ TEST(resumed_anywhere_it_makes_the_same_bytes)
 /* Row i is one of the sample, and a later one has all of its simulations. */
 static int is_finished(const World *w, const Seen *s, size_t i)
 {
+    const size_t n = w->done.n_var;
     for (size_t j = i + 1; j < s->n; j++)
-        if (s->kind[j] == KIND_FINISHED && memcmp(w->done.row[i].x, w->done.row[j].x, VAR * sizeof(double)) == 0)
+        if (s->kind[j] == KIND_FINISHED && memcmp(w->done.row[i].x, w->done.row[j].x, n * sizeof(double)) == 0)
             return 1;
     return 0;
 }

@@ -285,7 +285,7 @@ static void check_signal(int number, const char *out)
     free(said);
     check_unfinished_is_exported(out);
     check_status_has_no_nan(out);
-    free(output_of(resume));
+    free(output_of("%s", resume));
 }
 
 TEST(a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on)

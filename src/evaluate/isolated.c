@@ -25,6 +25,7 @@ static void serve(void *self, size_t worker)
             break;
         free(a);
     }
+    free(order);
 }
 
 static size_t write_order(void *self, const Worker *w, char *request)

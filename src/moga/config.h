@@ -7,6 +7,18 @@
 #include "evaluate/evaluation.h"
 #include "settings/search_options.h"
 
+/* Why a search ends. */
+typedef enum {
+    STOP_NONE,
+    STOP_EVALUATIONS,
+    STOP_EXHAUSTED,
+    STOP_TIME,
+    STOP_SHARE,
+    STOP_CONVERGED,
+    STOP_ASKED,
+    STOP_FAILURES
+} StopReason;
+
 enum { SEARCH_CENTRES = 400 }; /* of the surrogate at most */
 
 typedef struct {

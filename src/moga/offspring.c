@@ -143,7 +143,7 @@ static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[
 static void deal_vectors(Offspring *o, const Common *c, size_t n_vectors, size_t n)
 {
     size_t *deck = o->descent_vector + n_vectors;
-    for (size_t i = 0; i < n; i++, o->n_dealt++) {
+    for (size_t i = 0; n_vectors > 0 && i < n; i++, o->n_dealt++) {
         const size_t at = o->n_dealt % n_vectors;
         if (i == 0 || at == 0) {
             Random random = random_stream(c->config->seed, RANDOM_DESCENT, (uint32_t)(o->n_dealt / n_vectors), 1);

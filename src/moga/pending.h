@@ -16,7 +16,7 @@ typedef struct {
     Question q; /* q.x: pending_x */
     int is_told;
     unsigned char ok;
-    void *parts; /* of the cheap level, own; NULL: not known */
+    unsigned char *parts; /* of the cheap level, own; NULL: not known */
 } Place;
 
 typedef struct {

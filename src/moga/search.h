@@ -55,16 +55,6 @@
 #include "moga/config.h"
 #include "moga/question.h"
 
-typedef enum {
-    STOP_NONE,
-    STOP_EVALUATIONS,
-    STOP_EXHAUSTED,
-    STOP_TIME,
-    STOP_SHARE,
-    STOP_CONVERGED,
-    STOP_ASKED,
-    STOP_FAILURES
-} StopReason;
 const char *stop_reason_words(StopReason reason);
 
 typedef struct Search Search;

@@ -8,7 +8,6 @@
 #include "base/pack.h"
 #include "moga/offspring.h"
 #include "moga/screening.h"
-#include "moga/search.h"
 
 /* Each array has one use. */
 typedef struct {
@@ -18,6 +17,8 @@ typedef struct {
     double *given;   /* (n_var) */
     double *f, *g;   /* (n_obj) (n_con) of a design restored */
 } Scratch;
+
+typedef struct Search Search; /* moga/search.h */
 
 /* The next thing that search_ask does. */
 typedef enum { PHASE_GROUP, PHASE_ANSWERS, PHASE_OVER } Phase;

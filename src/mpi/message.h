@@ -12,6 +12,8 @@
  * Threads  MPI is called by one thread at a time (MPI_THREAD_SERIALIZED) */
 #pragma once
 
+#include <time.h>
+
 #include "evaluate/cluster.h"
 #include "evaluate/order.h"
 

@@ -105,7 +105,8 @@ static void close_problem(Service *s)
         MPI_Wait(&s->seat[i].request, MPI_STATUS_IGNORE);
         free(s->seat[i].answer);
     }
-    s->n_workers = s->closing = 0;
+    s->n_workers = 0;
+    s->closing = 0;
     free(s->seat);
     s->seat = NULL;
     problem_close(&s->problem);
