@@ -18,8 +18,7 @@ typedef struct {
 } Replay;
 
 typedef struct {
-    double time, choosing; /* [s] in all; while the search chose and workers were idle */
-    double idle;           /* of the workers, [s] */
+    double time, choosing, idle; /* [s] in all; while the search chose; of the workers together */
 } Replayed;
 
 /* What the search took before each group: the time from step to step less the simulations in between, which one thread

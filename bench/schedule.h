@@ -1,17 +1,11 @@
 /* bench/schedule.h -- `imtet-bench schedule`: a finished run replayed on more workers than a machine has.
  *
- * What it takes from the run, which was made with --threads 1: how long each design was simulated; which answers had
- * entered when each group of questions was made (RunGeneration.simulated); and what the search itself took from one
- * group to the next, which is the rest of the time. Replayed, a worker that is free takes the next question, and a group
- * is made when the answers that the search waits for are there: a part of that work by one processor, the rest by all, of
- * which the workers lose their share. Behind the search come the ends of the study, of so much work and no shorter than
- * their longest chain.
- *
- *   efficiency   work / (workers x time)
- *   critical     [s] time on any number of workers
- *   waited       of the workers' time: for the search to choose, for answers that it needs, at the end */
-#ifndef IMTET_BENCH_SCHEDULE_H
-#define IMTET_BENCH_SCHEDULE_H
+ * Of the run, made with --threads 1, it takes how long each design was simulated, which answers had entered when each
+ * group of questions was made (RunGeneration.simulated), and what the search took from group to group: the rest of the
+ * time. A worker that is free takes the next question; a group is made when the answers are there, a part of that work by
+ * one processor, the rest by all, which the workers lose. Then come the ends of the study, no shorter than their chain.
+ * critical: time on any number of workers; choosing, idle: shares of the time. */
+#pragma once
 
 #include <stdio.h>
 
@@ -25,5 +19,3 @@ typedef struct {
 
 /* A row for 1, 2, 4, ... 64 workers and 14, as CSV. */
 Status schedule(const SchedulePlan *plan, FILE *out, Err *err);
-
-#endif

@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "moga/archive.h"
+#include "moga/credit.h"
 #include "moga/directions.h"
 #include "base/dominance.h"
 #include "moga/normalisation.h"
@@ -684,6 +685,19 @@ TEST(the_slope_of_pbi_equals_differences)
     }
     free(q);
     directions_free(&d);
+}
+
+/* By either measure the second one's designs add four times as much each, of which it has fewer. */
+TEST(the_criterion_whose_designs_add_more_is_preferred_and_nothing_is_learnt_from_one_alone)
+{
+    Credit c = {0.5, 0.5};
+    const CreditResults alone = {{{9, 0}, {3, 0}}, {6, 0}}, both = {{{6, 4}, {3, 2}}, {6, 1}};
+    credit_learn(&c, &alone);
+    assert_true(c.gain == 0.5 && c.designs == 0.5);
+    credit_learn(&c, &both);
+    assert_close(c.gain, 0.5 + 0.1 * (0.6 - 0.5), 1e-15);
+    assert_close(c.designs, 0.5 + 0.1 * (6.0 / 7.0 - 0.5), 1e-15);
+    assert_false(credit_prefers_first(&c));
 }
 
 SUITE(NULL, NULL)

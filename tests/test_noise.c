@@ -348,7 +348,7 @@ TEST(what_answers_the_same_each_time_is_soon_left_alone)
     const SearchConfig c = config(1, 0.4);
     run(&w, &c, NULL, &seen);
     assert_int_equal(seen.n, 200);
-    assert_in_range(seen.n_repeats, 8, 8 + 0.4 * (AHEAD_MIN + 12)); /* those under way when it is noticed */
+    assert_in_range(seen.n_repeats, 8, 8 + 0.4 * (AHEAD + 12)); /* those under way when it is noticed */
     forget(&seen);
     run(&plain, &c, NULL, &seen);
     assert_int_equal(plain.n_repeated, 0);

@@ -60,8 +60,8 @@ TEST(a_tower_under_records_with_replicates_has_the_same_rows_at_any_number_of_th
     free(output_of("optimize @/tower.ini --out @/one --threads 1"));
     free(output_of("optimize @/tower.ini --out @/three --threads 3"));
     Run one = run_in("one"), three = run_in("three");
-    const size_t n = one.table.n, n_var = one.schema.n_var, m = one.schema.n_obj;
-    assert_true(n == 45 && three.table.n == 45);
+    const size_t n = 45, n_var = one.schema.n_var, m = one.schema.n_obj;
+    assert_true(one.table.n == n && three.table.n == n);
     assert_memory_equal(one.table.x, three.table.x, n * n_var * sizeof(double));
     assert_memory_equal(one.F, three.F, n * m * sizeof(double));
     assert_memory_equal(one.table.sd, three.table.sd, n * m * sizeof(double));

@@ -217,8 +217,7 @@ static const unsigned char OK[N_DESIGNS] = {0, 0, 1, 1, 0, 1}, KIND[N_DESIGNS] =
 static const size_t REPLICATES[N_DESIGNS] = {1, 1, 1, 1, 1, 1};
 static const unsigned char FRONT[N_GENERATIONS][N_DESIGNS] = {{0}, {0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
 
-static Archive rows_of_view; /* at the moment of the view */
-
+static Archive rows_of_view;
 static SearchView view_of(size_t g)
 {
     rows_of_view = (Archive){.n = UNTIL[g],

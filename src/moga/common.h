@@ -44,11 +44,12 @@ static inline size_t common_asked(const Common *c)
     return c->archive.n + c->pending.n;
 }
 
-/* Designs that may be under way when the next group is made; an eighth of a small budget. */
+/* Designs that may be under way when the next group is made; an eighth of a small budget, and no more than a group of
+ * workers wants, for they cost predictions. */
 static inline size_t common_ahead(const SearchConfig *c, size_t asked)
 {
-    const size_t budget = c->planned_evals > 0 ? c->planned_evals : c->max_evals, least = MIN_OF(budget / 8, AHEAD_MIN),
-                 share = asked / AHEAD_SHARE, most = MIN_OF(share, AHEAD_MAX);
+    const size_t budget = c->planned_evals > 0 ? c->planned_evals : c->max_evals, least = MIN_OF(budget / 8, AHEAD),
+                 share = asked / AHEAD, most = MIN_OF(share, 240);
     return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
 }
 

@@ -17,7 +17,7 @@ enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more *
 
 /* -- common.h: look-ahead: questions whose answers are not known yet when the next ones are made ------------------- */
 
-enum { AHEAD_MIN = 24, AHEAD_SHARE = 24, AHEAD_MAX = 240 }; /* questions / share, within these bounds */
+enum { AHEAD = 24 }; /* at least, and questions / this where that is more */
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 
@@ -53,7 +53,7 @@ static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's deriv
 
 /* -- offspring.c: infill selection --------------------------------------------------------------------------------- */
 
-static const double CREDIT_WEIGHT = 0.1, CREDIT_POWER = 16.0; /* of a step in running means; see moga/credit.h */
+static const double CREDIT_WEIGHT = 0.1; /* of one step in the running means of what criteria gain */
 static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */

@@ -1,15 +1,12 @@
 #include "moga/credit.h"
 
 #include <float.h>
-#include <math.h>
 
 #include "moga/constants.h"
 
-double credit_part(const Credit *c)
+int credit_prefers_first(const Credit *c)
 {
-    const double first = pow(c->gain / c->designs, CREDIT_POWER),
-                 second = pow((1.0 - c->gain) / (1.0 - c->designs), CREDIT_POWER);
-    return first + second > 0.0 ? first / (first + second) : 0.5;
+    return c->gain / c->designs > (1.0 - c->gain) / (1.0 - c->designs);
 }
 
 /* Nothing is learnt where one criterion had no result, or there was no gain. */

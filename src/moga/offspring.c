@@ -155,12 +155,12 @@ static void deal_vectors(Offspring *o, const Common *c, size_t n_vectors, size_t
     }
 }
 
-/* Of a group, of which either criterion gets a design at least. */
+/* Of a group, all but one design or that one. */
 static double part_of_hypervolume(const Breeding *w)
 {
     const size_t size = batch_size(w->common);
     const double one = 1.0 / (double)MAX_OF(size, 2);
-    return fmin(fmax(1.0 - credit_part(&w->criteria->credit), one), 1.0 - one);
+    return credit_prefers_first(&w->criteria->credit) ? one : 1.0 - one;
 }
 
 /* Descents along reference vectors, as many as the population at most; the criteria share them. */
