@@ -490,7 +490,7 @@ TEST(under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75)
     program();
     write_in_place("steady.ini", STEADY);
     launcher = "scripts/imtet-mpirun";
-    pid_t wrapper = launch(3, "optimize @/steady.ini --out @/wrapped");
+    pid_t wrapper = launch(3, "optimize @/steady.ini --out @/wrapped --max-evals 1500");
     wait_for_evaluations("wrapped");
     kill(wrapper, SIGTERM);
     expect_code(wrapper, 75);
