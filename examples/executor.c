@@ -39,7 +39,7 @@ static void *work(void *user)
     long id;
     size_t n;
     while (imtet_search_ask(search, 1, &id, x, &n, &error) == IMTET_OK) {
-        if (n == 0) { /* done, or the last designs of a generation are under way */
+        if (n == 0) { /* done, or answers are to be told first */
             if (imtet_search_look(search, &state, &error) != IMTET_OK || state.done)
                 break;
             rest(1);

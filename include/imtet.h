@@ -24,9 +24,10 @@
  * Shapes     X (n, variables), F (n, objectives), G (n, constraints), row-major. F has natural signs: `senses` says
  *            which objectives are to be large. Whole numbers and choices are numbers too: choice:a|b is 0 or 1
  * Look-ahead which answers a design is chosen from follows from its id alone: those to all but the last ones before it
- *            (search.ahead), which may be under way. So some 24 designs and more can be asked for at once; ask gives
- *            fewer than it is asked for, or none, where more answers are to be known first. A design that will never be
- *            told holds the search up: tell that it failed. Ids are 1, 2, ... in the order of asking
+ *            (search.ahead), which may be under way. So several designs can be asked for at once, 24 and more of 192
+ *            evaluations or more; ask gives fewer than it is asked for, or none, where more answers are to be known
+ *            first. A design that will never be told holds the search up: tell that it failed. Ids are 1, 2, ... in the
+ *            order of asking
  * The same   options and answers give the same designs, to the last bit, in whatever portions they are asked for, in
  *            whatever order they are told, saved and loaded in between or not, at any number of threads: those of
  *            `imtet optimize` with the same settings. On processors of several kinds: with OPENBLAS_CORETYPE=Haswell in
@@ -97,8 +98,7 @@ typedef struct {
 IMTET_API imtet_status imtet_search_create(const imtet_search_options *options, imtet_search **out, imtet_error *error);
 
 /* Up to n designs that nobody has asked for: their ids (n), X (n, variables), and how many. *found is 0 where the
- * search is done, or waits for answers. Where new ones are to be chosen it takes some
- * 10 ms to seconds. */
+ * search is done, or waits for answers. Where new ones are to be chosen it takes some 10 ms to seconds. */
 IMTET_API imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids[], double X[], size_t *found,
                                         imtet_error *error);
 

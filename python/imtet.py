@@ -3,7 +3,7 @@
 One file over libimtet.so by ctypes; needs numpy alone. Arrays are float64; rows of X are designs, rows of F what they are
 worth, in natural signs and units. Errors of the library are ImtetError with a sentence that says what to do. Calls give
 up the lock of the interpreter, so that threads may simulate side by side, and Ctrl-C ends what is under way as soon as
-the call returns (milliseconds; a generation of a search takes some 10 ms to seconds).
+the call returns (milliseconds; choosing designs takes some 10 ms to seconds).
 
     import imtet
     search = imtet.Search(lower=[0] * 6, upper=[1] * 6, objectives=2, evaluations=200)
@@ -241,7 +241,7 @@ class Search(_Handle):
 
     def ask(self, n=1):
         """X (m, variables), m <= n: designs nobody has asked for. m = 0 where the search is done, or waits for answers:
-        it goes on when all of a generation are told."""
+        it goes on when the first of those under way are told."""
         if not isinstance(n, (int, np.integer)) or n < 0:
             raise ValueError(f"n is {n!r}, wanted an int: how many designs")
         n = min(int(n), 1 << 20)

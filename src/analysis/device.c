@@ -226,7 +226,7 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
     }
     if (status == STATUS_OK)
         status = tune(p, n, tuning, err);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
         search[i].device = device_at(&tuning[i], tuning[i].best);
     for (size_t i = 0; i < n_held; i++)
         tower_let_go(p, search[i].scene);

@@ -102,7 +102,7 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 16 };
+enum { STATE_VERSION = 17 };
 
 int search_state_is_current(const void *state, size_t n_state)
 {
@@ -142,6 +142,7 @@ void state_pack(Search *s, Pack *p)
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->common.convergence, p);
     pack_size(p, &s->screening.is_on, 1);
+    pack_size(p, &s->n_vain, UINT32_MAX);
     credit_pack(&s->criteria.credit, p);
     pending_pack(&s->common.pending, p);
     pack_moment(s, p);

@@ -279,7 +279,7 @@ static const Option OPTIONS[] = {
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
-    WHOLE(search.population, "92", 4, 100000, "designs per generation"),
+    WHOLE(search.population, "92", 4, 100000, "designs of a population"),
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
     PATH_LIST(search.start, "none",
@@ -299,8 +299,8 @@ static const Option OPTIONS[] = {
          "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
     WHOLE(search.ahead, "auto", 0, 1e4,
-          "designs that may be under way when the next ones are chosen, so that no thread waits; auto: 24, from 600 on "
-          "a 24th of the designs; 0: one by one",
+          "designs that may be under way when the next ones are chosen, so that no thread waits; auto: a 24th of all, "
+          "24 at least (an eighth of max_evals, where that is less) and 240 at most; 0: one by one",
           .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
            "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "

@@ -4,8 +4,8 @@
  *
  * Known      designs that had been evaluated when the program was interrupted are not simulated again
  * Stops      on a fault, or where the problem's observer says so, at once: what is under way is finished and written
- *            down; the search is resumed from its last step. Where the time is up, as the search does for its own
- *            reasons: what was asked for enters first
+ *            down; the search is resumed from its last step. Where config.max_seconds are over, as the search
+ *            does for its own reasons: what was asked for enters first
  * Threads    of the queue as many as the problem has workers; the search's own are OpenMP's */
 #pragma once
 
