@@ -123,14 +123,14 @@ TEST(the_order_of_answers_changes_no_question)
 /* With answers that come in time or late: a question follows from those to all but the last `ahead` before its group. */
 TEST(no_more_is_under_way_than_the_look_ahead_and_a_group)
 {
-    static const long AHEAD[] = {0, 1, 7, 40};
-    for (size_t i = 0; i < N_OF(AHEAD); i++) {
+    static const long GIVEN[] = {0, 1, 7, 40};
+    for (size_t i = 0; i < N_OF(GIVEN); i++) {
         Out out = {0};
-        prepare_search(&once, AHEAD[i], 120);
+        prepare_search(&once, GIVEN[i], 120);
         Search *s = search_from(&once, NULL);
         while (ask_all(&once, s, &out)) {
             if (once.n > once.config.initial)
-                assert_at_most(out.n, 2 * (size_t)AHEAD[i] + 1);
+                assert_at_most(out.n, 2 * (size_t)GIVEN[i] + 1);
             tell(&once, s, &out, 0);
         }
         assert_int_equal(once.n, 120);
