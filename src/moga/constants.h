@@ -54,7 +54,7 @@ static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's deriv
 /* -- offspring.c: infill selection --------------------------------------------------------------------------------- */
 
 static const double CREDIT_WEIGHT = 0.1; /* of one step in the running means of what criteria gain */
-static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
+static const double OPTIMISM = 1.0;      /* errors by which a prediction is lowered where its gain is measured */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */
 
