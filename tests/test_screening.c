@@ -312,7 +312,7 @@ TEST(levels_that_do_not_agree_turn_it_off)
         later += other.kind[i] == KIND_SCREENED && other.generation[i] > 0;
     }
     assert_at_most(n_lost, 1);                      /* of the sample, for which no evaluation is left */
-    assert_at_most(later, 2 * AHEAD);           /* until the first pairs, asked for behind the sample, are there */
+    assert_at_most(later, 2 * AHEAD);               /* until the first pairs, asked for behind the sample, are there */
     assert_at_most(EVALS, other.n_evaluations + 1); /* what was screened in vain may leave a part of one */
     forget(&other_world, &other);
 }
