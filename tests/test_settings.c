@@ -606,13 +606,19 @@ TEST(fidelity_needs_replicates_that_average_no_noise)
     assert_true(settings_screens(&s));
 }
 
-TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it)
+TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_numbers_are_written_in_full)
 {
     Settings s;
     Err err = {0};
     settings_defaults(&s);
     CHECK_OK(settings_parse(&s, "run.sqlite", "[search]\nasynchronous = on\nseed = 7\n", &err), &err);
     assert_int_equal(s.search.seed, 7);
+    assert_int_equal(settings_set(&s, "search.asynchronous=on", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "is no setting any more: every search looks ahead"));
+    CHECK_OK(settings_set(&s, "search.max_evals=1000000", &err), &err);
+    char *text = settings_text(&s);
+    assert_non_null(strstr(text, "\nmax_evals = 1000000\n"));
+    free(text);
 }
 
 SUITE(NULL, NULL)

@@ -528,6 +528,24 @@ void settings_defaults(Settings *s)
         table_assign(s, i, OPTIONS[i].standard, NULL);
 }
 
+/* Keys of earlier versions, which stand in their runs, and what is to be known of them today. */
+static const char *const FORMER[][2] = {{"search.asynchronous", "every search looks ahead (search.ahead)"},
+                                        {"search.generations", "search.max_evals limits a search"},
+                                        {"search.blas", "OPENBLAS_CORETYPE in the environment chooses other kernels"}};
+
+static size_t find_former(const char *key)
+{
+    size_t i = 0;
+    while (i < N_OF(FORMER) && strcmp(key, FORMER[i][0]) != 0)
+        i++;
+    return i;
+}
+
+int table_is_former(const char *key)
+{
+    return find_former(key) < N_OF(FORMER);
+}
+
 Status table_find(const char *key, int *found, Err *err)
 {
     const char *names[N_OPTIONS]; /* behind the section where the key has none */
@@ -539,6 +557,8 @@ Status table_find(const char *key, int *found, Err *err)
             return STATUS_OK;
         }
     }
+    if (table_is_former(key))
+        return bad_data(err, "%s is no setting any more: %s", key, FORMER[find_former(key)][1]);
     near = nearest_word(key, names, N_OPTIONS);
     for (int i = 0; near && i < N_OPTIONS; i++)
         if (near == names[i])
@@ -725,6 +745,8 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
         number = o->kind == KIND_REAL ? *(const double *)field : (double)*(const long *)field;
         if (o->words && number == OPTION_WORD)
             snprintf(text, OPTION_TEXT_MAX, "%s", o->words);
+        else if (o->kind == KIND_WHOLE)
+            snprintf(text, OPTION_TEXT_MAX, "%ld", *(const long *)field);
         else
             format_real(number, text);
         break;

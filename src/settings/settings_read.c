@@ -148,23 +148,6 @@ static void cut_note(char *value)
         }
 }
 
-/* Keys of earlier versions, which stand in their runs; what a file of today is told. */
-static const char *const FORMER[][2] = {
-    {"search.asynchronous", "search.asynchronous is no setting any more: every search looks ahead (search.ahead)"},
-    {"search.generations", "search.generations is no setting any more: search.max_evals limits a search"},
-    {"search.blas", "search.blas is no setting any more: OPENBLAS_CORETYPE in the environment chooses other kernels"}};
-
-/* 1: it is one of those, and a fault where a file has it. */
-static int is_former(Reading *r, const char *key, Place at)
-{
-    size_t i = 0;
-    while (i < N_OF(FORMER) && strcmp(key, FORMER[i][0]) != 0)
-        i++;
-    if (i < N_OF(FORMER) && !r->is_stored)
-        report_fault(r, at, FORMER[i][1]);
-    return i < N_OF(FORMER);
-}
-
 /* name = value, from `begin` of the line at hand on. */
 static void take_pair(Reading *r, char *begin)
 {
@@ -177,10 +160,9 @@ static void take_pair(Reading *r, char *begin)
     trim_end(value);
     value = skip_blanks(value);
     snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
-    if (is_former(r, key, place_of(r, begin)))
-        return;
     if (table_find(key, &i, &err) != STATUS_OK) {
-        report_fault(r, place_of(r, begin), err.text);
+        if (!r->is_stored || !table_is_former(key))
+            report_fault(r, place_of(r, begin), err.text);
         return;
     }
     const Place at = place_of(r, value);
