@@ -37,6 +37,7 @@ static Status take_question(Asking *a, const Question *q, Err *err)
     if (row >= a->table.n || memcmp(a->table.row[row].x, q->x, a->table.n_var * sizeof *q->x) != 0)
         return fail(err, STATUS_INTERNAL, "design %zu is another one than was asked for before", q->number);
     a->table.row[row].kind = q->kind;
+    a->table.row[row].generation = (long)q->generation;
     return a->design[row].place == DESIGN_TOLD ? asking_tell(a, row, err) : STATUS_OK;
 }
 

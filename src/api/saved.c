@@ -106,28 +106,16 @@ static Status replace(const char *path, const Pack *p, Err *err)
     return status;
 }
 
-/* The search as it is now, with the rows as it has taken them. */
-static Status take_state(Asking *a, Err *err)
-{
-    const SearchView v = search_look(a->search);
-    for (size_t i = 0; i < v.all->n; i++) {
-        a->table.row[i].kind = (EvaluationKind)v.all->kind[i];
-        a->table.row[i].generation = (long)v.all->generation[i];
-    }
-    a->n_entered = v.all->n;
-    a->n_state = v.n_state;
-    free(a->state);
-    a->state = malloc(v.n_state + 1);
-    if (!v.state || !a->state)
-        return fail_memory(err, 1, "the state of the search");
-    memcpy(a->state, v.state, v.n_state);
-    return STATUS_OK;
-}
-
 Status saved_write(imtet_search *s, const char *path, Err *err)
 {
     Pack p = {0};
-    TRY(take_state(&s->asking, err));
+    Asking *a = &s->asking;
+    const SearchView v = search_look(a->search);
+    if (!v.state)
+        return fail_memory(err, 1, "the state of the search");
+    a->n_entered = v.all->n;
+    a->n_state = v.n_state;
+    a->state = (unsigned char *)(uintptr_t)v.state; /* the search's own */
     char *text = settings_text(&s->settings);
     size_t n_con = s->schema.n_extra;
     pack(&p, (void *)(uintptr_t)MARK, sizeof MARK);
@@ -138,6 +126,7 @@ Status saved_write(imtet_search *s, const char *path, Err *err)
     pack_size(&p, &n_con, CONSTRAINTS_MAX);
     pack_size(&p, &s->n_given, COUNT_MAX);
     walk(&p, s, err);
+    a->state = NULL;
     uint64_t hash = hash_fnv1a(p.bytes, p.n, HASH_SEED);
     pack(&p, &hash, sizeof hash);
     const Status status = pack_finished(&p) ? replace(path, &p, err) : fail_memory(err, 1, "the search as bytes");

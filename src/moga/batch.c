@@ -7,11 +7,8 @@ size_t batch_size_max(const SearchConfig *c)
 
 size_t batch_size(const Common *c)
 {
-    const size_t min = c->config->population / BATCH_POPULATION_SHARE + 1, max = batch_size_max(c->config),
-                 grown = c->archive.n / BATCH_ARCHIVE_SHARE,
-                 size = grown < min   ? min
-                        : grown < max ? grown
-                                      : max;
+    const size_t least = c->config->population / BATCH_POPULATION_SHARE + 1, most = batch_size_max(c->config),
+                 grown = c->archive.n / BATCH_ARCHIVE_SHARE, wanted = MAX_OF(grown, least), size = MIN_OF(wanted, most);
     return c->config->ahead < 0 ? size : MIN_OF(size, (size_t)c->config->ahead + 1);
 }
 

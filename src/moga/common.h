@@ -23,8 +23,7 @@ typedef struct {
     Convergence convergence;
 } Common;
 
-/* Infill criteria, measured on the same front and offered the same offspring: what is picked lowers the values to beat.
- * */
+/* Infill criteria, measured on one front and offered the same designs: what is picked lowers the values to beat. */
 typedef struct {
     Directions vectors; /* reference vectors */
     Infill *select[INFILL_KINDS];
@@ -44,12 +43,11 @@ static inline size_t common_asked(const Common *c)
     return c->archive.n + c->pending.n;
 }
 
-/* Designs that may be under way when the next group is made; an eighth of a small budget, and no more than a group of
- * workers wants, for they cost predictions. */
+/* Designs that may be under way when the next group is made: an eighth of a small budget, and 240 at most, each of
+ * which is predicted for every group. */
 static inline size_t common_ahead(const SearchConfig *c, size_t asked)
 {
-    const size_t budget = c->planned_evals > 0 ? c->planned_evals : c->max_evals, least = MIN_OF(budget / 8, AHEAD),
-                 share = asked / AHEAD, most = MIN_OF(share, 240);
+    const size_t least = MIN_OF(config_budget(c) / 8, AHEAD), share = asked / AHEAD, most = MIN_OF(share, 240);
     return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
 }
 

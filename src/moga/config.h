@@ -40,6 +40,12 @@ typedef struct {
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
 } SearchConfig;
 
+/* Evaluations that the search was planned for. */
+static inline size_t config_budget(const SearchConfig *c)
+{
+    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
+
 /* Where a search is resumed: the evaluations at the end of a generation, in the order of the view, and its state. Only
  * read. */
 typedef struct {

@@ -6,9 +6,8 @@
 /* Designs that the search was planned for: where they are screened, more than evaluations. */
 static size_t planned(const Search *s)
 {
-    const SearchConfig *c = s->common.config;
     const Screening *q = &s->screening;
-    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
+    const size_t evals = config_budget(s->common.config), n = SCREENED_PER_FINISHED;
     return q->cost.whole == 1 ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
 }
 
@@ -79,11 +78,9 @@ static Status enter_first(Search *s, CreditResults *results, Err *err)
     const Place *place = pending_at(&c->pending, 0);
     const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
     credit(s, place, f, results);
-    const EvaluationKind kind = place->q.kind;
-    const size_t generation = place->q.generation;
-    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, kind, place->ok, place->parts}, err));
-    TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok, (unsigned char)kind,
-                              generation, err));
+    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->ok, place->parts}, err));
+    TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok,
+                              (unsigned char)place->q.kind, place->q.generation, err));
     pending_enter(&c->pending);
     return STATUS_OK;
 }
@@ -270,7 +267,7 @@ Status generation_enter(Search *s, Err *err)
     Common *c = &s->common;
     const size_t first = s->n_before = c->archive.n;
     CreditResults results = {0};
-    if (c->generation > 0 && s->population.n > 0)
+    if (c->config->surrogate == SURROGATE_ON && c->generation > 0 && s->population.n > 0)
         measure_front(s);
     while (c->pending.n > s->allowed)
         TRY(enter_first(s, &results, err));

@@ -11,6 +11,5 @@
 /* n: evaluations that the run holds already; threads: of the simulations. */
 Status study_log_start(RunStore *store, int threads, const SearchOptions *used, size_t n, Err *err);
 
-/* seconds: of work on the run so far, all sessions. */
 Status study_log_generation(RunStore *store, const SearchView *view, const SessionTimes *times, Err *err);
 Status study_log_end(RunStore *store, const StudySummary *sum, int is_final, Err *err);
