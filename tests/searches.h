@@ -16,6 +16,19 @@ static inline SearchConfig search_config(uint32_t seed, size_t population, size_
         .seed = seed, .population = population, .surrogate_max = surrogate_max, .nondominated_share = 1, .ahead = -1};
 }
 
+/* Every row of the archive, copied out. */
+static inline void rows_note(const Archive *a, double X[], double F[], double G[], unsigned char ok[],
+                             unsigned char kind[], unsigned char on_front[], size_t generation[])
+{
+    memcpy(X, a->X, a->n * a->n_var * sizeof *X);
+    memcpy(F, a->Y, a->n * a->n_obj * sizeof *F);
+    memcpy(G, a->H, a->n * a->n_con * sizeof *G);
+    memcpy(ok, a->ok, a->n);
+    memcpy(kind, a->kind, a->n);
+    memcpy(on_front, a->on_front, a->n);
+    memcpy(generation, a->generation, a->n * sizeof *generation);
+}
+
 enum { MOMENTS_MAX = 200 };
 
 /* After every generation: rows of the archive so far, and the state from which the search can go on. */

@@ -211,15 +211,10 @@ TEST(what_was_not_asked_for_or_is_told_already_is_refused)
 /* How many of 60 designs fail where the 30th is answered only after eight later ones have been asked for. */
 static long failed_where_one_waits(const char *name, int tenths, const char *more)
 {
-    char words[512];
-    snprintf(
-        words, sizeof words,
-        "optimize @/uneven.ini --out @/%s --max-evals 60 --set 'problem.command=sh tests/worker.sh waits @/%s.ids 38 "
-        "%d' %s",
-        name, name, tenths, more);
-    free(output_of("%s", words));
-    snprintf(words, sizeof words, "status @/%s --json", name);
-    json_t *o = json_of("%s", words);
+    free(output_of("optimize @/uneven.ini --out @/%s --max-evals 60 --set 'problem.command=sh tests/worker.sh waits "
+                   "@/%s.ids 38 %d' %s",
+                   name, name, tenths, more));
+    json_t *o = json_of("status @/%s --json", name);
     const long failed = (long)number(o, "failed");
     assert_same_number(number(o, "simulated"), 60);
     json_decref(o);

@@ -181,13 +181,12 @@ static void assert_same_designs(imtet_search *s, const Exercise *e, const Run *r
 /* The run of `imtet optimize`, made once for all tests. */
 static void optimize(const Exercise *e, Run *run)
 {
-    char name[64], command[256], path[PATH_MAX];
+    char name[64], path[PATH_MAX];
     Err err = {0};
     snprintf(name, sizeof name, "%s.ini", e->name);
     write_in_place(name, e->ini);
-    snprintf(command, sizeof command, "optimize @/%s.ini --out @/%s", e->name, e->name);
     if (access(path_of(e->name, path), F_OK) != 0)
-        free(output_of("%s", command));
+        free(output_of("optimize @/%s.ini --out @/%s", e->name, e->name));
     CHECK_OK(run_read(run, path, &err), &err);
     assert_int_equal(run->table.n, e->n);
 }

@@ -86,13 +86,7 @@ static int observe(const SearchView *v, const SearchTime *time, void *user)
     assert_true(v->all->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
     s->n = v->all->n;
     s->last_generation = v->generation;
-    memcpy(s->X, v->all->X, v->all->n * v->all->n_var * sizeof *v->all->X);
-    memcpy(s->F, v->all->Y, v->all->n * v->all->n_obj * sizeof *v->all->Y);
-    memcpy(s->G, v->all->H, v->all->n * v->all->n_con * sizeof *v->all->H);
-    memcpy(s->ok, v->all->ok, v->all->n);
-    memcpy(s->kind, v->all->kind, v->all->n);
-    memcpy(s->on_front, v->all->on_front, v->all->n);
-    memcpy(s->generation, v->all->generation, v->all->n * sizeof *v->all->generation);
+    rows_note(v->all, s->X, s->F, s->G, s->ok, s->kind, s->on_front, s->generation);
     moments_note(&s->moments, v);
     return 0;
 }

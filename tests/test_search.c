@@ -116,13 +116,7 @@ static int observe(const SearchView *v, const SearchTime *time, void *user)
     s->n_failed = v->all->n_failed;
     s->error = v->surrogate_error;
     s->last_generation = v->generation;
-    memcpy(s->X, v->all->X, v->all->n * v->all->n_var * sizeof *v->all->X);
-    memcpy(s->F, v->all->Y, v->all->n * v->all->n_obj * sizeof *v->all->Y);
-    memcpy(s->G, v->all->H, v->all->n * v->all->n_con * sizeof *v->all->H);
-    memcpy(s->ok, v->all->ok, v->all->n);
-    memcpy(s->kind, v->all->kind, v->all->n);
-    memcpy(s->on_front, v->all->on_front, v->all->n);
-    memcpy(s->generation, v->all->generation, v->all->n * sizeof *v->all->generation);
+    rows_note(v->all, s->X, s->F, s->G, s->ok, s->kind, s->on_front, s->generation);
     return ++s->views == s->stop_at_view;
 }
 

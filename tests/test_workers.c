@@ -90,8 +90,7 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
                  "threads = %d\nfailures_max = 0\n",
                  HOW[i], place.folder, HOW[i], 1 + i);
         write_in_place("batch.ini", text);
-        snprintf(text, sizeof text, "optimize @/batch.ini --out @/%s", HOW[i]);
-        free(output_of("%s", text));
+        free(output_of("optimize @/batch.ini --out @/%s", HOW[i]));
     }
     char *alone = all_of("alone"), *together = all_of("together"), *sizes = read_in_place("sizes-together");
     assert_string_equal(alone, together);
