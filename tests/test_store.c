@@ -553,4 +553,65 @@ static int prepare_pinned(void **state)
     return prepare(state);
 }
 
+/* -- results that one version of the program has and another lacks ---------------------------------------------------- */
+
+static Status take_extra(const Evaluation *e, void *extra, Err *err)
+{
+    (void)err;
+    memcpy(extra, e->extra, 3 * sizeof(double));
+    return STATUS_OK;
+}
+
+/* A file of `wrote`, a row of which `reads` inserts and reads: results are found by their names. */
+static void exchange(const char *name, const Schema *wrote, const Schema *reads, const Settings *s, double extra[3])
+{
+    Err err = {0};
+    Database *db;
+    RowColumns columns;
+    double numbers[] = {0.1, 0.2, 0.3, 4, 5, 6, 7, 8};
+    char path[PATH_MAX];
+    const Evaluation e = {
+        .id = 1, .kind = KIND_SAMPLED, .x = numbers, .f = numbers + 3, .extra = numbers + 5, .reason = ""};
+    CHECK_OK(tables_create(path_of(name, path), wrote, s, "{}", &err), &err);
+    CHECK_OK(database_open(&db, path, DATABASE_WRITE, &err), &err);
+    CHECK_OK(tables_check(db, reads, &err), &err);
+    CHECK_OK(tables_columns(db, ROWS_EVALUATION, reads, &columns, &err), &err);
+    CHECK_OK(rows_insert(db, &columns, reads, &e, &err), &err);
+    CHECK_OK(rows_each(db, ROWS_EVALUATION, reads, "1", take_extra, extra, &err), &err);
+    free(columns.place);
+    database_close(db);
+}
+
+TEST(a_result_that_a_file_lacks_is_not_known_and_one_that_only_the_file_has_is_passed_over)
+{
+    Err err = {0};
+    Schema now, before;
+    double extra[3];
+    Settings s = settings_of("[problem]\nkind = external\ncommand = true\nvariables = 3\nobjectives = 2\n", "columns");
+    s.problem.constraints = 3;
+    CHECK_OK(schema_of(&now, &s, 0, &err), &err);
+    before = now;
+    before.n_extra = before.n_limited = 2;
+    exchange("older.sqlite", &before, &now, &s, extra);
+    assert_true(extra[0] == 6 && extra[1] == 7 && isnan(extra[2]));
+    extra[2] = 0;
+    exchange("newer.sqlite", &now, &before, &s, extra);
+    assert_true(extra[0] == 6 && extra[1] == 7);
+    before.n_extra = 3; /* of other names: none of the two is found */
+    before.column = calloc(8, sizeof *before.column);
+    memcpy(before.column, now.column, 8 * sizeof *now.column);
+    snprintf(before.column[5].name, TABLE_NAME_MAX, "g_9");
+    exchange("other.sqlite", &now, &before, &s, extra);
+    assert_true(isnan(extra[0]) && extra[1] == 7 && extra[2] == 8);
+    snprintf(before.column[3].name, TABLE_NAME_MAX, "f9");
+    Database *db;
+    char path[PATH_MAX];
+    CHECK_OK(database_open(&db, path_of("other.sqlite", path), DATABASE_READ, &err), &err);
+    assert_int_equal(tables_check(db, &before, &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "its table evaluation is not that of this run"));
+    database_close(db);
+    free(before.column);
+    schema_free(&now);
+}
+
 SUITE(prepare_pinned, clear_place)

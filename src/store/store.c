@@ -20,7 +20,8 @@ struct RunStore {
     Folder folder;
     const Schema *schema;
     Database *db;
-    Run run; /* that the folder held when it was opened */
+    RowColumns columns[N_ROW_TABLES]; /* of its tables; without places: not asked for yet */
+    Run run;                          /* that the folder held when it was opened */
     int has_run;
     EvaluationTable unfinished; /* of it */
     long *polished;             /* (n_polished) ids of it, ascending */
@@ -291,11 +292,25 @@ static Status commit(RunStore *store, Status status, Err *err)
     return STATUS_OK;
 }
 
+/* Of the session, or where none was begun, of the run as it is stored. */
+static const Schema *schema_of_store(const RunStore *store)
+{
+    return store->schema ? store->schema : &store->run.schema;
+}
+
+static Status insert_row(RunStore *store, RowTable table, const Evaluation *e, Err *err)
+{
+    RowColumns *columns = &store->columns[table];
+    if (!columns->place)
+        TRY(tables_columns(store->db, table, schema_of_store(store), columns, err));
+    return rows_insert(store->db, columns, schema_of_store(store), e, err);
+}
+
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
     Evaluation row = *e;
     row.id = id_of(store, e->id - 1);
-    return rows_insert(store->db, ROWS_EVALUATION, store->schema, &row, err);
+    return insert_row(store, ROWS_EVALUATION, &row, err);
 }
 
 /* Before anything else is written. */
@@ -717,17 +732,13 @@ void store_free(RunStore *store)
     free(store->polished);
     evaluation_table_free(&store->unfinished);
     hypervolume_free(store->hypervolume);
+    for (RowTable t = 0; t < N_ROW_TABLES; t++)
+        free(store->columns[t].place);
     folder_release(&store->folder);
     free(store);
 }
 
 /* -- designs from outside ------------------------------------------------------------------------------------------ */
-
-/* Of the session, or where none was begun, of the run as it is stored. */
-static const Schema *schema_of_store(const RunStore *store)
-{
-    return store->schema ? store->schema : &store->run.schema;
-}
 
 /* Behind all that are there, as of the last generation. */
 static Status insert_polished(RunStore *store, const Evaluation *design, long *id, Err *err)
@@ -739,7 +750,7 @@ static Status insert_polished(RunStore *store, const Evaluation *design, long *i
     *id = e.id = (long)last + 1;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;
-    return rows_insert(store->db, ROWS_EVALUATION, schema_of_store(store), &e, err);
+    return insert_row(store, ROWS_EVALUATION, &e, err);
 }
 
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id, Err *err)
@@ -756,6 +767,6 @@ Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *er
 {
     Status status = begin(store, err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = rows_insert(store->db, ROWS_FINER, schema_of_store(store), &better[i], err);
+        status = insert_row(store, ROWS_FINER, &better[i], err);
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }

@@ -133,9 +133,9 @@ static void numbers_of(RowTable table, const Schema *s, Numbers list[N_NUMBERS])
     memcpy(list, all, sizeof all);
 }
 
-static double *array_of(const Evaluation *e, const Numbers *n)
+static double *number_at(const Evaluation *e, NumberPlace place)
 {
-    return *(double *const *)(const void *)((const char *)e + n->array);
+    return *(double *const *)(const void *)((const char *)e + place.array) + place.i;
 }
 
 static size_t n_columns(RowTable table, const Schema *s)
@@ -204,6 +204,8 @@ static Status tables_text(const Schema *s, char **text, Err *err)
     return text_close(f) == 0 ? STATUS_OK : fail_memory(err, 1, "the names of the columns");
 }
 
+/* -- what a file has of them --------------------------------------------------------------------------------------- */
+
 typedef struct {
     const char *text;
     int n_known;
@@ -219,17 +221,119 @@ static Status count_known(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
+/* Where numbers of that name stand in the record of a row; that of column `like` is tried first. */
+static NumberPlace place_of(const char *name, const Numbers list[N_NUMBERS], const Schema *s, size_t like)
+{
+    char known[TABLE_NAME_MAX + 8];
+    size_t n = 0;
+    for (size_t k = 0; k < N_NUMBERS; k++)
+        n += list[k].n;
+    for (size_t tried = 0; tried < n; tried++) {
+        size_t k = 0, i = (like + tried) % n;
+        for (; i >= list[k].n; k++)
+            i -= list[k].n;
+        snprintf(known, sizeof known, "%s%s%s", list[k].begin, s->column[list[k].first + i].name, list[k].end);
+        if (strcmp(known, name) == 0)
+            return (NumberPlace){list[k].array, i};
+    }
+    return (NumberPlace){0};
+}
+
+typedef struct {
+    Database *db;
+    RowTable table;
+    const Schema *schema;
+    RowColumns *columns;
+    size_t n_wanted; /* variables and objectives that were found */
+    int is_whole;    /* all of the text was understood */
+} Finding;
+
+/* The name of a column from the first character behind its quote; returns what follows the last, NULL: no such. */
+static const char *take_name(const char *text, char *name, size_t size)
+{
+    size_t n = 0;
+    for (; *text && n + 1 < size; text++) {
+        if (*text == '"' && *++text != '"')
+            break;
+        name[n++] = *text;
+    }
+    name[n] = 0;
+    return strncmp(text, " REAL", 5) == 0 ? text + 5 : NULL;
+}
+
+/* What follows the fields of a table in its text, which begins as this program writes it; NULL: it does not. */
+static Status skip_fields(const TableColumns *t, const char *text, const char **behind, Err *err)
+{
+    char *begin = NULL;
+    size_t length;
+    FILE *stream = text_open(&begin, &length);
+    *behind = NULL;
+    if (stream)
+        put_table(stream, t);
+    if (!stream || text_close(stream) != 0) {
+        free(begin);
+        return fail_memory(err, 1, "the names of the columns");
+    }
+    *behind = strncmp(text, begin, length) == 0 ? text + length : NULL;
+    free(begin);
+    return STATUS_OK;
+}
+
+/* Behind the fields stand numbers alone, in any order. */
+static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
+{
+    Finding *f = user;
+    Numbers list[N_NUMBERS];
+    RowColumns *c = f->columns;
+    const char *text = column_text(row, 0), *at;
+    char name[TABLE_NAME_MAX + 8];
+    TRY(skip_fields(&ROWS[f->table], text, &at, err));
+    TRY_ROOM(c->place, strlen(text) / sizeof ", \"\" REAL" + 2, "columns", err); /* no column is shorter */
+    numbers_of(f->table, f->schema, list);
+    while (at && strncmp(at, ", \"", 3) == 0 && (at = take_name(at + 3, name, sizeof name))) {
+        const NumberPlace place = c->place[c->n] = place_of(name, list, f->schema, c->n);
+        f->n_wanted += place.array == offsetof(Evaluation, x) || place.array == offsetof(Evaluation, f);
+        c->n++;
+    }
+    f->is_whole = at && strcmp(at, ")") == 0;
+    return STATUS_OK;
+}
+
+Status tables_columns(Database *db, RowTable table, const Schema *schema, RowColumns *columns, Err *err)
+{
+    char sql[80];
+    Finding f = {.db = db, .table = table, .schema = schema, .columns = columns};
+    const size_t wanted = schema->n_obj + (table == ROWS_EVALUATION ? schema->n_var : 0);
+    *columns = (RowColumns){.table = table};
+    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", ROWS[table].name);
+    Status status = database_each(db, sql, find_columns, &f, err);
+    if (status == STATUS_OK && !(f.is_whole && f.n_wanted == wanted))
+        status = database_damaged(db, err, "its table %s is not that of this run", ROWS[table].name);
+    if (status != STATUS_OK)
+        free(columns->place);
+    columns->place = status == STATUS_OK ? columns->place : NULL;
+    return status;
+}
+
 Status tables_check(Database *db, const Schema *schema, Err *err)
 {
     char *text;
     TRY(tables_text(schema, &text, err));
     Known k = {.text = text};
-    const Status status = database_each(db, "SELECT sql FROM sqlite_schema", count_known, &k, err);
+    Status status = database_each(db, "SELECT sql FROM sqlite_schema WHERE name NOT IN ('evaluation', 'finer')",
+                                  count_known, &k, err);
     free(text);
     TRY(status);
-    return k.n_known == N_TABLES ? STATUS_OK
-                                 : database_damaged(db, err, "%d of its %d tables are not those of this run",
-                                                    N_TABLES - k.n_known, N_TABLES);
+    for (RowTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
+        RowColumns columns;
+        status = tables_columns(db, t, schema, &columns, err);
+        free(columns.place);
+    }
+    TRY(status);
+    return k.n_known == N_TABLES - N_ROW_TABLES
+               ? STATUS_OK
+               : database_damaged(db, err, "%d of its tables are not those of this run",
+                                  N_TABLES - N_ROW_TABLES - k.n_known);
 }
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
@@ -507,22 +611,20 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 
 /* -- rows of evaluations ------------------------------------------------------------------------------------------- */
 
-Status rows_insert(Database *db, RowTable table, const Schema *schema, const Evaluation *e, Err *err)
+Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
-    Numbers list[N_NUMBERS];
+    const TableColumns *t = &ROWS[columns->table];
     Evaluation row = *e;
     Row r;
     for (size_t k = 0; k < schema->n_obj; k++)
         none[k] = NAN;
     row.f = e->outcome == OUTCOME_OK ? e->f : none;
     row.sd = e->sd ? e->sd : none;
-    TRY(begin_insert(db, &ROWS[table], n_columns(table, schema), &row, &r, err));
+    TRY(begin_insert(db, t, t->n + 1 + columns->n, &row, &r, err));
     const int digest_at = ++r.at;
-    numbers_of(table, schema, list);
-    for (size_t k = 0; k < N_NUMBERS; k++)
-        for (size_t i = 0; i < list[k].n; i++)
-            put_number(&r, array_of(&row, &list[k])[i]);
+    for (size_t i = 0; i < columns->n; i++)
+        put_number(&r, columns->place[i].array ? *number_at(&row, columns->place[i]) : NAN);
     sqlite3_bind_int64(r.s, digest_at, (r.digest ^ digest_kind(e->kind, e->generation)));
     return database_run(db, r.s, err);
 }
@@ -542,27 +644,26 @@ Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, 
 
 typedef struct {
     Database *db;
-    RowTable table;
-    const Schema *schema;
+    RowColumns columns;
     EvaluationTable room; /* of one row */
     EvaluationFn take;
     void *user;
-    Numbers list[N_NUMBERS];
 } Reading;
 
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
     Evaluation *e = r->room.row;
+    const TableColumns *t = &ROWS[r->columns.table];
     Row taken = {.s = row, .digest = HASH_SEED};
-    for (size_t i = 0; i < ROWS[r->table].n; i++)
-        take_field(&taken, &ROWS[r->table].field[i], (char *)e);
+    for (size_t i = 0; i < t->n; i++)
+        take_field(&taken, &t->field[i], (char *)e);
     const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at);
-    for (size_t k = 0; k < N_NUMBERS; k++) {
-        double *values = array_of(e, &r->list[k]);
-        for (size_t i = 0; i < r->list[k].n; i++)
-            values[i] = column_number(row, ++taken.at);
-        taken.digest = digest_numbers(r->list[k].n, values, taken.digest);
+    for (size_t i = 0; i < r->columns.n; i++) {
+        const double value = column_number(row, ++taken.at);
+        if (r->columns.place[i].array)
+            *number_at(e, r->columns.place[i]) = value;
+        taken.digest = digest_numbers(1, &value, taken.digest);
     }
     if (digest != (taken.digest ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
@@ -576,15 +677,12 @@ Status rows_each(Database *db, RowTable table, const Schema *s, const char *wher
     char sql[200];
     Evaluation *row;
     const size_t n_err = table == ROWS_FINER ? s->n_obj + s->n_extra : 0;
-    Reading r = {.db = db,
-                 .table = table,
-                 .schema = s,
-                 .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err),
-                 .take = take,
-                 .user = user};
-    numbers_of(table, s, r.list);
+    Reading r = {
+        .db = db, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err), .take = take, .user = user};
     snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", ROWS[table].name, where);
-    Status status = evaluation_table_add(&r.room, &row, err);
+    Status status = tables_columns(db, table, s, &r.columns, err);
+    if (status == STATUS_OK)
+        status = evaluation_table_add(&r.room, &row, err);
     if (status == STATUS_OK && n_err > 0)
         row->err = row->extra + s->n_extra;
     if (status == STATUS_OK)
@@ -592,5 +690,6 @@ Status rows_each(Database *db, RowTable table, const Schema *s, const char *wher
     if (status == STATUS_OK)
         status = database_each(db, sql, take_row, &r, err);
     evaluation_table_free(&r.room);
+    free(r.columns.place);
     return status;
 }

@@ -33,7 +33,8 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
 
 Status tables_set_settings(Database *db, const Settings *used, const Run *run, Err *err);
 
-/* Their text is what this program writes: a bit in it may have changed what a query does. */
+/* Their text is what this program writes, but for numbers of an evaluation that another version of it has or lacks: a
+ * bit in it may have changed what a query does. */
 Status tables_check(Database *db, const Schema *schema, Err *err);
 
 /* Of "SELECT settings, provenance, planned_evals, n_var, ?, ?, digest FROM run": they are what was written. */
@@ -54,8 +55,23 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 /* Finer rows have err, of n_obj + n_extra numbers, behind extra. */
 typedef enum { ROWS_EVALUATION, ROWS_FINER, N_ROW_TABLES } RowTable;
 
+/* A number of an evaluation: the offset of its array in the record, and its place there. */
+typedef struct {
+    size_t array, i; /* array 0: a result that this program does not know */
+} NumberPlace;
+
+/* The numbers that a file's table has, in the order of its columns: those that this program knows by their names.
+ * Results that the file lacks are NAN in what is read, and are not kept. */
+typedef struct {
+    RowTable table;
+    size_t n;
+    NumberPlace *place; /* (n), to be freed */
+} RowColumns;
+
+Status tables_columns(Database *db, RowTable table, const Schema *schema, RowColumns *columns, Err *err);
+
 /* A row with that id is replaced. */
-Status rows_insert(Database *db, RowTable table, const Schema *schema, const Evaluation *e, Err *err);
+Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema, const Evaluation *e, Err *err);
 
 /* A row that had no kind yet gets it, and the generation that it belongs to. */
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
