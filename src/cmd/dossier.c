@@ -24,13 +24,6 @@ static const double LEVEL_STEP_G = 0.1, GAP_BUILT_M = 0.005, DRIFT_LIMIT = 0.02,
 
 static const MeasureId RESPONSE[] = {MEASURE_J1,  MEASURE_J2,     MEASURE_DRIFT_RATIO, MEASURE_J3,
                                      MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
-static const MeasureId DEMAND[] = {MEASURE_DRIFT_RATIO,   MEASURE_DUCTILITY,     MEASURE_RESIDUAL_DRIFT,
-                                   MEASURE_CONTACT_FORCE, MEASURE_PRESSURE,      MEASURE_INDENTATION,
-                                   MEASURE_BUMPER_STRAIN, MEASURE_DEVICE_FORCE,  MEASURE_DEVICE_STROKE,
-                                   MEASURE_DEVICE_SHARE,  MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING,
-                                   MEASURE_CORE_STRESS,   MEASURE_CORE_BUCKLING, MEASURE_BUILDING_SHEAR,
-                                   MEASURE_BASE_SHEAR,    MEASURE_BASE_ROTATION, MEASURE_UPLIFT};
-
 typedef struct {
     const Report *r;
     const Detail *d;
@@ -75,7 +68,7 @@ static void add_response(json_t *table, const char *label, const SimResult *r, c
 {
     json_t *row = json_put(figures_row(table), "=%s", label);
     for (size_t i = 0; i < N_OF(RESPONSE); i++)
-        put_named(row, words_of_measure(RESPONSE[i]), r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
+        put_named(row, measure(RESPONSE[i])->words, r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
                   error ? error[RESPONSE[i]] : NAN, NAN);
     json_put(row, "impacts=%ld", r->impacts);
     if (r->outcome != RUN_OK)
@@ -451,10 +444,11 @@ static void write_demand(const Dossier *o)
                             {"contact force, left [MN]", 1e-6, 1, {f->contact_force_n[1]}},
                             {"stress of the core [MPa]", 1e-6, 0, {f->core_storey_stress_pa}}};
     static const char *const NAMES[CURVES_SHOWN] = {"this design"};
+    int borne[MEASURES_LISTED];
     json_t *table = json_array();
     heading(o, "Forces and stresses, with their limits");
-    for (size_t i = 0; i < N_OF(DEMAND); i++)
-        add_demand(o, table, DEMAND[i], words_of_measure(DEMAND[i]), o->d->error[DEMAND[i]]);
+    for (int i = 0; i < measures_borne(borne); i++)
+        add_demand(o, table, borne[i], measure(borne[i])->words, o->d->error[borne[i]]);
     add_demand(o, table, N_MEASURES, (Words){"core shear stress", "MPa", 1e-6}, NAN);
     figures_html(o->out, table);
     write_limits(o);
@@ -488,7 +482,7 @@ static void write_ladder(const Dossier *o)
         json_t *row = json_put(figures_row(table), "without=%s", e->words);
         for (int k = 0; k < LADDER_MEASURES; k++) {
             char head[64];
-            snprintf(head, sizeof head, "%s [%%]", words_of_measure(LADDER_MEASURE[k]).title);
+            snprintf(head, sizeof head, "%s [%%]", measure(LADDER_MEASURE[k])->words.title);
             figures_put(row, head, 100 * e->change[k], NAN, NAN);
         }
         put_text(row, " in the study", e->is_set ? "yes" : "no");
@@ -529,7 +523,7 @@ static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exc
     json_t *row = json_put(figures_row(table), "PGA [g]=%g", e->level[l]);
     for (size_t k = 0; k < N_OF(SHOWN); k++)
         for (size_t c = 0; c < N_OF(CASES); c++) {
-            const Words w = words_of_measure(SHOWN[k]);
+            const Words w = measure(SHOWN[k])->words;
             char head[96];
             snprintf(head, sizeof head, "%s [%s]%s", w.title, w.unit, c ? ", no core" : "");
             put_fractiles(row, head, e, l, CASES[c], SHOWN[k], w.factor);
@@ -618,7 +612,7 @@ static void write_as_built(const Dossier *o)
                         json_sprintf("%s and standard deviation", status == STATUS_OK ? summary.rule : "mean"));
     if (status == STATUS_OK && !summary.n_failed)
         for (size_t i = 0; i < N_OF(RESPONSE); i++)
-            put_named(row, words_of_measure(RESPONSE[i]), summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
+            put_named(row, measure(RESPONSE[i])->words, summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
     figures_html(o->out, table);
     snprintf(text, sizeof text,
              "%d structures under every record of the study, whose gaps differ from the drawing by %g mm (standard "
@@ -647,7 +641,7 @@ static void write_sensitivities(const Dossier *o)
         json_t *row =
             json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
         for (size_t k = 0; k < N_OF(SHOWN); k++)
-            put_named(row, words_of_measure(SHOWN[k]), list[i].step * list[i].slope[SHOWN[k]],
+            put_named(row, measure(SHOWN[k])->words, list[i].step * list[i].slope[SHOWN[k]],
                       list[i].step * list[i].error[SHOWN[k]], NAN);
     }
     show_any(o, table);

@@ -5,12 +5,13 @@
 #include "scene/neighbour.h"
 
 static const Measure MEASURES[N_MEASURES] = {
-#define X(id, name, unit, sense, needs, value, what) {name, unit, sense, needs, what},
+#define X(id, name, unit, sense, needs, value, title, shown, factor, what)                                             \
+    {name, unit, sense, needs, {title, shown, factor}, what},
     MEASURE_LIST(X)
 #undef X
 #define CHANCE                                                                                                         \
     {                                                                                                                  \
-        "p", "-", 1, NEEDS_NOTHING, "share of the simulations that exceed a limit"                                     \
+        "p", "-", 1, NEEDS_NOTHING, {"p", "", 1}, "share of the simulations that exceed a limit"                       \
     }
         CHANCE,
     CHANCE, CHANCE, CHANCE};
@@ -18,6 +19,15 @@ static const Measure MEASURES[N_MEASURES] = {
 const Measure *measure(int k)
 {
     return &MEASURES[k];
+}
+
+int measures_borne(int id[MEASURES_LISTED])
+{
+    int n = 0;
+    for (int k = 0; k < MEASURES_LISTED; k++)
+        if (MEASURES[k].needs & IS_BORNE)
+            id[n++] = k;
+    return n;
 }
 
 int measure_is_share(int k)
@@ -34,7 +44,7 @@ double measure_value(const SimResult *r, int k)
         ((needs & NEEDS_FILTER) && !r->filtered_known) || ((needs & NEEDS_YIELDING) && !r->yields))
         return NAN;
     switch ((MeasureId)k) {
-#define X(id, name, unit, sense, needs, value, what)                                                                   \
+#define X(id, name, unit, sense, needs, value, title, shown, factor, what)                                             \
     case MEASURE_##id:                                                                                                 \
         return value;
         MEASURE_LIST(X)

@@ -7,7 +7,8 @@
  * limited); elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas:
  * docs/theory.md.
  *
- * A new one goes to the end, and raises DATABASE_FORMAT (store/database.h): each is a column of a run.
+ * A new one goes to the end: a row here, and its value in SimResult (sim/result.h). Each is a column of a run by its name;
+ * runs from before it lack it.
  *
  * Threads  pure functions */
 #pragma once
@@ -21,81 +22,89 @@ enum {
     NEEDS_NOTHING = 0,
     NEEDS_FORCES = 1, /* any of SimForces */
     NEEDS_FILTER = 2,
-    NEEDS_YIELDING = 4,    /* a storey that may */
-    NEEDS_TURNING = 8,     /* a core on ground that turns */
-    NEEDS_RADIUS = 16,     /* of its foundation */
-    NEEDS_SHAPE = 32,      /* of the core's section */
-    NEEDS_WALLS = 64,      /* of a box */
-    NEEDS_FEW_FORCES = 128 /* no shears of storeys of the building above the first, no velocities: 6 % less time */
+    NEEDS_YIELDING = 4,     /* a storey that may */
+    NEEDS_TURNING = 8,      /* a core on ground that turns */
+    NEEDS_RADIUS = 16,      /* of its foundation */
+    NEEDS_SHAPE = 32,       /* of the core's section */
+    NEEDS_WALLS = 64,       /* of a box */
+    NEEDS_FEW_FORCES = 128, /* no shears of storeys of the building above the first, no velocities: 6 % less time */
+    IS_BORNE = 256          /* needs nothing; the building or the core has to bear it: report and dossier list it */
 };
 
-/* id, name, unit, sense (+1: less is better, -1: more is better), needs, value of a SimResult *r, what it is. The first
- * PAPER_OBJECTIVES are those of the paper. */
+/* id, name, unit, sense (+1: less is better, -1: more is better), needs, value of a SimResult *r; title, unit ("": a
+ * number) and factor to that unit for people; what it is. The first PAPER_OBJECTIVES are those of the paper. */
 #define MEASURE_LIST(X)                                                                                                \
-    X(J1, "j1_m", "m", 1, NEEDS_NOTHING, r->j1_m, "largest floor displacement")                                        \
-    X(J2, "j2_m", "m", 1, NEEDS_NOTHING, r->j2_m, "largest interstorey drift")                                         \
-    X(J3, "j3_g", "g", 1, NEEDS_NOTHING, r->j3_g, "largest floor acceleration")                                        \
-    X(ED1, "ed1_pct", "%", 1, NEEDS_NOTHING, r->ed1_pct, "share of the input dissipated by the first building mode")   \
-    X(ED5_10, "ed5_10_pct", "%", -1, NEEDS_NOTHING, r->ed5_10_pct, "share dissipated by building modes 5 to 10")       \
-    X(EDCS, "edcs_pct", "%", -1, NEEDS_NOTHING, r->edcs_pct, "share dissipated by the core")                           \
-    X(MCORE, "mcore_kg", "kg", 1, NEEDS_NOTHING, r->mcore_kg, "mass of the core")                                      \
-    X(INPUT, "input_energy_j", "J", 1, NEEDS_NOTHING, r->input_energy_j, "energy that the ground put in")              \
-    X(BALANCE, "energy_balance_error", "-", 1, NEEDS_NOTHING, r->energy_balance_error,                                 \
+    X(J1, "j1_m", "m", 1, NEEDS_NOTHING, r->j1_m, "J1 displacement", "m", 1, "largest floor displacement")             \
+    X(J2, "j2_m", "m", 1, NEEDS_NOTHING, r->j2_m, "J2 interstorey drift", "m", 1, "largest interstorey drift")         \
+    X(J3, "j3_g", "g", 1, NEEDS_NOTHING, r->j3_g, "J3 acceleration", "g", 1, "largest floor acceleration")             \
+    X(ED1, "ed1_pct", "%", 1, NEEDS_NOTHING, r->ed1_pct, "mode 1 share", "%", 1,                                       \
+      "share of the input dissipated by the first building mode")                                                      \
+    X(ED5_10, "ed5_10_pct", "%", -1, NEEDS_NOTHING, r->ed5_10_pct, "modes 5–10 share", "%", 1,                         \
+      "share dissipated by building modes 5 to 10")                                                                    \
+    X(EDCS, "edcs_pct", "%", -1, NEEDS_NOTHING, r->edcs_pct, "core share", "%", 1, "share dissipated by the core")     \
+    X(MCORE, "mcore_kg", "kg", 1, NEEDS_NOTHING, r->mcore_kg, "core mass", "t", 1e-3, "mass of the core")              \
+    X(INPUT, "input_energy_j", "J", 1, NEEDS_NOTHING, r->input_energy_j, "input energy", "MJ", 1e-6,                   \
+      "energy that the ground put in")                                                                                 \
+    X(BALANCE, "energy_balance_error", "-", 1, NEEDS_NOTHING, r->energy_balance_error, "energy balance error", "", 1,  \
       "of the energy balance, as a share of the input")                                                                \
-    X(IMPACTS, "impacts", "-", 1, NEEDS_NOTHING, (double)r->impacts, "closings of any gap")                            \
-    X(DRIFT_RATIO, "drift_ratio", "-", 1, NEEDS_NOTHING, r->drift_ratio_max,                                           \
+    X(IMPACTS, "impacts", "-", 1, NEEDS_NOTHING, (double)r->impacts, "impacts", "", 1, "closings of any gap")          \
+    X(DRIFT_RATIO, "drift_ratio", "-", 1, IS_BORNE, r->drift_ratio_max, "drift ratio", "%", 100,                       \
       "largest interstorey drift over the height of its storey")                                                       \
-    X(INDENTATION, "indentation_ratio", "-", 1, NEEDS_NOTHING, r->indentation_ratio,                                   \
+    X(INDENTATION, "indentation_ratio", "-", 1, IS_BORNE, r->indentation_ratio, "indentation / radius", "", 1,         \
       "largest indentation over contact.radius_m")                                                                     \
-    X(BEYOND_LAW, "beyond_contact_law", "-", 1, NEEDS_NOTHING, (double)beyond_contact_law(r),                          \
-      "1: it is above 0.1, where Hertz's law no longer holds")                                                         \
-    X(PRESSURE, "contact_pressure_pa", "Pa", 1, NEEDS_NOTHING, r->contact_pressure_pa,                                 \
+    X(BEYOND_LAW, "beyond_contact_law", "-", 1, NEEDS_NOTHING, (double)beyond_contact_law(r), "beyond contact law",    \
+      "", 1, "1: it is above 0.1, where Hertz's law no longer holds")                                                  \
+    X(PRESSURE, "contact_pressure_pa", "Pa", 1, IS_BORNE, r->contact_pressure_pa, "contact pressure", "GPa", 1e-9,     \
       "largest pressure in the middle of a contact, by Hertz")                                                         \
-    X(BUMPER_STRAIN, "bumper_strain", "-", 1, NEEDS_NOTHING, r->bumper_strain,                                         \
+    X(BUMPER_STRAIN, "bumper_strain", "-", 1, IS_BORNE, r->bumper_strain, "bumper strain", "%", 100,                   \
       "largest compression of a bumper over its thickness; 0: steel on steel")                                         \
-    X(CONTACT_FORCE, "contact_force_max_n", "N", 1, NEEDS_FEW_FORCES, r->forces.contact_force_max_n,                   \
-      "largest contact force of a floor")                                                                              \
-    X(CORE_SHEAR, "core_base_shear_n", "N", 1, NEEDS_FEW_FORCES, r->forces.core_base_shear_n,                          \
-      "base shear of the core")                                                                                        \
-    X(CORE_OVERTURNING, "core_overturning_nm", "N m", 1, NEEDS_FEW_FORCES, r->forces.core_overturning_nm,              \
-      "overturning moment of the core about its base")                                                                 \
-    X(CORE_STRESS, "core_stress_pa", "Pa", 1, NEEDS_FEW_FORCES | NEEDS_SHAPE, r->forces.core_stress_pa,                \
-      "largest bending stress of the core")                                                                            \
-    X(CORE_BUCKLING, "core_buckling_ratio", "-", 1, NEEDS_FEW_FORCES | NEEDS_WALLS, r->forces.core_buckling_ratio,     \
+    X(CONTACT_FORCE, "contact_force_max_n", "N", 1, NEEDS_FEW_FORCES | IS_BORNE, r->forces.contact_force_max_n,        \
+      "contact force", "MN", 1e-6, "largest contact force of a floor")                                                 \
+    X(CORE_SHEAR, "core_base_shear_n", "N", 1, NEEDS_FEW_FORCES | IS_BORNE, r->forces.core_base_shear_n,               \
+      "core base shear", "MN", 1e-6, "base shear of the core")                                                         \
+    X(CORE_OVERTURNING, "core_overturning_nm", "N m", 1, NEEDS_FEW_FORCES | IS_BORNE, r->forces.core_overturning_nm,   \
+      "core overturning", "MN m", 1e-6, "overturning moment of the core about its base")                               \
+    X(CORE_STRESS, "core_stress_pa", "Pa", 1, NEEDS_FEW_FORCES | NEEDS_SHAPE | IS_BORNE, r->forces.core_stress_pa,     \
+      "core stress", "MPa", 1e-6, "largest bending stress of the core")                                                \
+    X(CORE_BUCKLING, "core_buckling_ratio", "-", 1, NEEDS_FEW_FORCES | NEEDS_WALLS | IS_BORNE,                         \
+      r->forces.core_buckling_ratio, "stress / buckling", "", 1,                                                       \
       "largest bending stress over the buckling stress of the bare wall")                                              \
-    X(BUILDING_SHEAR, "building_base_shear_n", "N", 1, NEEDS_FEW_FORCES, r->forces.building_base_shear_n,              \
-      "base shear of the building")                                                                                    \
-    X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FEW_FORCES, r->forces.base_shear_n, "base shear of building and core") \
-    X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER, r->j3_filtered_g,                                            \
+    X(BUILDING_SHEAR, "building_base_shear_n", "N", 1, NEEDS_FEW_FORCES | IS_BORNE, r->forces.building_base_shear_n,   \
+      "building base shear", "MN", 1e-6, "base shear of the building")                                                 \
+    X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FEW_FORCES | IS_BORNE, r->forces.base_shear_n, "base shear", "MN",     \
+      1e-6, "base shear of building and core")                                                                         \
+    X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER | IS_BORNE, r->j3_filtered_g, "J3 filtered", "g", 1,          \
       "largest floor acceleration behind a low-pass of sim.filter_hz")                                                 \
-    X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FEW_FORCES | NEEDS_TURNING, r->forces.base_rotation_rad,     \
-      "rotation of the core's foundation")                                                                             \
-    X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FEW_FORCES | NEEDS_RADIUS, r->forces.uplift_ratio,                         \
+    X(BASE_ROTATION, "base_rotation_rad", "rad", 1, NEEDS_FEW_FORCES | NEEDS_TURNING | IS_BORNE,                       \
+      r->forces.base_rotation_rad, "base rotation", "mrad", 1e3, "rotation of the core's foundation")                  \
+    X(UPLIFT, "uplift_ratio", "-", 1, NEEDS_FEW_FORCES | NEEDS_RADIUS | IS_BORNE, r->forces.uplift_ratio,              \
+      "moment / uplift", "", 1,                                                                                        \
       "overturning moment of the core over the moment at which its foundation begins to lift")                         \
-    X(DUCTILITY, "ductility", "-", 1, NEEDS_YIELDING, r->ductility, "largest drift of a storey over its yield drift")  \
-    X(PLASTIC_DRIFT, "plastic_drift_ratio", "-", 1, NEEDS_YIELDING, r->plastic_drift_ratio,                            \
-      "largest plastic drift at the end over the height of its storey")                                                \
-    X(RESIDUAL_DRIFT, "residual_drift_ratio", "-", 1, NEEDS_YIELDING, r->residual_drift_ratio,                         \
-      "largest drift of the state of rest over the height of its storey")                                              \
-    X(HYSTERESIS, "ed_hysteresis_pct", "%", 1, NEEDS_YIELDING, r->ed_hysteresis_pct,                                   \
-      "share of the input dissipated by storeys that yield")                                                           \
-    X(DEVICES, "devices", "-", 1, NEEDS_NOTHING, (double)r->n_devices,                                                 \
+    X(DUCTILITY, "ductility", "-", 1, NEEDS_YIELDING | IS_BORNE, r->ductility, "ductility", "", 1,                     \
+      "largest drift of a storey over its yield drift")                                                                \
+    X(PLASTIC_DRIFT, "plastic_drift_ratio", "-", 1, NEEDS_YIELDING | IS_BORNE, r->plastic_drift_ratio,                 \
+      "plastic drift", "%", 100, "largest plastic drift at the end over the height of its storey")                     \
+    X(RESIDUAL_DRIFT, "residual_drift_ratio", "-", 1, NEEDS_YIELDING | IS_BORNE, r->residual_drift_ratio,              \
+      "residual drift", "%", 100, "largest drift of the state of rest over the height of its storey")                  \
+    X(HYSTERESIS, "ed_hysteresis_pct", "%", 1, NEEDS_YIELDING | IS_BORNE, r->ed_hysteresis_pct, "hysteresis share",    \
+      "%", 1, "share of the input dissipated by storeys that yield")                                                   \
+    X(DEVICES, "devices", "-", 1, NEEDS_NOTHING, (double)r->n_devices, "devices", "", 1,                               \
       "stops, links and tuned masses that a design has")                                                               \
-    X(DEVICE_FORCE, "device_force_max_n", "N", 1, NEEDS_NOTHING, r->dashpot_n,                                         \
+    X(DEVICE_FORCE, "device_force_max_n", "N", 1, IS_BORNE, r->dashpot_n, "force of a link or tuned mass", "MN", 1e-6, \
       "largest force of a link or tuned mass")                                                                         \
-    X(DEVICE_STROKE, "device_stroke_max_m", "m", 1, NEEDS_NOTHING, r->stroke_m,                                        \
+    X(DEVICE_STROKE, "device_stroke_max_m", "m", 1, IS_BORNE, r->stroke_m, "stroke of a link or tuned mass", "m", 1,   \
       "largest stroke of a link or tuned mass")                                                                        \
-    X(DEVICE_SHARE, "ed_devices_pct", "%", -1, NEEDS_NOTHING, r->ed_devices_pct,                                       \
+    X(DEVICE_SHARE, "ed_devices_pct", "%", -1, IS_BORNE, r->ed_devices_pct, "share of links and tuned mass", "%", 1,   \
       "share of the input dissipated by links and the tuned mass")                                                     \
-    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "of devices and core by design.prices")                            \
-    X(LOSS, "loss", "-", 1, NEEDS_NOTHING, damage_loss(r),                                                             \
+    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "cost", "", 1, "of devices and core by design.prices")             \
+    X(LOSS, "loss", "-", 1, NEEDS_NOTHING, damage_loss(r), "repair cost", "%", 100,                                    \
       "expected cost of repair over that of replacing the building (evaluate/consequences.h)")                         \
     X(ANNUAL_LOSS, "annual_loss", "1/year", 1, NEEDS_NOTHING,                                                          \
-      r->rate_per_year > 0 ? r->rate_per_year * damage_loss(r) : NAN,                                                  \
+      r->rate_per_year > 0 ? r->rate_per_year * damage_loss(r) : NAN, "repair cost of a year", "%", 100,               \
       "loss of a year: sum over the records of loss times rate=NUMBER of each (docs/risk.md)")
 
 typedef enum {
-#define X(id, name, unit, sense, needs, value, what) MEASURE_##id,
+#define X(id, name, unit, sense, needs, value, title, shown, factor, what) MEASURE_##id,
     MEASURE_LIST(X)
 #undef X
         MEASURES_LISTED
@@ -114,15 +123,23 @@ typedef struct {
 
 enum { PAPER_OBJECTIVES = MEASURE_MCORE + 1 };
 
+/* How pages and texts call a number: shown = factor * natural value. Files keep their own names and units. */
+typedef struct {
+    const char *title, *unit; /* unit "": a number */
+    double factor;
+} Words;
+
 typedef struct {
     const char *name; /* column and key */
     const char *unit;
     double sense;
     unsigned needs;
+    Words words;
     const char *what;
 } Measure;
 
 const Measure *measure(int k);                   /* k = 0..N_MEASURES-1 */
+int measures_borne(int id[MEASURES_LISTED]);     /* what has to be borne; returns their number */
 int measure_is_share(int k);                     /* of 1, where a number above it is meant as per cent */
 double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: not known */
 

@@ -126,27 +126,22 @@ json_t *ladder_json(const Ladder *l)
                    json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);
 }
 
-/* What a building and a core have to bear. */
-static const MeasureId LOADS[] = {
-    MEASURE_DRIFT_RATIO,   MEASURE_J3_FILTERED, MEASURE_CONTACT_FORCE, MEASURE_CORE_STRESS,     MEASURE_CORE_BUCKLING,
-    MEASURE_BASE_SHEAR,    MEASURE_DUCTILITY,   MEASURE_PLASTIC_DRIFT, MEASURE_RESIDUAL_DRIFT,  MEASURE_HYSTERESIS,
-    MEASURE_BASE_ROTATION, MEASURE_UPLIFT,      MEASURE_CORE_SHEAR,    MEASURE_CORE_OVERTURNING};
-enum { N_LOADS = N_OF(LOADS) };
-
-/* Under the first record, for the chosen design and its baselines. */
+/* What has to be borne under the first record, by the chosen design and its baselines. */
 static json_t *json_of_loads(const Detail *d)
 {
+    int borne[MEASURES_LISTED];
+    const int n = measures_borne(borne);
     json_t *columns = json_array(), *rows = json_array();
-    for (int k = 0; k < N_LOADS; k++) {
-        const Words w = words_of_measure(LOADS[k]);
-        json_array_append_new(columns, json_of("title=%s unit=%s", w.title, w.unit));
-    }
+    for (int k = 0; k < n; k++)
+        json_array_append_new(
+            columns, json_of("title=%s unit=%s", measure(borne[k])->words.title, measure(borne[k])->words.unit));
     for (int scene = 0; scene < N_SCENES; scene++) {
-        double values[N_LOADS];
-        for (int k = 0; k < N_LOADS; k++)
-            values[k] = words_of_measure(LOADS[k]).factor * measure_value(&d->result[scene], LOADS[k]);
+        double values[MEASURES_LISTED];
+        for (int k = 0; k < n; k++)
+            values[k] = measure(borne[k])->words.factor * measure_value(&d->result[scene], borne[k]);
         if (d->result[scene].outcome == RUN_OK)
-            json_array_append_new(rows, json_of("key=%s values=%p", SCENE_KEYS[scene], json_numbers(N_LOADS, values)));
+            json_array_append_new(rows,
+                                  json_of("key=%s values=%p", SCENE_KEYS[scene], json_numbers((size_t)n, values)));
     }
     return json_of("columns=%p rows=%p", columns, rows);
 }
@@ -312,15 +307,17 @@ json_t *growth_json(const Run *run)
 /* The best designs of each objective, by what they have to bear. */
 static json_t *json_of_named(const Report *r)
 {
+    int borne[MEASURES_LISTED];
+    const int n = measures_borne(borne);
     json_t *rows = json_array();
     for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++) {
         const size_t row = run_best(r->run, k);
-        double values[N_LOADS];
-        for (int i = 0; i < N_LOADS; i++)
-            values[i] = words_of_measure(LOADS[i]).factor *
-                        schema_value(&r->run->schema, LOADS[i], run_f(r->run, row), r->run->table.row[row].extra);
+        double values[MEASURES_LISTED];
+        for (int i = 0; i < n; i++)
+            values[i] = measure(borne[i])->words.factor *
+                        schema_value(&r->run->schema, borne[i], run_f(r->run, row), r->run->table.row[row].extra);
         json_array_append_new(rows,
-                              json_of("id=%ld values=%p", r->run->table.row[row].id, json_numbers(N_LOADS, values)));
+                              json_of("id=%ld values=%p", r->run->table.row[row].id, json_numbers((size_t)n, values)));
     }
     return rows;
 }

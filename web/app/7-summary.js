@@ -140,7 +140,7 @@ function warnings(d) {
 // What the design has to bear, beside its baselines and, as the run stores them, the best designs of every objective; without what
 // this scene has not. Of several records the former are under the first, the latter by the rule of the run.
 function loadTable(d) {
-  const { columns, rows } = d.loads, kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k] !== null)), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
+  const { columns, rows } = d.loads, kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k])), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
   return table("loads", ["demand", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words + underRecord(d), ...cells(r.values)])),
     ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id}${run.rule && `; ${run.rule}`})`, ...cells(values)]))]);
 }
