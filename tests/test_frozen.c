@@ -107,6 +107,28 @@ static void write_kinds(FILE *list, const char *arguments, const char *out)
     }
 }
 
+/* What simulations are measured by, in their order, is long and stands in many places. */
+static char *shortened(const char *list)
+{
+    char every[2][2048] = {"", ""}, *out = NULL;
+    size_t length;
+    FILE *f = open_memstream(&out, &length);
+    for (int k = 0; k < MEASURES_LISTED; k++) {
+        const char *name = measure(k)->name;
+        snprintf(every[0] + strlen(every[0]), 60, "%s%s", k ? " " : "", name);
+        snprintf(every[1] + strlen(every[1]), 60, "%s%s", k ? "," : "", name);
+    }
+    fprintf(f, "MEASURES: %s\n", every[0]);
+    while (*list) {
+        const int is_every =
+            strncmp(list, every[0], strlen(every[0])) == 0 || strncmp(list, every[1], strlen(every[1])) == 0;
+        fputs(is_every ? "MEASURES" : (char[]){*list, 0}, f);
+        list += is_every ? strlen(every[0]) : 1;
+    }
+    fclose(f);
+    return out;
+}
+
 TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
 {
     char *wanted = text_of("tests/frozen.txt"), *now = NULL, *rest = NULL;
@@ -129,6 +151,9 @@ TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
         free(out);
     }
     fclose(list);
+    char *all = shortened(now);
+    free(now);
+    now = all;
     if (getenv("FREEZE")) {
         FILE *f = fopen(getenv("FREEZE"), "w");
         assert_non_null(f);
