@@ -6,13 +6,13 @@
 
 static const double OPEN_GAP = 10; /* [m] no response of this building reaches it */
 
-static const BenchKind SCENES[N_BENCH_KINDS] = {
+static const BenchKind KINDS[N_BENCH_KINDS] = {
     {"linear", 10}, {"one-impact", 10}, {"irregular", 8}, {"tiny", 2}, {"zero", 2},
 };
 
 const BenchKind *bench_kind(int k)
 {
-    return &SCENES[k];
+    return &KINDS[k];
 }
 
 void bench_irregular_gaps(uint32_t design, int n, double gaps[])

@@ -36,12 +36,12 @@ int main(void)
         x[j] = 0.05; /* gaps [m] */
     x[20] = 0.012;   /* wall of the core at its foot [m] */
     x[21] = 0.008;   /* ... at its top */
-    if (imtet_scene_simulate(scene, IMTET_IMPACTS, x, 22, &result, &error) != IMTET_OK)
+    if (imtet_scene_simulate(scene, "with_core", x, 22, &result, &error) != IMTET_OK)
         return complain(&error);
     printf("%s: displacement %.4g m, drift %.4g m, acceleration %.4g g, %.0f impacts\n",
            imtet_result_text(result, "outcome"), number(result, "j1_m"), number(result, "j2_m"), number(result, "j3_g"),
            number(result, "impacts"));
-    if (imtet_scene_history(scene, IMTET_IMPACTS, x, 22, 0.01, &history, &error) != IMTET_OK ||
+    if (imtet_scene_history(scene, "with_core", x, 22, 0.01, &history, &error) != IMTET_OK ||
         imtet_result_numbers(history, "floor_m", &floors, &times, &columns, &error) != IMTET_OK)
         return complain(&error);
     printf("%zu times of %zu floors, the roof at the end %.3g m\n", times, columns, floors[times * columns - 1]);

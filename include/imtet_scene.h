@@ -9,7 +9,7 @@
  *     double x[22] = {[20] = 0.012, [21] = 0.008}; // gap_01_m..gap_20_m, t_base_m, t_top_m
  *     for (int j = 0; j < 20; j++) x[j] = 0.05;
  *     if (imtet_scene_open("configs/quick.ini", settings, &scene, &error) ||
- *         imtet_scene_simulate(scene, IMTET_IMPACTS, x, 22, &result, &error) ||
+ *         imtet_scene_simulate(scene, "with_core", x, 22, &result, &error) ||
  *         imtet_result_numbers(result, "j1_m", &j1, NULL, NULL, &error))
  *         fprintf(stderr, "%s\n", error.text);
  *     else
@@ -51,25 +51,23 @@ IMTET_API void imtet_scene_free(imtet_scene **scene); /* makes it NULL; no simul
  * building; texts: variables, objectives: comma lists of names; senses: min or max of each objective; record. */
 IMTET_API imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error);
 
-typedef enum {
-    IMTET_IMPACTS, /* building and core with gaps */
-    IMTET_ALONE,   /* the building without a core; x may be NULL */
-    IMTET_RIGID    /* floors and core rigidly connected; of x the thicknesses count */
-} imtet_scene_kind;
-
-/* The response to the record of a design x (n), n the scene's variables in their order. Numbers (1, 1): j1_m, j2_m,
+/* The response to the record of a design x (n), n the scene's variables in their order. kind: with_core, or what it is
+ * compared with: no_core, the building alone (x may be NULL); rigid, floors and core rigidly connected; tmd, the core's
+ * mass as a tuned mass damper at the roof; links, a viscous dashpot between core and every floor. Of x the thicknesses
+ * count then; the device is the best one (numbers tmd_hz, tmd_damping or link_ns_m), found by some 100 simulations.
+ * Numbers (1, 1): j1_m, j2_m,
  * j3_g, ed1_pct, ed5_10_pct, edcs_pct, mcore_kg and whatever else `imtet simulate --csv` has, those of forces with
  * "sim.forces=yes" alone; not numbers where the scene has none. Of every floor or storey from the bottom (floors, 1):
  * peak_displacement_m, peak_drift_m, peak_acceleration_g, floor_drift_ratio, mode_share_pct (of mode 1, 2, ...).
  * Texts: outcome, reason. */
-IMTET_API imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
+IMTET_API imtet_status imtet_scene_simulate(imtet_scene *scene, const char *kind, const double x[], size_t n,
                                             imtet_result **out, imtet_error *error);
 
 /* The same over time, by the same simulation once more: every_s [s] between rows at most, reached by halving the step
  * of the motion; 0: that step. Tables (times, 1): t_s, ground_g, and energies kinetic_j, strain_j, damped_building_j,
  * core_j, damped_core_j, contacts_j, input_j; (times, floors): floor_m, floor_m_s, drift_m, accel_g (absolute), core_m,
  * core_m_s, contact_n. Displacements are relative to the ground. Only with sim.engine=fast. */
-IMTET_API imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
+IMTET_API imtet_status imtet_scene_history(imtet_scene *scene, const char *kind, const double x[], size_t n,
                                            double every_s, imtet_result **out, imtet_error *error);
 
 /* A record as the program reads it, of any of its formats, or builtin:NAME: acceleration (samples, 1) [m/s2], dt_s

@@ -428,22 +428,19 @@ class Scene(_Handle):
             raise ValueError(f"missing: {', '.join(missing)}")
         return np.array([given[n] for n in self.variables])
 
-    def simulate(self, x=None, *, gaps=None, thickness=None, kind="impacts", **others):
+    def simulate(self, x=None, *, gaps=None, thickness=None, kind="with_core", **others):
         """The Result of a design x (n,), or of gaps=, thickness= as `design` has them: j1_m, j2_m, j3_g, ..., per floor
         peak_displacement_m, peak_drift_m, peak_acceleration_g; outcome is "ok", or the numbers are not to be used.
-        kind: "impacts", "alone" (the building without a core) or "rigid" (floors and core rigidly connected)."""
-        kinds = {"impacts": 0, "alone": 1, "rigid": 2}
-        if kind not in kinds:
-            raise ValueError(f"kind {kind!r} is none of {', '.join(kinds)}")
+        kind: "with_core", or what it is compared with: "no_core" (the building alone), "rigid" (rigidly connected), "tmd"
+        (tuned mass damper), "links" (viscous links), the last two with the device that does best."""
         named = {k: v for k, v in {"gaps": gaps, "thickness": thickness, **others}.items() if v is not None}
         if x is not None and named:
             raise TypeError(f"x and {', '.join(named)} are given: give x alone, or no x; scene.design({next(iter(named))}=...) "
                             "makes an x")
-        if named or (x is None and kind != "alone"):
+        if named or (x is None and kind != "no_core"):
             x = self.design(**named)
         x = None if x is None else _row("x", x, len(self.variables))
-        return self._ask("imtet_scene_simulate", kinds[kind], _pointer(x), 0 if x is None else x.size,
-                         question=(kinds[kind], x))
+        return self._ask("imtet_scene_simulate", _text(kind), _pointer(x), 0 if x is None else x.size, question=(_text(kind), x))
 
     def evaluate(self, x):
         """The objectives of the scene (len(objectives),), for Search.evaluate; raises where the simulation fails."""

@@ -33,11 +33,11 @@ static double fractile_of(size_t n, const double j1[], double p)
     const double level = 0.3;
     for (size_t i = 0; i < n; i++) {
         run[i].record = &record[i];
-        run[i].result[EVALUATED_DESIGN].j1_m = isfinite(j1[i]) ? j1[i] : 99;
-        run[i].result[EVALUATED_DESIGN].outcome = isfinite(j1[i]) ? RUN_OK : RUN_NOT_FINITE;
+        run[i].result[SCENE_IMPACT].j1_m = isfinite(j1[i]) ? j1[i] : 99;
+        run[i].result[SCENE_IMPACT].outcome = isfinite(j1[i]) ? RUN_OK : RUN_NOT_FINITE;
     }
     const Evaluations e = {.n_records = n, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = n};
-    const double value = ida_fractile(&e, 0, EVALUATED_DESIGN, 0, p);
+    const double value = ida_fractile(&e, 0, SCENE_IMPACT, 0, p);
     free(run);
     return value;
 }
@@ -94,9 +94,9 @@ TEST(every_record_is_simulated_at_every_intensity)
         json_t *one = json_of("evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
                               i < 3 ? "elcentro-like" : "sylmar-like", i % 3 + 1);
         assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
-        static const char *const SCENES[] = {"with_core", "rigid", "no_core"};
+        static const char *const KEYS[] = {"with_core", "rigid", "no_core"};
         for (int c = 0; c < 3; c++)
-            assert_same_number(value_at(all, i, SCENES[c], "j3_g"), value_at(one, 0, SCENES[c], "j3_g"));
+            assert_same_number(value_at(all, i, KEYS[c], "j3_g"), value_at(one, 0, KEYS[c], "j3_g"));
         json_decref(one);
     }
     json_decref(all);

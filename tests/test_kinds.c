@@ -218,7 +218,7 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
 
 TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends_below_them)
 {
-    static const BaselineKind KIND[] = {BASELINE_LINKS, BASELINE_TMD};
+    static const SceneKind KIND[] = {SCENE_LINKS, SCENE_TMD};
     Settings s = settings_of(DEVICES, "unused");
     Problem p;
     Err err = {0};
@@ -227,9 +227,9 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
     Run run = run_in("devices");
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     for (size_t i = 0; i < 2; i++) {
-        Baseline b[N_BASELINES];
+        Baseline b[N_SCENES];
         const double *f = run_f(&run, i);
-        CHECK_OK(baselines_find(&p, run_x(&run, i), KIND[i], b, &err), &err);
+        CHECK_OK(baselines_find(&p, run_x(&run, i), 1, b, &err), &err);
         for (int k = 0; k < 3; k++)
             assert_close(f[k], b[KIND[i]].value[k], 1e-6);
         for (size_t j = 0; j < run.n_front; j++) {

@@ -30,7 +30,7 @@ static imtet_scene *six_floors(void)
     return scene;
 }
 
-static imtet_result *response(imtet_scene *scene, imtet_scene_kind kind)
+static imtet_result *response(imtet_scene *scene, const char *kind)
 {
     imtet_result *r;
     imtet_error error;
@@ -51,10 +51,10 @@ static const double *numbers(const imtet_result *r, const char *name, size_t *ro
 TEST(a_design_has_the_numbers_of_imtet_simulate)
 {
     static const struct {
-        imtet_scene_kind kind;
+        const char *kind;
         const char *options;
     } KINDS[] = {
-        {IMTET_IMPACTS, "--design @/d.csv"}, {IMTET_ALONE, "--design none"}, {IMTET_RIGID, "--design @/d.csv --rigid"}};
+        {"with_core", "--design @/d.csv"}, {"no_core", "--design none"}, {"rigid", "--design @/d.csv --rigid"}};
     imtet_scene *scene = six_floors();
     write_in_place("d.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                             "0.003,0.004,0.005,0.006,0.007,0.008,0.02,0.01\n");
@@ -80,13 +80,36 @@ TEST(a_design_has_the_numbers_of_imtet_simulate)
     imtet_scene_free(&scene);
 }
 
+TEST(every_case_has_the_numbers_of_imtet_evaluate)
+{
+    imtet_scene *scene = six_floors();
+    json_t *all = json_of("evaluate configs/quick.ini --design @/d.csv:1 " SIX_FLOORS "--json"), *one;
+    const char *kind;
+    size_t n = 0;
+    json_object_foreach(json_array_get(json_object_get(all, "records"), 0), kind, one)
+    {
+        if (!json_is_object(one))
+            continue;
+        imtet_result *r = response(scene, kind);
+        static const char *const SAME[] = {"j1_m", "j3_g", "tmd_hz", "tmd_damping", "link_ns_m"};
+        for (size_t i = 0; i < N_OF(SAME); i++)
+            if (json_object_get(one, SAME[i]))
+                assert_close(*numbers(r, SAME[i], NULL, NULL), number(one, SAME[i]), 1e-12);
+        imtet_result_free(&r);
+        n++;
+    }
+    assert_int_equal(n, 5);
+    json_decref(all);
+    imtet_scene_free(&scene);
+}
+
 TEST(a_history_has_the_peaks_of_the_result_and_keeps_the_energy)
 {
     imtet_scene *scene = six_floors();
-    imtet_result *r = response(scene, IMTET_IMPACTS), *h;
+    imtet_result *r = response(scene, "with_core"), *h;
     imtet_error error;
     size_t n, floors;
-    must(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, 0.001, &h, &error), &error);
+    must(imtet_scene_history(scene, "with_core", DESIGN, 8, 0.001, &h, &error), &error);
     const double *t = numbers(h, "t_s", &n, NULL), *u = numbers(h, "floor_m", NULL, &floors);
     const double *peak = numbers(r, "peak_displacement_m", NULL, NULL), *drift = numbers(h, "drift_m", NULL, NULL);
     const double input = *numbers(r, "input_energy_j", NULL, NULL), *sum = numbers(h, "input_j", NULL, NULL);
@@ -121,7 +144,7 @@ static void *simulate_often(void *user)
 {
     Together *t = user;
     for (int i = 0; i < (SANITIZED ? 2 : 8); i++) {
-        imtet_result *r = response(t->scene, IMTET_IMPACTS);
+        imtet_result *r = response(t->scene, "with_core");
         t->j3_g = *numbers(r, "j3_g", NULL, NULL);
         imtet_result_free(&r);
     }
@@ -133,7 +156,7 @@ TEST(threads_simulate_on_one_scene_at_once)
     pthread_t thread[4];
     Together t[4];
     imtet_scene *scene = six_floors();
-    imtet_result *r = response(scene, IMTET_IMPACTS);
+    imtet_result *r = response(scene, "with_core");
     for (int i = 0; i < 4; i++) {
         t[i] = (Together){scene, 0};
         assert_int_equal(pthread_create(&thread[i], NULL, simulate_often, &t[i]), 0);
@@ -199,21 +222,21 @@ TEST(what_makes_no_sense_is_named)
     says(imtet_scene_open(NULL, (const char *const[]){"motion.pga=1", NULL}, &none, &error), &error, "motion.pga_g?");
     says(imtet_scene_open(NULL, (const char *const[]){"problem.kind=dtlz2", NULL}, &none, &error), &error,
          "this needs problem.kind = tower");
-    says(imtet_scene_simulate(scene, IMTET_IMPACTS, DESIGN, 7, &r, &error), &error,
+    says(imtet_scene_simulate(scene, "with_core", DESIGN, 7, &r, &error), &error,
          "x: has 7 numbers; a design of this scene has 8");
-    says(imtet_scene_simulate(scene, IMTET_IMPACTS, NULL, 8, &r, &error), &error, "x: has 0 numbers");
-    says(imtet_scene_simulate(scene, (imtet_scene_kind)9, DESIGN, 8, &r, &error), &error, "kind: 9 is none");
+    says(imtet_scene_simulate(scene, "with_core", NULL, 8, &r, &error), &error, "x: has 0 numbers");
+    says(imtet_scene_simulate(scene, "impact", DESIGN, 8, &r, &error), &error, "kind: impact is no case");
     memcpy(x, DESIGN, sizeof x);
     x[2] = -0.01;
-    says(imtet_scene_simulate(scene, IMTET_IMPACTS, x, 8, &r, &error), &error,
+    says(imtet_scene_simulate(scene, "with_core", x, 8, &r, &error), &error,
          "gap_03_m is -0.01; a gap is not negative");
     x[2] = NAN;
-    says(imtet_scene_simulate(scene, IMTET_IMPACTS, x, 8, &r, &error), &error, "x: number 3 is nan");
+    says(imtet_scene_simulate(scene, "with_core", x, 8, &r, &error), &error, "x: number 3 is nan");
     assert_null(r);
-    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, 1e-9, &r, &error), &error, "every_s: 1e-09");
-    says(imtet_scene_history(scene, IMTET_IMPACTS, DESIGN, 8, -1, &r, &error), &error, "every_s: -1 is not");
-    says(imtet_scene_simulate(none, IMTET_IMPACTS, x, 8, &r, &error), &error, "the scene is NULL");
-    r = response(scene, IMTET_ALONE);
+    says(imtet_scene_history(scene, "with_core", DESIGN, 8, 1e-9, &r, &error), &error, "every_s: 1e-09");
+    says(imtet_scene_history(scene, "with_core", DESIGN, 8, -1, &r, &error), &error, "every_s: -1 is not");
+    says(imtet_scene_simulate(none, "with_core", x, 8, &r, &error), &error, "the scene is NULL");
+    r = response(scene, "no_core");
     says(imtet_result_numbers(r, "j3g", &at, NULL, NULL, &error), &error, "did you mean j3_g?");
     says(imtet_result_numbers(r, "outcome", &at, NULL, NULL, &error), &error, "outcome is a text");
     says(imtet_result_numbers(gone, "j3_g", &at, NULL, NULL, &error), &error, "the result is NULL");

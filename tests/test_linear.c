@@ -9,7 +9,7 @@
 #include "sim/engine.h"
 #include "sim/joined.h"
 #include "analysis/baselines.h"
-#include "analysis/device.h"
+#include "evaluate/device.h"
 #include "settings/settings.h"
 
 enum { N = 3 };
@@ -480,19 +480,19 @@ TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_thre
     Baseline *both[4]; /* worst, mean, worst on two and seven threads */
     rigid_design(6, x);
     for (int i = 0; i < 4; i++) {
-        both[i] = calloc(N_BASELINES, sizeof **both);
+        both[i] = calloc(N_SCENES, sizeof **both);
         open_tower(&p, 6, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, (int[]){1, 1, 2, 7}[i], 0);
-        CHECK_OK(baselines_find(&p, x, i == 1 ? BASELINE_RIGID : BASELINE_LINKS, both[i], &err), &err);
-        for (int k = BASELINE_NO_CORE; k <= BASELINE_RIGID; k++) {
+        CHECK_OK(baselines_find(&p, x, i != 1, both[i], &err), &err);
+        for (int k = SCENE_NO_CORE; k <= SCENE_RIGID; k++) {
             SimResult each[2];
             for (size_t r = 0; r < 2; r++)
-                run_alone(&p, r, k ? SCENE_RIGID : SCENE_NO_CORE, x, NULL, &each[r]);
+                run_alone(&p, r, (SceneKind)k, x, NULL, &each[r]);
             assert_close(both[i][k].value[0],
                          i == 1 ? 0.5 * (each[0].j1_m + each[1].j1_m) : fmax(each[0].j1_m, each[1].j1_m), 1e-12);
         }
         problem_close(&p);
     }
-    for (int k = BASELINE_NO_CORE; k <= BASELINE_LINKS; k++)
+    for (int k = SCENE_NO_CORE; k < N_SCENES; k++)
         for (int i = 2; i < 4; i++) {
             assert_memory_equal(both[0][k].value, both[i][k].value, sizeof both[0]->value);
             assert_memory_equal(&both[0][k].device, &both[i][k].device, sizeof both[0]->device);
@@ -514,20 +514,19 @@ static void find_devices(const char *records, double yield_drift)
     Problem p;
     Err err = {0};
     double x[22];
-    Baseline b[N_BASELINES];
+    Baseline b[N_SCENES];
     rigid_design(6, x);
     open_tower(&p, 6, records, ROBUST_WORST, 2, yield_drift);
-    CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, b, &err), &err);
-    for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
-        const double found = goal(&b[k], &b[BASELINE_NO_CORE]);
-        const SceneKind kind = k == BASELINE_TMD ? SCENE_TMD : SCENE_LINKS;
+    CHECK_OK(baselines_find(&p, x, 1, b, &err), &err);
+    for (SceneKind kind = SCENE_TMD; kind <= SCENE_LINKS; kind++) {
+        const double found = goal(&b[kind], &b[SCENE_NO_CORE]);
         SimResult alone;
         assert_less(found, 3);
-        run_alone(&p, 0, kind, x, &b[k].device, &alone);
+        run_alone(&p, 0, kind, x, &b[kind].device, &alone);
         if (tower_n_records(tower_of(&p)) == 1) /* of the whole motion, not its strong part */
-            assert_same_number(b[k].value[MEASURE_INPUT], alone.input_energy_j);
+            assert_same_number(b[kind].value[MEASURE_INPUT], alone.input_energy_j);
         for (int i = 0; i < 6; i++) {
-            LinearDevice d = b[k].device;
+            LinearDevice d = b[kind].device;
             Baseline other;
             ReplicateSummary sum;
             d.tmd_hz *= i == 0 ? 1.3 : i == 1 ? 0.75 : 1;
@@ -537,7 +536,7 @@ static void find_devices(const char *records, double yield_drift)
                 .kind = kind, .x = x, .device = d, .n_parts = tower_n_records(tower_of(&p)), .summary = &sum};
             CHECK_OK(tower_run(&p, 1, &task, NULL, NULL, &err), &err);
             memcpy(other.value, sum.mean, sizeof other.value);
-            assert_less(found - 0.01, goal(&other, &b[BASELINE_NO_CORE]));
+            assert_less(found - 0.01, goal(&other, &b[SCENE_NO_CORE]));
         }
     }
     problem_close(&p);

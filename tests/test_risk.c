@@ -244,8 +244,8 @@ TEST(a_simulation_that_failed_has_lost_the_whole_building)
     const double level = 0.1, hazard[] = {0.1, 0.02, 1, 0.001};
     const Evaluations e = {.n_records = 3, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = 2};
     for (int i = 0; i < 3; i++)
-        run[i].result[EVALUATED_RIGID] = (SimResult){.n_floors = 1, .outcome = i == 2 ? RUN_NOT_FINITE : RUN_OK};
-    const AnnualLoss y = ida_annual_loss(&e, EVALUATED_RIGID, 2, hazard);
+        run[i].result[SCENE_RIGID] = (SimResult){.n_floors = 1, .outcome = i == 2 ? RUN_NOT_FINITE : RUN_OK};
+    const AnnualLoss y = ida_annual_loss(&e, SCENE_RIGID, 2, hazard);
     assert_close(y.per_year, 0.02 / 2, 1e-12);
     assert_close(y.error, 0.02 / 2, 1e-12);
     assert_int_equal(y.n_failed, 1);
@@ -384,13 +384,13 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
     write_in_place("three_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\nbuiltin:suite-03\n");
     write_in_place("hazard.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.01\n1,0.0001\n");
     json_t *o = json_of(CURVES "--hazard @/hazard.csv --json"), *run;
-    static const char *const SCENES[] = {"with_core", "rigid", "no_core", "links"};
+    static const char *const KEYS[] = {"with_core", "no_core", "rigid", "links"};
     size_t i, n[4] = {0};
     double at_first[3], link = 0;
     json_array_foreach(json_object_get(o, "records"), i, run)
     {
         for (int c = 0; c < 4; c++)
-            n[c] += number(json_object_get(run, SCENES[c]), "j3_g") > 0.5;
+            n[c] += number(json_object_get(run, KEYS[c]), "j3_g") > 0.5;
         const double j1 = number(json_object_get(run, "no_core"), "j1_m"), sa = number(run, "sa_g");
         assert_close(sa, 0.1 * (double)(i % 6 + 1), 1e-12);
         at_first[i / 6] = i % 6 == 0 ? j1 / sa : at_first[i / 6];
@@ -400,7 +400,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
     }
     assert_int_equal(i, 18);
     for (int c = 0; c < 4; c++) {
-        const json_t *curve = curve_of(o, "j3_g", SCENES[c]), *exceeded = json_object_get(curve, "exceeded");
+        const json_t *curve = curve_of(o, "j3_g", KEYS[c]), *exceeded = json_object_get(curve, "exceeded");
         size_t sum = 0;
         for (size_t l = 0; l < 6; l++)
             sum += (size_t)json_integer_value(json_array_get(exceeded, l));
@@ -409,7 +409,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
         if (json_is_number(rate)) /* of 0.01 g at most, and of the last intensity at least where all exceed it */
             assert_less(json_number_value(rate), 0.1);
     }
-    expect_annual_losses(o, SCENES);
+    expect_annual_losses(o, KEYS);
     json_decref(o);
     char *table = output_of(CURVES "--csv @/rows.csv --hazard @/hazard.csv"), *rows = read_in_place("rows.csv");
     assert_non_null(strstr(table, "per_year"));

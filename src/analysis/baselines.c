@@ -1,34 +1,5 @@
 #include "analysis/baselines.h"
 
-static const struct {
-    const char *words, *key;
-    SceneKind scene;
-} BASELINES[N_BASELINES] = {
-    [BASELINE_NO_CORE] = {"no core", "no_core", SCENE_NO_CORE},
-    [BASELINE_RIGID] = {"rigidly connected", "rigid", SCENE_RIGID},
-    [BASELINE_TMD] = {"tuned mass damper", "tmd", SCENE_TMD},
-    [BASELINE_LINKS] = {"viscous links", "links", SCENE_LINKS},
-};
-
-const char *baseline_words(BaselineKind kind)
-{
-    return BASELINES[kind].words;
-}
-
-const char *baseline_key(BaselineKind kind)
-{
-    return BASELINES[kind].key;
-}
-
-void baseline_device_text(BaselineKind kind, const LinearDevice *d, char text[DEVICE_TEXT_MAX])
-{
-    text[0] = 0;
-    if (kind == BASELINE_TMD)
-        snprintf(text, DEVICE_TEXT_MAX, "%.3g Hz, damping %.2g", d->tmd_hz, d->tmd_damping);
-    if (kind == BASELINE_LINKS)
-        snprintf(text, DEVICE_TEXT_MAX, "%.3g MN s/m per floor", 1e-6 * d->link_ns_m);
-}
-
 /* From the simulations under each record, by the rule of the study. */
 static void summarise(const ReplicateSummary *sum, const LinearDevice *device, Baseline *out)
 {
@@ -38,28 +9,32 @@ static void summarise(const ReplicateSummary *sum, const LinearDevice *device, B
         out->value[k] = sum->outcome == OUTCOME_OK ? sum->mean[k] : NAN;
 }
 
-Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err)
+Status baselines_find(const Problem *p, const double x[], int with_devices, Baseline out[N_SCENES], Err *err)
 {
-    const size_t n = last >= BASELINE_TMD ? N_BASELINES : (size_t)last + 1;
-    DeviceSearch found[N_BASELINES] = {0};
-    SimTask task[N_BASELINES];
-    ReplicateSummary sum[N_BASELINES];
-    for (size_t k = 0; k < N_BASELINES; k++) {
+    DeviceSearch found[N_SCENES];
+    SimTask task[N_SCENES];
+    ReplicateSummary sum[N_SCENES];
+    LinearDevice device[N_SCENES] = {0};
+    size_t n = 0, n_found = 0;
+    for (SceneKind k = 0; k < N_SCENES; k++) {
         out[k] = (Baseline){.outcome = OUTCOME_ERROR,
                             .first = {.outcome = RUN_ENGINE_FAILED, .reason = "it was not asked for"}};
-        found[k] = (DeviceSearch){.kind = BASELINES[k].scene, .x = x};
+        if (SCENES[k].has & HAS_DEVICE && with_devices)
+            found[n_found++] = (DeviceSearch){.kind = k, .x = x};
     }
-    if (n > BASELINE_TMD)
-        TRY(devices_find(p, n - BASELINE_TMD, found + BASELINE_TMD, err));
-    for (size_t k = 0; k < n; k++)
-        task[k] = (SimTask){.kind = BASELINES[k].scene,
-                            .x = x,
-                            .device = found[k].device,
-                            .n_parts = tower_n_records(tower_of(p)),
-                            .result = &out[k].first,
-                            .summary = &sum[k]};
+    TRY(n_found > 0 ? devices_find(p, n_found, found, err) : STATUS_OK);
+    for (size_t i = 0; i < n_found; i++)
+        device[found[i].kind] = found[i].device;
+    for (SceneKind k = SCENE_IMPACT + 1; k < N_SCENES; k++)
+        if (with_devices || !(SCENES[k].has & HAS_DEVICE))
+            task[n++] = (SimTask){.kind = k,
+                                  .x = x,
+                                  .device = device[k],
+                                  .n_parts = tower_n_records(tower_of(p)),
+                                  .result = &out[k].first,
+                                  .summary = &sum[k]};
     TRY(tower_run(p, n, task, NULL, NULL, err));
-    for (size_t k = 0; k < n; k++)
-        summarise(&sum[k], &found[k].device, &out[k]);
+    for (size_t i = 0; i < n; i++)
+        summarise(&sum[task[i].kind], &device[task[i].kind], &out[task[i].kind]);
     return STATUS_OK;
 }

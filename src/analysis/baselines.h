@@ -1,20 +1,13 @@
-/* analysis/baselines.h -- what a design is compared with: the building alone, and linear uses of the same core.
+/* analysis/baselines.h -- what a design is compared with: every case of sim/cases.h but the first.
  *
- *   no core            the building alone
- *   rigidly connected  floors and core without gaps, in the modes of both with the building's damping ratios
- *   tuned mass damper  no core, but its mass on a spring and a dashpot at the roof; frequency and damping optimized
- *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
- *
- * under the records of the study and by its rule (sim.robust): worst or mean, without replicates. Devices are found
- * by analysis/device.h.
+ * Under the records of the study and by its rule (sim.robust): worst or mean, without replicates. Devices are found
+ * by evaluate/device.h.
  *
  * Threads  tasks of the queue; the numbers do not depend on how many workers there are */
 #pragma once
 
-#include "analysis/device.h"
+#include "evaluate/device.h"
 #include "evaluate/tower.h"
-
-typedef enum { BASELINE_NO_CORE, BASELINE_RIGID, BASELINE_TMD, BASELINE_LINKS, N_BASELINES } BaselineKind;
 
 typedef struct {
     LinearDevice device;      /* as it was found */
@@ -23,12 +16,6 @@ typedef struct {
     SimResult first;          /* under the first record, or the one under which it failed */
 } Baseline;
 
-const char *baseline_words(BaselineKind kind); /* "tuned mass damper" */
-const char *baseline_key(BaselineKind kind);   /* "tmd" */
-
-/* Its device in words, "0.241 Hz, damping 0.13"; empty where it has none. */
-enum { DEVICE_TEXT_MAX = 64 };
-void baseline_device_text(BaselineKind kind, const LinearDevice *device, char text[DEVICE_TEXT_MAX]);
-
-/* x (n_var): the design, for its core. p: of a tower. Those up to `last`; what is behind it has failed. */
-Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err);
+/* x (n_var): the design, for its core. p: of a tower. out: by SceneKind; with_devices 0: without those whose device would
+ * have to be found. What is left out has failed. */
+Status baselines_find(const Problem *p, const double x[], int with_devices, Baseline out[N_SCENES], Err *err);

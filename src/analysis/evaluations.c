@@ -1,17 +1,11 @@
 #include "analysis/evaluations.h"
 
-#include "analysis/device.h"
+#include "evaluate/device.h"
 #include "analysis/estimate.h"
 #include "base/stat.h"
 #include "base/units.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
-
-const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
-                                                                {SCENE_RIGID, "rigidly connected", "rigid"},
-                                                                {SCENE_NO_CORE, "no core", "no_core"},
-                                                                {SCENE_TMD, "tuned mass damper", "tmd"},
-                                                                {SCENE_LINKS, "viscous links", "links"}};
 
 const char *evaluated_name(const EvaluatedRecord *r)
 {
@@ -73,7 +67,7 @@ static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
         motion_unscale(&s.motion);
     s.sim.replicates = e->replicates > 0 ? e->replicates : 1;
     const Status status = paths && scenes ? tower_open_scenes(&e->tower, &s, e->n_records, paths, n, scenes, err)
-                                          : fail_memory(err, n * N_EVALUATED, "simulations");
+                                          : fail_memory(err, n * N_SCENES, "simulations");
     free(paths);
     free(scenes);
     return status;
@@ -111,24 +105,25 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
 
 /* ---- all runs ---------------------------------------------------------------------------------------------------- */
 
-int evaluated_has(const Evaluations *e, const EvaluatedRun *run, EvaluatedCase which)
+int evaluated_has(const Evaluations *e, const EvaluatedRun *run, SceneKind which)
 {
-    return which < N_EVALUATED || (!e->level && !run->record->from_folder) ||
-           (which == EVALUATED_LINKS && e->has_links);
+    return !(SCENES[which].has & HAS_DEVICE) || (!e->level && !run->record->from_folder) ||
+           (which == SCENE_LINKS && e->has_links);
 }
 
-static int finds_device(const Evaluations *e, size_t i, EvaluatedCase which)
+static int finds_device(const Evaluations *e, size_t i, SceneKind which)
 {
-    return which >= N_EVALUATED && evaluated_has(e, &e->run[i], which) &&
+    return SCENES[which].has & HAS_DEVICE && evaluated_has(e, &e->run[i], which) &&
            (!e->level || i % e->n_levels == e->n_levels / 2);
 }
 
-static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
+static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
 {
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
-    for (; n < N_EVALUATED; n++)
-        task[n] = (SimTask){.kind = EVALUATION_CASES[n].kind, .x = x, .scene = i, .result = &run->result[n]};
+    for (SceneKind c = 0; c < N_SCENES; c++)
+        if (!(SCENES[c].has & HAS_DEVICE))
+            task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .result = &run->result[c]};
     run->error_known = e->is_estimated && !e->level;
     if (run->error_known && run->record->from_folder)
         task[n++] = (SimTask){.x = x, .scene = i, .level = 1, .parts = &run->finer};
@@ -140,15 +135,14 @@ static Status find_devices(Evaluations *e, const double x[], Err *err)
     const size_t n_runs = e->n_records * e->n_levels;
     DeviceSearch *search;
     size_t n = 0;
-    TRY_ROOM(search, n_runs * N_WITH_DEVICES, "devices", err);
+    TRY_ROOM(search, n_runs * N_SCENES, "devices", err);
     for (size_t i = 0; i < n_runs; i++)
-        for (EvaluatedCase c = N_EVALUATED; c < N_WITH_DEVICES; c++)
+        for (SceneKind c = 0; c < N_SCENES; c++)
             if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, c))
-                search[n++] = (DeviceSearch){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i};
+                search[n++] = (DeviceSearch){.kind = c, .x = x, .scene = i};
     const Status status = n > 0 ? devices_find(&e->tower, n, search, err) : STATUS_OK;
     for (size_t k = 0; k < n; k++)
-        e->run[search[k].scene].device[search[k].kind == SCENE_TMD ? EVALUATED_TMD : EVALUATED_LINKS] =
-            search[k].device;
+        e->run[search[k].scene].device[search[k].kind] = search[k].device;
     free(search);
     return status;
 }
@@ -163,44 +157,40 @@ static Status settle_links(Evaluations *e, Err *err)
         return STATUS_OK;
     TRY_ROOM(found, e->n_records, "links", err);
     for (size_t i = 0; i < n_runs; i++)
-        if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, EVALUATED_LINKS))
-            found[n++] = e->run[i].device[EVALUATED_LINKS].link_ns_m;
+        if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, SCENE_LINKS))
+            found[n++] = e->run[i].device[SCENE_LINKS].link_ns_m;
     sort_values(n, found);
     for (size_t i = 0; i < n_runs; i++)
-        e->run[i].device[EVALUATED_LINKS].link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
+        e->run[i].device[SCENE_LINKS].link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
     free(found);
     return STATUS_OK;
 }
 
-static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
+static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
 {
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
-    for (EvaluatedCase c = N_EVALUATED; c < N_WITH_DEVICES; c++)
-        if (evaluated_has(e, run, c))
-            task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind,
-                                  .x = x,
-                                  .scene = i,
-                                  .device = run->device[c],
-                                  .result = &run->result[c]};
+    for (SceneKind c = 0; c < N_SCENES; c++)
+        if (SCENES[c].has & HAS_DEVICE && evaluated_has(e, run, c))
+            task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .device = run->device[c], .result = &run->result[c]};
     return n;
 }
 
-static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES])
+static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
 {
     task[0] = (SimTask){.x = x, .scene = i, .n_parts = e->tower.n_parts, .summary = &e->run[i].replicates};
     return e->replicates > 0;
 }
 
-typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[N_WITH_DEVICES]);
+typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES]);
 
 static Status run_round(Evaluations *e, MakeTasks *make, const double x[], EvaluationsTold *told, Err *err)
 {
     const size_t n = e->n_records * e->n_levels;
-    SimTask *tasks = calloc(n * N_WITH_DEVICES, sizeof *tasks);
+    SimTask *tasks = calloc(n * N_SCENES, sizeof *tasks);
     size_t n_tasks = 0;
     if (!tasks)
-        return fail_memory(err, n * N_WITH_DEVICES, "simulations");
+        return fail_memory(err, n * N_SCENES, "simulations");
     for (size_t i = 0; i < n; i++)
         if (e->record[i / e->n_levels].readable == STATUS_OK)
             n_tasks += make(e, i, x, tasks + n_tasks);
@@ -270,14 +260,14 @@ Status ida_levels(const char *option, const char *text, double levels[IDA_LEVELS
     return STATUS_OK;
 }
 
-double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k)
+double ida_value(const EvaluatedRun *run, SceneKind which, int k)
 {
     const SimResult *r = &run->result[which];
     const double value = measure_value(r, k);
     return r->outcome == RUN_OK && isfinite(value) ? value : INFINITY;
 }
 
-double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p)
+double ida_fractile(const Evaluations *e, size_t l, SceneKind which, int k, double p)
 {
     double *sorted = malloc(e->n_records * sizeof *sorted), value = NAN;
     size_t n = 0;
@@ -296,7 +286,7 @@ double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, 
     return value;
 }
 
-Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const Limit *limit, size_t n_at[],
+Fragility ida_fragility(const Evaluations *e, SceneKind which, int k, const Limit *limit, size_t n_at[],
                         size_t exceeded[])
 {
     for (size_t l = 0; l < e->n_levels; l++) {
@@ -313,7 +303,7 @@ Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const 
     return fragility_fit(e->n_levels, e->level, n_at, exceeded);
 }
 
-AnnualLoss ida_annual_loss(const Evaluations *e, EvaluatedCase which, size_t n_hazard, const double hazard[])
+AnnualLoss ida_annual_loss(const Evaluations *e, SceneKind which, size_t n_hazard, const double hazard[])
 {
     double loss[IDA_LEVELS_MAX], squares = 0;
     const double n = (double)e->n_read;

@@ -1,6 +1,6 @@
 /* analysis/evaluations.h -- one design under many ground motions, at one or several intensities each.
  *
- *   record r, intensity l: every case of EVALUATION_CASES, in run[r n_levels + l].result
+ *   record r, intensity l: every case (sim/cases.h) that evaluated_has, in run[r n_levels + l].result
  *
  * Life cycle  evaluations_add, evaluations_add_suite ... -> evaluations_read -> evaluations_run -> evaluations_free
  * Threads     tasks of a queue (evaluate/queue.h), threads as search.threads says or ranks of a cluster; the results
@@ -18,21 +18,6 @@
 #include "evaluate/limits.h"
 #include "evaluate/tower.h"
 
-typedef enum {
-    EVALUATED_DESIGN,
-    EVALUATED_RIGID,
-    EVALUATED_NO_CORE,
-    N_EVALUATED, /* everywhere */
-    EVALUATED_TMD = N_EVALUATED,
-    EVALUATED_LINKS,
-    N_WITH_DEVICES /* of records that were named, at one intensity */
-} EvaluatedCase;
-
-extern const struct EvaluationCase {
-    SceneKind kind;
-    const char *word, *key; /* for people; in JSON and CSV */
-} EVALUATION_CASES[N_WITH_DEVICES];
-
 typedef struct {
     char *path;
     int from_folder; /* where it cannot be read it is left out with the reason */
@@ -43,8 +28,8 @@ typedef struct {
 typedef struct {
     const EvaluatedRecord *record;
     double pga_g, scale, stretch;
-    SimResult result[N_WITH_DEVICES];
-    LinearDevice device[N_WITH_DEVICES];      /* found under this record (analysis/device.h) */
+    SimResult result[N_SCENES];
+    LinearDevice device[N_SCENES];            /* found under this record (evaluate/device.h) */
     ReplicateSummary replicates;              /* of the design, where there are some */
     Measured finer;                           /* the design with twice the steps, of records of a folder */
     double error[N_MEASURES], sd[N_MEASURES]; /* of the design (analysis/estimate.h), where error_known */
@@ -66,7 +51,8 @@ typedef struct {
     Problem tower;     /* a scene for every run */
 } Evaluations;
 
-int evaluated_has(const Evaluations *e, const EvaluatedRun *run, EvaluatedCase which);
+/* Cases without a device have been simulated everywhere, others under records that were named, at one intensity. */
+int evaluated_has(const Evaluations *e, const EvaluatedRun *run, SceneKind which);
 
 Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err);
 
@@ -96,18 +82,18 @@ enum { IDA_LEVELS_MAX = 1000 };
 Status ida_levels(const char *option, const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err);
 
 /* Measure k of a run; INFINITY: it failed. */
-double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k);
+double ida_value(const EvaluatedRun *run, SceneKind which, int k);
 
 enum { IDA_FRACTILES = 3 }; /* that are shown */
 static const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
 
 /* Of measure k over the records at intensity l; INFINITY: too many failed. */
-double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p);
+double ida_fractile(const Evaluations *e, size_t l, SceneKind which, int k, double p);
 
 /* Of measure k beyond the limit: the curve, and n_at and exceeded (n_levels) of which it is. A simulation that failed
  * has exceeded it, one that does not have k is left out. */
-Fragility ida_fragility(const Evaluations *e, EvaluatedCase which, int k, const Limit *limit, size_t n_at[],
+Fragility ida_fragility(const Evaluations *e, SceneKind which, int k, const Limit *limit, size_t n_at[],
                         size_t exceeded[]);
 
 /* Mean over the records, in which it is linear; a simulation that failed has lost the whole building. */
-AnnualLoss ida_annual_loss(const Evaluations *e, EvaluatedCase which, size_t n_hazard, const double hazard[]);
+AnnualLoss ida_annual_loss(const Evaluations *e, SceneKind which, size_t n_hazard, const double hazard[]);

@@ -2,6 +2,7 @@
 
 #include "api/named_values.h"
 #include "base/linalg.h"
+#include "evaluate/device.h"
 #include "evaluate/tower.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
@@ -105,7 +106,7 @@ void imtet_scene_free(imtet_scene **scene)
 /* -- what is asked of one tower, into a result --------------------------------------------------------------------- */
 
 typedef struct {
-    imtet_scene_kind asked;
+    const char *asked;
     const double *x;
     size_t n;
     double every_s;
@@ -118,12 +119,17 @@ typedef Status (*AnswerFn)(const Problem *p, const Question *q, Err *err);
 
 static Status check_kind(Question *q, const SimOptions *o, Err *err)
 {
-    static const SceneKind KINDS[] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID};
-    if ((unsigned)q->asked >= N_OF(KINDS))
-        return misused(err, "kind: %d is none of IMTET_IMPACTS, IMTET_ALONE, IMTET_RIGID", (int)q->asked);
-    q->kind = KINDS[q->asked];
-    if (o->engine != ENGINE_FAST && (q->kind == SCENE_RIGID || q->is_history))
-        return misused(err, "IMTET_RIGID and histories are of sim.engine = fast alone");
+    const char *keys[N_SCENES];
+    if (!q->asked)
+        return misused(err, "kind is NULL");
+    for (SceneKind k = 0; k < N_SCENES; k++)
+        keys[k] = SCENES[k].key;
+    for (q->kind = 0; q->kind < N_SCENES && strcmp(keys[q->kind], q->asked) != 0;)
+        q->kind++;
+    if (q->kind == N_SCENES)
+        return fail_no_word(err, STATUS_USAGE, "kind", q->asked, "case", keys, N_SCENES);
+    if (o->engine != ENGINE_FAST && (SCENES[q->kind].has & IS_JOINED || q->is_history))
+        return misused(err, "rigid and histories are of sim.engine = fast alone");
     return q->every_s == 0 || (q->every_s >= 1e-5 && q->every_s <= 1e6)
                ? STATUS_OK
                : misused(err, "every_s: %g is not between 1e-5 and 1e6 s, and not 0", q->every_s);
@@ -220,16 +226,34 @@ static Status describe(const Problem *p, const Question *q, Err *err)
 
 imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error)
 {
-    return ask(scene, describe, (Question){.asked = IMTET_ALONE}, out, error);
+    return ask(scene, describe, (Question){.asked = SCENES[SCENE_NO_CORE].key}, out, error);
 }
 
 /* -- one response -------------------------------------------------------------------------------------------------- */
+
+/* The best one in the place of the gaps, which the result then has too. */
+static Status find_device(const Problem *p, const Question *q, LinearDevice *device, Err *err)
+{
+    DeviceSearch search = {.kind = q->kind, .x = q->x};
+    if (SCENES[q->kind].has & HAS_DEVICE)
+        TRY(devices_find(p, 1, &search, err));
+    *device = search.device;
+    if (q->kind == SCENE_TMD)
+        result_numbers(q->result, "tmd_hz", 1, &device->tmd_hz);
+    if (q->kind == SCENE_TMD)
+        result_numbers(q->result, "tmd_damping", 1, &device->tmd_damping);
+    if (q->kind == SCENE_LINKS)
+        result_numbers(q->result, "link_ns_m", 1, &device->link_ns_m);
+    return STATUS_OK;
+}
 
 static Status simulate(const Problem *p, const Question *q, Err *err)
 {
     SimResult s;
     imtet_result *r = q->result;
-    TRY(tower_simulate(p, 1, &(SimTask){.kind = q->kind, .x = q->x}, &s, err));
+    LinearDevice device;
+    TRY(find_device(p, q, &device, err));
+    TRY(tower_simulate(p, 1, &(SimTask){.kind = q->kind, .x = q->x, .device = device}, &s, err));
     const size_t n = (size_t)s.n_floors;
     for (int k = 0; k < MEASURES_LISTED; k++)
         result_numbers(r, measure(k)->name, 1, (double[]){measure_value(&s, k)});
@@ -243,8 +267,8 @@ static Status simulate(const Problem *p, const Question *q, Err *err)
     return STATUS_OK;
 }
 
-imtet_status imtet_scene_simulate(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n,
-                                  imtet_result **out, imtet_error *error)
+imtet_status imtet_scene_simulate(imtet_scene *scene, const char *kind, const double x[], size_t n, imtet_result **out,
+                                  imtet_error *error)
 {
     return ask(scene, simulate, (Question){.asked = kind, .x = x, .n = n}, out, error);
 }
@@ -276,14 +300,16 @@ static void add_history(imtet_result *r, const Track *t)
 static Status history(const Problem *p, const Question *q, Err *err)
 {
     Track t;
-    TRY(track_run(tower_record(tower_of(p), 0)->scene, q->kind, q->x, q->every_s, &t, err));
+    LinearDevice device;
+    TRY(find_device(p, q, &device, err));
+    TRY(track_run(tower_record(tower_of(p), 0)->scene, q->kind, q->x, &device, q->every_s, &t, err));
     add_history(q->result, &t);
     result_text(q->result, "outcome", outcome_word(measure_outcome(t.outcome)));
     track_free(&t);
     return STATUS_OK;
 }
 
-imtet_status imtet_scene_history(imtet_scene *scene, imtet_scene_kind kind, const double x[], size_t n, double every_s,
+imtet_status imtet_scene_history(imtet_scene *scene, const char *kind, const double x[], size_t n, double every_s,
                                  imtet_result **out, imtet_error *error)
 {
     return ask(scene, history, (Question){.asked = kind, .x = x, .n = n, .every_s = every_s, .is_history = 1}, out,

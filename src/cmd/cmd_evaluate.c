@@ -31,7 +31,7 @@ typedef struct {
 
 /* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
 
-enum { IDA_SHOWN = 3 };
+enum { IDA_SHOWN = 3, IDA_CASES = SCENE_RIGID + 1 }; /* objectives; cases without a device, which stand first */
 static const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
 
 static int is_spectral(const Evaluations *e)
@@ -41,10 +41,10 @@ static int is_spectral(const Evaluations *e)
 
 static void ida_print(const Evaluations *e, const MeasureOrder *order)
 {
-    for (int c = 0; c < N_EVALUATED; c++) {
+    for (int c = 0; c < IDA_CASES; c++) {
         json_t *table = json_array();
-        printf(e->n_read == 1 ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n",
-               EVALUATION_CASES[c].word, e->n_read);
+        printf(e->n_read == 1 ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", SCENES[c].words,
+               e->n_read);
         for (size_t l = 0; l < e->n_levels; l++) {
             json_t *row = figures_row(table);
             json_object_set_new(row, e->intensity, json_number(e->level[l]));
@@ -56,7 +56,7 @@ static void ida_print(const Evaluations *e, const MeasureOrder *order)
     }
 }
 
-static json_t *json_fractiles(const Evaluations *e, EvaluatedCase which, double p)
+static json_t *json_fractiles(const Evaluations *e, SceneKind which, double p)
 {
     json_t *o = json_object();
     for (int k = 0; k < MEASURES_LISTED; k++) {
@@ -73,11 +73,11 @@ static json_t *ida_json(const Evaluations *e)
     static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
     json_t *o = json_object();
     json_object_set_new(o, e->intensity, json_numbers(e->n_levels, e->level));
-    for (int c = 0; c < N_EVALUATED; c++) {
+    for (int c = 0; c < IDA_CASES; c++) {
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
             json_object_set_new(one, KEYS[i], json_fractiles(e, c, IDA_FRACTILE[i]));
-        json_object_set_new(o, EVALUATION_CASES[c].key, one);
+        json_object_set_new(o, SCENES[c].key, one);
     }
     return o;
 }
@@ -94,9 +94,8 @@ static void write_block(FILE *script, const Picture *p, size_t r, int which, int
     for (size_t l = 0; l < e->n_levels; l++) {
         fprintf(script, "%.6g ", e->level[l]);
         for (int k = 0; k < MIN_OF(p->order->n_obj, IDA_SHOWN); k++)
-            gnuplot_number(script, fractile < 0
-                                       ? ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, p->order->of[k])
-                                       : ida_fractile(e, l, which, p->order->of[k], IDA_FRACTILE[fractile]));
+            gnuplot_number(script, fractile < 0 ? ida_value(&e->run[r * e->n_levels + l], SCENE_IMPACT, p->order->of[k])
+                                                : ida_fractile(e, l, which, p->order->of[k], IDA_FRACTILE[fractile]));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
@@ -110,7 +109,7 @@ static void write_blocks(FILE *script, const Picture *p)
             fprintf(script, "$R%zu << EOD\n", r);
             write_block(script, p, r, 0, -1);
         }
-    for (int c = 0; c < N_EVALUATED; c++)
+    for (int c = 0; c < IDA_CASES; c++)
         for (int i = 0; i < IDA_FRACTILES; i++) {
             fprintf(script, "$F%d%d << EOD\n", c, i);
             write_block(script, p, 0, c, i);
@@ -119,22 +118,22 @@ static void write_blocks(FILE *script, const Picture *p)
 
 static void write_panel(FILE *script, const Picture *p, int k)
 {
-    static const char *const COLOURS[N_EVALUATED] = {"#0072b2", "#8a6d00", "#d55e00"};
+    static const char *const COLOURS[IDA_CASES] = {"#0072b2", "#d55e00", "#8a6d00"};
     const Evaluations *e = p->e;
     const Measure *of = measure(p->order->of[k]);
     fprintf(script, "set xlabel '%s [%s]'\nset %s\nplot ", of->what, of->unit, k == 0 ? "key" : "key off");
     for (size_t r = 0; r < e->n_records; r++)
         if (e->record[r].readable == STATUS_OK)
             fprintf(script, "$R%zu using %d:1 with lines lc '#b8c8d8' notitle, ", r, k + 2);
-    for (int c = 0; c < N_EVALUATED; c++)
+    for (int c = 0; c < IDA_CASES; c++)
         for (int i = 0; i < IDA_FRACTILES; i++) {
             fprintf(script, "$F%d%d using %d:1 with lines lc '%s' %s ", c, i, k + 2, COLOURS[c],
                     i == 1 ? "lw 2.5" : "lw 1.2 dt (6,4)");
             if (i == 1)
-                fprintf(script, "title '%s: median, 16 and 84 %%'", EVALUATION_CASES[c].word);
+                fprintf(script, "title '%s: median, 16 and 84 %%'", SCENES[c].words);
             else
                 fputs("notitle", script);
-            fputs(c + 1 < N_EVALUATED || i + 1 < IDA_FRACTILES ? ", " : "\n", script);
+            fputs(c + 1 < IDA_CASES || i + 1 < IDA_FRACTILES ? ", " : "\n", script);
         }
 }
 
@@ -162,6 +161,13 @@ static double level_of(const Evaluations *e, const EvaluatedRun *run)
     return e->level[(size_t)(run - e->run) % e->n_levels];
 }
 
+static json_t *json_put_device(json_t *o, SceneKind kind, const LinearDevice *d)
+{
+    if (kind == SCENE_TMD)
+        json_put(o, "tmd_hz=%g tmd_damping=%g", d->tmd_hz, d->tmd_damping);
+    return kind == SCENE_LINKS ? json_put(o, "link_ns_m=%g", d->link_ns_m) : o;
+}
+
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     const MeasureOrder *order = tower_measures(tower_of(&e->tower));
@@ -169,17 +175,12 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
         json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
     if (is_spectral(e))
         json_put(o, "sa_g=%g", level_of(e, run));
-    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
+    for (SceneKind c = 0; c < N_SCENES; c++)
         if (evaluated_has(e, run, c))
-            json_object_set_new(o, EVALUATION_CASES[c].key,
-                                json_result(order, EVALUATION_CASES[c].kind, &run->result[c]));
-    if (evaluated_has(e, run, EVALUATED_TMD))
-        json_put(json_object_get(o, "tmd"), "tmd_hz=%g tmd_damping=%g", run->device[EVALUATED_TMD].tmd_hz,
-                 run->device[EVALUATED_TMD].tmd_damping);
-    if (evaluated_has(e, run, EVALUATED_LINKS))
-        json_put(json_object_get(o, "links"), "link_ns_m=%g", run->device[EVALUATED_LINKS].link_ns_m);
+            json_object_set_new(o, SCENES[c].key,
+                                json_put_device(json_result(order, c, &run->result[c]), c, &run->device[c]));
     if (run->error_known)
-        put_errors(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), run->error, run->sd);
+        put_errors(json_object_get(o, SCENES[SCENE_IMPACT].key), run->error, run->sd);
     if (e->replicates > 0)
         json_put(o, "replicates=%p", json_replicates(order, &run->replicates));
     return o;
@@ -207,12 +208,11 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
 }
 
 /* Who it is of, then the motion: spectral acceleration, where that is the intensity, peak, scale, stretch. */
-static json_t *begin_row(json_t *table, const Evaluations *e, const char *record, EvaluatedCase which,
-                         const char *outcome, const double motion[4])
+static json_t *begin_row(json_t *table, const Evaluations *e, const char *record, SceneKind which, const char *outcome,
+                         const double motion[4])
 {
     static const char *const KEYS[] = {"sa_g", "pga_g", "scale", "stretch"};
-    json_t *row =
-        json_put(figures_row(table), "record=%s scene=%s outcome=%s", record, EVALUATION_CASES[which].key, outcome);
+    json_t *row = json_put(figures_row(table), "record=%s scene=%s outcome=%s", record, SCENES[which].key, outcome);
     for (int i = !is_spectral(e); i < 4; i++)
         json_object_set_new(row, KEYS[i], json_number(motion[i]));
     return row;
@@ -222,7 +222,7 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
 {
     const EvaluatedRun *run = &e->run[i];
     const MeasureOrder *order = tower_measures(tower_of(&e->tower));
-    for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++) {
+    for (SceneKind c = 0; c < N_SCENES; c++) {
         if (run->record->readable != STATUS_OK || !evaluated_has(e, run, c))
             continue;
         const Measured m = measured(&run->result[c]);
@@ -231,11 +231,11 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
         json_t *row = begin_row(table, e, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
         put_measures(row, order, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
-            put_replicates(row, order, c == EVALUATED_DESIGN ? &run->replicates : NULL);
+            put_replicates(row, order, c == SCENE_IMPACT ? &run->replicates : NULL);
     }
 }
 
-static void add_fractiles(json_t *table, const Evaluations *e, size_t level, EvaluatedCase which)
+static void add_fractiles(json_t *table, const Evaluations *e, size_t level, SceneKind which)
 {
     double values[N_MEASURES];
     const double at = e->level[level], motion[] = {at, is_spectral(e) ? NAN : at, NAN, NAN};
@@ -252,7 +252,7 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         add_rows(table, e, i);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
-        for (int c = 0; c < N_EVALUATED; c++)
+        for (int c = 0; c < IDA_CASES; c++)
             add_fractiles(table, e, l, c);
     return figures_csv(table, path, err);
 }
@@ -271,14 +271,13 @@ static void print_motion(const Evaluations *e, size_t i)
 /* name: of the record, empty where there is one. With the device that was found for it. */
 static void add_case(json_t *table, const char *name, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
 {
-    char label[400], device[DEVICE_TEXT_MAX] = "";
-    if (c == EVALUATED_TMD || c == EVALUATED_LINKS)
-        baseline_device_text(c == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, &run->device[c], device);
-    snprintf(label, sizeof label, "%s%s%s%s%s%s", name, *name ? "  " : "", EVALUATION_CASES[c].word,
-             *device ? " (" : "", device, *device ? ")" : "");
-    const int is_known = c == EVALUATED_DESIGN && run->error_known;
+    char label[400], device[DEVICE_TEXT_MAX];
+    case_device_text((SceneKind)c, &run->device[c], device);
+    snprintf(label, sizeof label, "%s%s%s%s%s%s", name, *name ? "  " : "", SCENES[c].words, *device ? " (" : "", device,
+             *device ? ")" : "");
+    const int is_known = c == SCENE_IMPACT && run->error_known;
     figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
-    if (c == EVALUATED_DESIGN && run->replicates.n_replicates > 0)
+    if (c == SCENE_IMPACT && run->replicates.n_replicates > 0)
         figures_replicates(table, order, &run->replicates, is_known ? run->error : NULL);
 }
 
@@ -291,7 +290,7 @@ static void print_records(const Evaluations *e, const MeasureOrder *order)
             continue;
         if (!e->record[i].from_folder)
             print_motion(e, i);
-        for (EvaluatedCase c = 0; c < N_WITH_DEVICES; c++)
+        for (SceneKind c = 0; c < N_SCENES; c++)
             if (evaluated_has(e, &e->run[i], c))
                 add_case(table, e->n_records > 1 ? evaluated_name(&e->record[i]) : "", order, &e->run[i], c);
     }
@@ -446,7 +445,7 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
     TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         if (e->run[i].error_known)
-            known_raise(c->known, &e->run[i].result[EVALUATED_DESIGN], e->run[i].sd);
+            known_raise(c->known, &e->run[i].result[SCENE_IMPACT], e->run[i].sd);
     return give(args, c, e, err);
 }
 

@@ -86,14 +86,14 @@ static void explain_objectives(const Schema *schema, const char *objectives)
         puts(missing);
 }
 
-static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_BASELINES])
+static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_SCENES])
 {
-    for (int k = 0; k < N_BASELINES; k++) {
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
         const double *value = baseline[k].value;
         double natural[OBJECTIVES_MAX], extra[N_MEASURES];
         for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
             *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
-        figures_design(table, baseline_words(k), 0, schema, natural, NULL, NULL, extra);
+        figures_design(table, SCENES[k].words, 0, schema, natural, NULL, NULL, extra);
     }
 }
 
@@ -221,12 +221,12 @@ static Status report_json(const Run *run, const StudySummary *summary, Err *err)
         return run_why_empty(run, err);
     for (size_t k = 0; k < schema->n_obj; k++)
         json_object_set_new(best, schema_objective(schema, k)->name, json_of_design(run, run_best(run, k)));
-    for (int b = 0; b < N_BASELINES && summary->has_baselines; b++) {
+    for (int b = SCENE_IMPACT + 1; b < N_SCENES && summary->has_baselines; b++) {
         json_t *o = json_object();
         for (size_t k = 0; k < schema->n_obj; k++)
             json_object_set_new(o, schema_objective(schema, k)->name,
                                 json_number(summary->baseline[b].value[schema->order.of[k]]));
-        json_object_set_new(baselines, baseline_key(b), o);
+        json_object_set_new(baselines, SCENES[b].key, o);
     }
     return show_json(json_of("run=%s stopped=%s simulated=%zu failed=%zu front=%zu seconds=%g knee=%p best=%p "
                              "baselines=%p review=%p",

@@ -46,7 +46,7 @@ Status demands_write(const Evaluations *e, const char *path, Err *err)
     json_t *table = json_array();
     size_t n = 0;
     for (size_t i = 0; i < e->n_records; i++) {
-        const SimResult *r = &e->run[i].result[EVALUATED_DESIGN];
+        const SimResult *r = &e->run[i].result[SCENE_IMPACT];
         if (e->record[i].readable != STATUS_OK)
             continue;
         if (r->outcome != RUN_OK) {

@@ -155,11 +155,12 @@ static void add_judged(const Dossier *o, json_t *table)
     const Schema *schema = &o->r->run->schema;
     double error[OBJECTIVES_MAX];
     run_likely(o->r->run, o->r->chosen, error);
-    for (int i = -1; i < N_BASELINES; i++) {
-        json_t *row = json_put(figures_row(table), "=%s", i < 0 ? "this design" : baseline_words(i));
+    for (int i = 0; i < N_SCENES; i++) {
+        json_t *row = json_put(figures_row(table), "=%s", i == SCENE_IMPACT ? "this design" : SCENES[i].words);
         for (size_t k = 0; k < schema->n_obj; k++)
             put_named(row, words_of_objective(schema, k),
-                      i < 0 ? run_f(o->r->run, o->r->chosen)[k] : o->d->baseline[i].value[schema->order.of[k]],
+                      i == SCENE_IMPACT ? run_f(o->r->run, o->r->chosen)[k]
+                                        : o->d->baseline[i].value[schema->order.of[k]],
                       i < 0 ? error[k] : NAN, NAN);
         if (i < 0 && o->n_records > 1)
             add_standard_errors(o, table);
@@ -169,8 +170,8 @@ static void add_judged(const Dossier *o, json_t *table)
 static void add_single(const Dossier *o, json_t *table)
 {
     add_response(table, "this design", &o->d->result[SCENE_IMPACT], o->d->error);
-    for (int k = 0; k < N_BASELINES; k++)
-        add_response(table, baseline_words(k), &o->d->baseline[k].first, NULL);
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
+        add_response(table, SCENES[k].words, &o->d->baseline[k].first, NULL);
 }
 
 static void write_summary(const Dossier *o)
@@ -519,7 +520,7 @@ static void write_records(const Dossier *o)
 static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exceeded)
 {
     static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
-    static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_NO_CORE};
+    static const SceneKind CASES[] = {SCENE_IMPACT, SCENE_NO_CORE};
     json_t *row = json_put(figures_row(table), "PGA [g]=%g", e->level[l]);
     for (size_t k = 0; k < N_OF(SHOWN); k++)
         for (size_t c = 0; c < N_OF(CASES); c++) {
@@ -530,7 +531,7 @@ static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exc
         }
     for (size_t r = 0; r < e->n_records; r++)
         *exceeded += e->record[r].readable == STATUS_OK &&
-                     ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, MEASURE_DRIFT_RATIO) > DRIFT_LIMIT;
+                     ida_value(&e->run[r * e->n_levels + l], SCENE_IMPACT, MEASURE_DRIFT_RATIO) > DRIFT_LIMIT;
 }
 
 static void write_intensities(const Dossier *o, Evaluations *e)

@@ -4,7 +4,7 @@
 #include "cmd/show.h"
 #include "report/gnuplot.h"
 
-static const EvaluatedCase CASES[] = {EVALUATED_DESIGN, EVALUATED_RIGID, EVALUATED_NO_CORE, EVALUATED_LINKS};
+static const SceneKind CASES[] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID, SCENE_LINKS};
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
 static const double YEARS = 50;
 static const double CUT_OFF_NOTICEABLE = 0.01; /* of the probability where a hazard curve begins */
@@ -94,14 +94,14 @@ void fragilities_free(Fragilities *f)
 typedef struct {
     const Limit *limit;
     const char *name;
-    EvaluatedCase which;
+    SceneKind which;
     size_t n_at[IDA_LEVELS_MAX], exceeded[IDA_LEVELS_MAX], n, hits;
     Fragility fit;
     double low, high; /* median, 95 % */
     double rate;      /* per year; NAN: not known */
 } Curve;
 
-static void find_curve(const Fragilities *f, const Evaluations *e, size_t i, EvaluatedCase which, Curve *c)
+static void find_curve(const Fragilities *f, const Evaluations *e, size_t i, SceneKind which, Curve *c)
 {
     const Limit *limit = &f->limits.limit[i];
     *c = (Curve){.limit = limit, .name = schema_objective(f->schema, limit->result)->name, .which = which};
@@ -167,7 +167,7 @@ static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, 
 {
     char text[4 * FIGURE_MAX], column[64];
     snprintf(text, sizeof text, "%s%s%g", c->name, relation(c), c->limit->bound);
-    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, EVALUATION_CASES[c->which].word);
+    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, SCENES[c->which].words);
     median_words(c, text);
     snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
     json_object_set_new(row, column, json_string(text));
@@ -201,15 +201,15 @@ static void add_object(const Fragilities *f, const Evaluations *e, const Curve *
 {
     const double range[] = {c->low, c->high};
     json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g",
-                        c->name, relation(c), c->limit->bound, EVALUATION_CASES[c->which].key, c->fit.median,
+                        c->name, relation(c), c->limit->bound, SCENES[c->which].key, c->fit.median,
                         json_numbers(2, range), c->fit.beta, c->fit.sd_ln_median, c->fit.sd_beta);
     json_put(o, "median_between=%p simulations=%p exceeded=%p", json_numbers(2, c->fit.between),
              counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
     if (f->hazard)
         json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
                  -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
-    if (c->which == EVALUATED_LINKS)
-        json_put(o, "link_ns_m=%g", e->run[0].device[EVALUATED_LINKS].link_ns_m);
+    if (c->which == SCENE_LINKS)
+        json_put(o, "link_ns_m=%g", e->run[0].device[SCENE_LINKS].link_ns_m);
     json_array_append_new(list, o);
 }
 
@@ -244,8 +244,8 @@ json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people
     json_t *list = json_array();
     for (size_t k = 0; k < N_OF(CASES); k++) {
         const AnnualLoss y = ida_annual_loss(e, CASES[k], f->n_hazard, f->hazard);
-        const struct EvaluationCase *scene = &EVALUATION_CASES[CASES[k]];
-        json_array_append_new(list, describe_loss(f, e, for_people ? scene->word : scene->key, &y));
+        const SceneCase *scene = &SCENES[CASES[k]];
+        json_array_append_new(list, describe_loss(f, e, for_people ? scene->words : scene->key, &y));
     }
     return list;
 }
@@ -259,7 +259,7 @@ typedef struct {
 
 static size_t number_of(const Fragilities *f, const Curve *c)
 {
-    return (size_t)(c->limit - f->limits.limit) * N_WITH_DEVICES + c->which;
+    return (size_t)(c->limit - f->limits.limit) * N_SCENES + c->which;
 }
 
 /* Intensity and share that exceeded it. */
@@ -277,7 +277,7 @@ static void write_block(const Fragilities *f, const Evaluations *e, const Curve 
 /* Its panel, where it is the first, shares and curve. */
 static void write_curve(const Fragilities *f, const Evaluations *e, const Curve *c, void *script)
 {
-    static const char *const COLOURS[N_WITH_DEVICES] = {"#0072b2", "#8a6d00", "#d55e00", "", "#009e73"};
+    static const char *const COLOURS[N_SCENES] = {"#0072b2", "#d55e00", "#8a6d00", "", "#009e73"};
     const Fragility *fit = &c->fit;
     (void)e;
     if (c->which == CASES[0])
@@ -288,7 +288,7 @@ static void write_curve(const Fragilities *f, const Evaluations *e, const Curve 
         fputs("NaN", script);
     else
         fprintf(script, "norm(log(x / %.9g) / %.9g)", fit->median, fit->beta);
-    fprintf(script, " with lines lw 2.5 lc '%s' title '%s'%s", COLOURS[c->which], EVALUATION_CASES[c->which].word,
+    fprintf(script, " with lines lw 2.5 lc '%s' title '%s'%s", COLOURS[c->which], SCENES[c->which].words,
             c->which == CASES[N_OF(CASES) - 1] ? "\n" : ", ");
 }
 

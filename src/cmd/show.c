@@ -383,19 +383,13 @@ static json_t *json_damage(const SimResult *r)
 
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r)
 {
-    static const char *const SCENES[N_SCENES] = {[SCENE_IMPACT] = "impact",
-                                                 [SCENE_NO_CORE] = "no_core",
-                                                 [SCENE_RIGID] = "rigid",
-                                                 [SCENE_TMD] = "tmd",
-                                                 [SCENE_LINKS] = "links"};
-    const int has_device = kind == SCENE_TMD || kind == SCENE_LINKS;
-    const unsigned has = (r->forces_known ? IF_FORCES : 0u) |
-                         (kind != SCENE_NO_CORE && kind != SCENE_TMD ? IF_CORE : 0u) |
-                         (kind == SCENE_IMPACT ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
-                         (r->forces.buckling_known ? IF_BUCKLING : 0u) | (has_device ? IF_DEVICE : 0u) |
+    const unsigned scene = SCENES[kind].has;
+    const unsigned has = (r->forces_known ? IF_FORCES : 0u) | (scene & HAS_CORE ? IF_CORE : 0u) |
+                         (scene & HAS_GAPS ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
+                         (r->forces.buckling_known ? IF_BUCKLING : 0u) | (scene & HAS_DEVICE ? IF_DEVICE : 0u) |
                          (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
-    json_t *o =
-        json_of("scene=%s outcome=%s reason=%s", SCENES[kind], outcome_word(measure_outcome(r->outcome)), r->reason);
+    json_t *o = json_of("scene=%s outcome=%s reason=%s", SCENES[kind].key, outcome_word(measure_outcome(r->outcome)),
+                        r->reason);
     put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
@@ -461,7 +455,7 @@ void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSumma
     put_measures(row, order, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
-void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, EvaluatedCase c, int k,
+void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, SceneKind c, int k,
                    double factor)
 {
     char value[IDA_FRACTILES][FIGURE_MAX];
@@ -601,7 +595,7 @@ static void print_better(FILE *out, const char *verb, const Schema *schema, doub
         fprintf(out, "%snothing", verb);
 }
 
-void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_BASELINES])
+void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_SCENES])
 {
     double error[OBJECTIVES_MAX];
     char device[DEVICE_TEXT_MAX], has[PROTECTION_MAX];
@@ -610,9 +604,9 @@ void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baselin
     const double *natural = run_f(run, row);
     run_likely(run, row, error);
     design_of(&schema->design, run_x(run, row), &design);
-    for (int k = 0; k < N_BASELINES; k++) {
-        baseline_device_text(k, &baseline[k].device, device);
-        fprintf(out, "against %s%s%s%s: with %s ", baseline_words(k), *device ? " (" : "", device, *device ? ")" : "",
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
+        case_device_text(k, &baseline[k].device, device);
+        fprintf(out, "against %s%s%s%s: with %s ", SCENES[k].words, *device ? " (" : "", device, *device ? ")" : "",
                 design_protection(&schema->design, &design, has));
         print_better(out, "better in ", schema, 1, natural, error, &baseline[k]);
         print_better(out, "; worse in ", schema, -1, natural, error, &baseline[k]);

@@ -52,7 +52,7 @@ json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r);
 void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r);
 
 /* "median (16 % to 84 %)" of measure k at an intensity, times factor; of one record its value. */
-void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, EvaluatedCase c, int k,
+void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, SceneKind c, int k,
                    double factor);
 
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling; lines of what
@@ -85,7 +85,7 @@ json_t *json_review(const FrontReview *r);
 
 /* "against viscous links (...): with impacts better in ...; worse in ..." by more than a thousandth and than the likely
  * errors; of the design in that row. */
-void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_BASELINES]);
+void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_SCENES]);
 
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);

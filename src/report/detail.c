@@ -8,9 +8,8 @@
 static const double QUIET = 0.02; /* of the peak displacement */
 
 /* Under the first record; the baselines under all of them too. */
-static Status simulate(const Problem *p, const double x[], BaselineKind last, Detail *d, Err *err)
+static Status simulate(const Problem *p, const double x[], int with_devices, Detail *d, Err *err)
 {
-    static const SceneKind SCENES[N_BASELINES] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_TMD, SCENE_LINKS};
     const SimTask task = {.kind = SCENE_IMPACT, .x = x};
     double sd[N_MEASURES];
     TRY(tower_simulate(p, 1, &task, &d->result[SCENE_IMPACT], err));
@@ -20,9 +19,9 @@ static Status simulate(const Problem *p, const double x[], BaselineKind last, De
         TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, sd, err));
     for (int k = 0; k < N_MEASURES; k++)
         d->error[k] = fmax(d->error[k], sd[k]); /* what is known of both */
-    TRY(baselines_find(p, x, last, d->baseline, err));
-    for (int k = 0; k < N_BASELINES; k++)
-        d->result[SCENES[k]] = d->baseline[k].first;
+    TRY(baselines_find(p, x, with_devices, d->baseline, err));
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
+        d->result[k] = d->baseline[k].first;
     return STATUS_OK;
 }
 
@@ -123,10 +122,10 @@ static void cut_quiet_end(Detail *d)
 
 static Status take_histories(const Scenario *w, const double x[], Detail *d, Err *err)
 {
-    static const SceneKind SCENES[2] = {SCENE_IMPACT, SCENE_NO_CORE};
+    static const SceneKind SHOWN[2] = {SCENE_IMPACT, SCENE_NO_CORE};
     TRY_ROOM(d->spectrum, 2, "spectra", err);
     for (int i = 0; i < 2; i++)
-        TRY(history_run(w, SCENES[i], x, d->floor, &d->history[i], err));
+        TRY(history_run(w, SHOWN[i], x, d->floor, &d->history[i], err));
     cut_quiet_end(d);
     for (int i = 0; i < 2; i++)
         if (d->history[i].n > 1)
@@ -152,7 +151,7 @@ static Status take_here(const Problem *p, const double x[], const DetailOptions 
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
     TRY(simulate_records(p, x, d, err));
-    TRY(simulate(p, x, options->without_devices ? BASELINE_RIGID : BASELINE_LINKS, d, err));
+    TRY(simulate(p, x, !options->without_devices, d, err));
     return take_histories(w, x, d, err);
 }
 

@@ -35,11 +35,11 @@ typedef struct {
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
     double pga_g, scale, stretch, duration_s;
-    SimResult result[N_SCENES];     /* by SceneKind, under the first record */
-    double error[N_MEASURES];       /* of the design, likely or sd, the larger (analysis/estimate.h); NAN: not known */
-    Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
-    size_t n_records;               /* of the run */
-    SimResult *by_record;           /* (n_records) the design under each of them; NULL: there is one */
+    SimResult result[N_SCENES];  /* by SceneKind, under the first record */
+    double error[N_MEASURES];    /* of the design, likely or sd, the larger (analysis/estimate.h); NAN: not known */
+    Baseline baseline[N_SCENES]; /* under all records of the run, by its rule */
+    size_t n_records;            /* of the run */
+    SimResult *by_record;        /* (n_records) the design under each of them; NULL: there is one */
     double standard_error[N_MEASURES]; /* of what those are by its rule (evaluate/replicates.h); NAN: there is one */
     Ladder *ladder;                    /* of the design; NULL: not asked for, or `no_ladder` says why there is none */
     Err no_ladder;

@@ -98,10 +98,10 @@ static void write_front(FILE *out, const Report *r)
     write_objectives(out, r, 0, run_f(r->run, r->knee));
     fputs("EOD\n$BASELINES << EOD\n", out);
     char there[16] = "";
-    for (int b = 0; r->has_detail && b < N_BASELINES; b++) {
+    for (int b = 0; r->has_detail && b < N_SCENES - 1; b++) {
         for (size_t k = 0; k < schema->n_obj; k++)
-            f[k] = r->detail.baseline[b].value[schema->order.of[k]];
-        if (r->detail.baseline[b].outcome != OUTCOME_OK)
+            f[k] = r->detail.baseline[b + 1].value[schema->order.of[k]];
+        if (r->detail.baseline[b + 1].outcome != OUTCOME_OK)
             continue;
         write_objectives(out, r, b + 2, f);
         snprintf(there + strlen(there), sizeof there - strlen(there), "%d ", b + 2);

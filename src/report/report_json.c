@@ -18,9 +18,6 @@ static json_t *json_of_settings(const Settings *s)
     return words;
 }
 
-/* By SceneKind. */
-static const char *const SCENE_KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
-
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
 json_t *result_json(const SimResult *r, const MeasureOrder *order)
@@ -69,19 +66,18 @@ static json_t *json_of_history(const History *h, const Spectrogram *s)
 }
 
 /* Values of all records by the rule of the run. */
-static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const MeasureOrder *order)
+static json_t *json_of_baselines(const Baseline baseline[N_SCENES], const MeasureOrder *order)
 {
     json_t *list = json_array();
-    for (int k = 0; k < N_BASELINES; k++) {
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
         double values[N_MEASURES];
         for (int i = 0; i < order->n_obj; i++)
             values[i] = baseline[k].value[order->of[i]];
         char device[DEVICE_TEXT_MAX];
-        baseline_device_text(k, &baseline[k].device, device);
+        case_device_text(k, &baseline[k].device, device);
         const int ok = baseline[k].outcome == OUTCOME_OK;
-        json_array_append_new(list,
-                              json_of("key=%s words=%s device=%s objectives=%p", baseline_key(k), baseline_words(k),
-                                      device, ok ? json_numbers(order->n_obj, values) : json_null()));
+        json_array_append_new(list, json_of("key=%s words=%s device=%s objectives=%p", SCENES[k].key, SCENES[k].words,
+                                            device, ok ? json_numbers(order->n_obj, values) : json_null()));
     }
     return list;
 }
@@ -102,7 +98,6 @@ static json_t *json_by_measure(const double values[], const char *end, double fa
 
 json_t *ladder_json(const Ladder *l)
 {
-    static const char *const SCENES[LADDER_SCENES] = {"with_core", "rigid", "no_core"};
     json_t *effects = json_array(), *all = json_by_measure(l->value, "", 1), *settings = json_object(),
            *set = json_by_measure(l->off, "_pct", 100), *by_set = json_object();
     for (size_t i = 0; i < l->n; i++) {
@@ -119,7 +114,7 @@ json_t *ladder_json(const Ladder *l)
     for (int i = 0; l->hardening > 0 && i < (strcmp(l->yielding[0], "bilinear") == 0 ? 1 : YIELDING_KEYS); i++)
         json_object_set_new(settings, YIELDING_KEY[i], json_string(l->yielding[i]));
     for (int i = 0; i < LADDER_SCENES; i++)
-        json_object_set_new(by_set, SCENES[i], json_by_measure(l->set[i], "", 1));
+        json_object_set_new(by_set, SCENES[LADDER_SCENE[i]].key, json_by_measure(l->set[i], "", 1));
     json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->all_hardening);
     json_put(set, "ms=%g", 1e3 * l->set_s);
     return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
@@ -141,7 +136,7 @@ static json_t *json_of_loads(const Detail *d)
             values[k] = measure(borne[k])->words.factor * measure_value(&d->result[scene], borne[k]);
         if (d->result[scene].outcome == RUN_OK)
             json_array_append_new(rows,
-                                  json_of("key=%s values=%p", SCENE_KEYS[scene], json_numbers((size_t)n, values)));
+                                  json_of("key=%s values=%p", SCENES[scene].key, json_numbers((size_t)n, values)));
     }
     return json_of("columns=%p rows=%p", columns, rows);
 }
@@ -215,7 +210,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     if (d->gap_sides != GAPS_BOTH)
         json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)
-        json_object_set_new(o, SCENE_KEYS[k], result_json(&d->result[k], order));
+        json_object_set_new(o, SCENES[k].key, result_json(&d->result[k], order));
     return o;
 }
 

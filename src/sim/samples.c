@@ -55,7 +55,8 @@ static void note(const SimSample *s, void *user)
     sample_row(t->worker, s, t->n_floors, t->rows + t->n++ * t->width);
 }
 
-Status track_run(const Scene *scene, SceneKind kind, const double x[], double every_s, Track *out, Err *err)
+Status track_run(const Scene *scene, SceneKind kind, const double x[], const LinearDevice *device, double every_s,
+                 Track *out, Err *err)
 {
     SimWorker *worker;
     SimResult result;
@@ -64,6 +65,7 @@ Status track_run(const Scene *scene, SceneKind kind, const double x[], double ev
     TRY(sim_worker_create(&worker, scene, err));
     out->worker = worker;
     sim_worker_sample(worker, every_s, note, out);
+    sim_worker_device(worker, device);
     Status status = sim_run(worker, kind, x, &result, err);
     sim_worker_free(worker);
     if (status == STATUS_OK && out->lacks_memory)

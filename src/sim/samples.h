@@ -42,7 +42,8 @@ typedef struct {
 } Track;
 
 /* every_s as EngineOptions.sample_spacing; x as for sim_run. */
-Status track_run(const Scene *scene, SceneKind kind, const double x[], double every_s, Track *out, Err *err);
+Status track_run(const Scene *scene, SceneKind kind, const double x[], const LinearDevice *device, double every_s,
+                 Track *out, Err *err);
 void track_free(Track *t);
 
 /* Column k of the rows, 0: t; those behind the floors are the energies. */

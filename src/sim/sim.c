@@ -474,19 +474,6 @@ static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, dou
     return STATUS_OK;
 }
 
-/* Nothing to meet, but the worker's device. */
-static void replace_stops(const SimWorker *w, SceneKind kind, Design *d)
-{
-    d->mass_kg = kind == SCENE_TMD ? w->core.mass_kg : 0;
-    d->mass_hz = w->device.tmd_hz;
-    d->mass_damping = w->device.tmd_damping;
-    for (int j = 0; j < w->model.n; j++) {
-        d->gap[0][j] = d->gap[1][j] = INFINITY;
-        d->link[j] = kind == SCENE_LINKS ? w->device.link_ns_m : 0;
-        d->friction[j] = 0;
-    }
-}
-
 static void count_devices(const SimWorker *w, const Design *d, SimResult *result)
 {
     const PriceOptions *price = &w->options->design.prices;
@@ -524,11 +511,11 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
 /* Any other scene than joined. A design has no work space for what is no variable of it. */
 static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *result, Err *err)
 {
-    const CoreBeam *core = kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core;
+    const CoreBeam *core = SCENES[kind].has & HAS_CORE ? &w->core : NULL;
     void *const work = w->run.work;
     if (kind != SCENE_IMPACT)
-        replace_stops(w, kind, &d);
-    if (kind == SCENE_TMD || kind == SCENE_LINKS)
+        case_design(kind, &w->device, w->core.mass_kg, w->model.n, &d);
+    if (SCENES[kind].has & HAS_DEVICE)
         w->run.work = NULL;
     if (w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, core, 0, (double[]){d.t_base, d.t_top});
@@ -554,12 +541,12 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(make_core(w, d, err));
-    w->is_joined = kind == SCENE_RIGID;
+    w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
     TRY(w->is_joined ? run_joined(w, d, result, err) : run_design(w, kind, *d, result, err));
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
         result->forces_known = 1;
-        if (kind == SCENE_RIGID) /* what connects them is not resolved */
+        if (w->is_joined) /* what connects them is not resolved */
             result->forces.contact_force_max_n = NAN;
         if (kind == SCENE_LINKS) /* what acts on a floor from the core */
             result->forces.contact_force_max_n = result->dashpot_n;

@@ -15,17 +15,9 @@
 
 #include "scene/design.h"
 #include "motion/motion.h"
+#include "sim/cases.h"
 #include "sim/options.h"
 #include "sim/result.h"
-
-typedef enum {
-    SCENE_IMPACT,  /* building and core with gaps */
-    SCENE_NO_CORE, /* the building alone */
-    SCENE_RIGID,   /* floors and core rigidly connected (sim/joined.h) */
-    SCENE_TMD,     /* no core, but a tuned mass damper of its mass at the roof */
-    SCENE_LINKS,   /* floors and core joined by linear dashpots */
-    N_SCENES
-} SceneKind;
 
 typedef struct Scene Scene;
 typedef struct SimWorker SimWorker;

@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 
 #include "base/csv.h"
-#include "analysis/device.h"
+#include "evaluate/device.h"
 #include "store/run_read.h"
 
 static Status copy_columns(const Table *t, const char *where, const Schema *schema, double *X, Err *err)

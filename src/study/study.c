@@ -537,8 +537,7 @@ static Status find_baselines(Study *study, Err *err)
         return STATUS_OK;
     study->summary->has_baselines = 1;
     TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
-    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), BASELINE_LINKS,
-                          study->summary->baseline, err);
+    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), 1, study->summary->baseline, err);
 }
 
 static void tell_records(const Study *study)

@@ -21,6 +21,6 @@ typedef struct {
     double level_agreement;
     int has_left_screening;
     int has_baselines; /* of a tower whose front has a knee; of its core */
-    Baseline baseline[N_BASELINES];
+    Baseline baseline[N_SCENES];
     FrontReview review; /* of the same */
 } StudySummary;

@@ -220,7 +220,7 @@ class Simulating(unittest.TestCase):
         self.assertEqual(h.floor_m.shape, (len(h.t_s), 6))
         self.assertLessEqual(np.diff(h.t_s).max(), 0.01 * (1 + 1e-9))
         self.assertAlmostEqual(abs(h.floor_m).max(), r.j1_m, delta=0.02 * r.j1_m)
-        self.assertGreater(scene.simulate(kind="alone").j1_m, 0)
+        self.assertGreater(scene.simulate(kind="no_core").j1_m, 0)
         for every in (-1, math.nan, 1e7, "x"):
             with self.assertRaisesRegex(ValueError, f"every is {every!r}, wanted seconds"):
                 r.history(every)
@@ -232,7 +232,7 @@ class Simulating(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "x and gaps, side_m are given: give x alone"):
             scene.simulate(scene.lower, gaps=0.004, side_m=3)
         with self.assertRaisesRegex(ValueError, "no variable of this scene: side_m"):
-            scene.simulate(kind="alone", gaps=0.004, thickness=0.01, side_m=3)
+            scene.simulate(kind="no_core", gaps=0.004, thickness=0.01, side_m=3)
         for wrong, words in ((dict(gaps=[1, 2], thickness=0.01), r"gaps has shape \(2,\), wanted one number or \(6,\)"),
                              (dict(gaps=0.01), "missing: t_base_m, t_top_m"),
                              (dict(gaps=0.01, thickness=0.01, side_m=3), "no variable of this scene: side_m"),
@@ -251,7 +251,7 @@ class Simulating(unittest.TestCase):
         gained = 0
         for _ in range(50):
             before = ticks[0]
-            imtet._call("imtet_scene_history", scene._scene, 1, None, 0, imtet.ctypes.c_double(1e-3),
+            imtet._call("imtet_scene_history", scene._scene, b"no_core", None, 0, imtet.ctypes.c_double(1e-3),
                         imtet.ctypes.byref(imtet._handle()))
             gained = max(gained, ticks[0] - before)
             if gained > 1000:

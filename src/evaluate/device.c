@@ -1,4 +1,4 @@
-#include "analysis/device.h"
+#include "evaluate/device.h"
 
 /* Points of the first grid, for which SUITE records are enough; how many finer ones. */
 enum { GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, FINER = 4, SUITE = 4 };

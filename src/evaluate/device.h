@@ -1,4 +1,4 @@
-/* analysis/device.h -- the tuned mass, or the dashpots, that do best in the place of a core that impacts.
+/* evaluate/device.h -- the tuned mass, or the dashpots, that do best in the place of a core that impacts.
  *
  *   goal = J1 / J1_0 + J2 / J2_0 + J3 / J3_0          _0: the building alone, every J over the records by the same rule
  *
