@@ -55,10 +55,10 @@ IMTET_API imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **o
  * compared with: no_core, the building alone (x may be NULL); rigid, floors and core rigidly connected; tmd, the core's
  * mass as a tuned mass damper at the roof; links, a viscous dashpot between core and every floor. Of x the thicknesses
  * count then; the device is the best one (numbers tmd_hz, tmd_damping or link_ns_m), found by some 100 simulations.
- * Numbers (1, 1): j1_m, j2_m,
- * j3_g, ed1_pct, ed5_10_pct, edcs_pct, mcore_kg and whatever else `imtet simulate --csv` has, those of forces with
- * "sim.forces=yes" alone; not numbers where the scene has none. Of every floor or storey from the bottom (floors, 1):
- * peak_displacement_m, peak_drift_m, peak_acceleration_g, floor_drift_ratio, mode_share_pct (of mode 1, 2, ...).
+ * Numbers (1, 1): j1_m, j2_m, j3_g, ed1_pct, ed5_10_pct, edcs_pct, mcore_kg and whatever else `imtet simulate --json`
+ * has, those of forces with "sim.forces=yes" alone; not numbers where the scene has none. Of every floor or storey from
+ * the bottom (floors, 1): peak_displacement_m, peak_drift_m, peak_acceleration_g, peak_drift_ratio and others; of every
+ * mode mode_share_pct; of both sides of the core, u > v first, (2, floors): contact_force_n and others.
  * Texts: outcome, reason. */
 IMTET_API imtet_status imtet_scene_simulate(imtet_scene *scene, const char *kind, const double x[], size_t n,
                                             imtet_result **out, imtet_error *error);

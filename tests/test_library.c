@@ -13,6 +13,7 @@ static const char *const SIX[] = {"building.model=configs/neighbours/tower",
                                   "design.gap_m=0.001,0.05",
                                   "motion.pga_g=0.3",
                                   "motion.stretch=1",
+                                  "sim.forces=yes",
                                   NULL};
 static const double DESIGN[8] = {0.003, 0.004, 0.005, 0.006, 0.007, 0.008, 0.02, 0.01};
 
@@ -60,7 +61,8 @@ TEST(a_design_has_the_numbers_of_imtet_simulate)
                             "0.003,0.004,0.005,0.006,0.007,0.008,0.02,0.01\n");
     for (size_t k = 0; k < N_OF(KINDS); k++) {
         imtet_result *r = response(scene, KINDS[k].kind);
-        free(output_of("simulate configs/quick.ini %s " SIX_FLOORS "--csv @/table.csv", KINDS[k].options));
+        free(output_of("simulate configs/quick.ini %s " SIX_FLOORS "--set sim.forces=yes --csv @/table.csv",
+                       KINDS[k].options));
         char *table = read_in_place("table.csv"), *names = table, *cells = strchr(table, '\n') + 1, *name;
         size_t known = 0;
         cells[-1] = 0;
@@ -80,10 +82,31 @@ TEST(a_design_has_the_numbers_of_imtet_simulate)
     imtet_scene_free(&scene);
 }
 
+static double value_of(const json_t *value)
+{
+    return json_is_boolean(value) ? json_is_true(value) : json_number_value(value);
+}
+
+/* A list is a column, a list of two lists has them as rows. */
+static void assert_same_list(const imtet_result *r, const char *name, const json_t *list)
+{
+    size_t rows, columns, i, k;
+    const double *own = numbers(r, name, &rows, &columns);
+    json_t *item, *value;
+    assert_int_equal(rows, json_array_size(list));
+    json_array_foreach(list, i, item)
+    {
+        if (!json_is_array(item))
+            assert_close(own[i], value_of(item), 1e-12);
+        json_array_foreach(item, k, value) assert_close(own[i * columns + k], value_of(value), 1e-12);
+    }
+}
+
 TEST(every_case_has_the_numbers_of_imtet_evaluate)
 {
     imtet_scene *scene = six_floors();
-    json_t *all = json_of("evaluate configs/quick.ini --design @/d.csv:1 " SIX_FLOORS "--json"), *one;
+    json_t *all = json_of("evaluate configs/quick.ini --design @/d.csv:1 --set sim.forces=yes " SIX_FLOORS "--json"),
+           *one;
     const char *kind;
     size_t n = 0;
     json_object_foreach(json_array_get(json_object_get(all, "records"), 0), kind, one)
@@ -91,10 +114,17 @@ TEST(every_case_has_the_numbers_of_imtet_evaluate)
         if (!json_is_object(one))
             continue;
         imtet_result *r = response(scene, kind);
-        static const char *const SAME[] = {"j1_m", "j3_g", "tmd_hz", "tmd_damping", "link_ns_m"};
+        static const char *const SAME[] = {
+            "j1_m",      "j3_g",       "tmd_hz",         "tmd_damping",        "link_ns_m",
+            "settled_s", "core_top_m", "overturning_nm", "core_stress_storey", "contact_yields"};
+        static const char *const LISTS[] = {"peak_drift_ratio", "mode_share_pct", "core_shear_n", "contact_force_n",
+                                            "contacts"};
         for (size_t i = 0; i < N_OF(SAME); i++)
             if (json_object_get(one, SAME[i]))
-                assert_close(*numbers(r, SAME[i], NULL, NULL), number(one, SAME[i]), 1e-12);
+                assert_close(*numbers(r, SAME[i], NULL, NULL), value_of(json_object_get(one, SAME[i])), 1e-12);
+        for (size_t i = 0; i < N_OF(LISTS); i++)
+            if (json_object_get(one, LISTS[i]))
+                assert_same_list(r, LISTS[i], json_object_get(one, LISTS[i]));
         imtet_result_free(&r);
         n++;
     }

@@ -23,7 +23,7 @@ print(f"{len(F)} designs on the front;", ", ".join(f"best {n} {(F[:, k].min() if
 
 # 3. The design of the least acceleration, beside the building alone.
 best = scene.simulate(X[F[:, scene.objectives.index("j3_g")].argmin()])
-alone = scene.simulate(kind="alone")
+alone = scene.simulate(kind="no_core")
 print(f"drift {best.j2_m:.3f} m, alone {alone.j2_m:.3f} m; acceleration {best.j3_g:.2f} g, alone {alone.j3_g:.2f} g")
 
 # 4. Pictures.

@@ -19,8 +19,19 @@ Status result_create(imtet_result **out, Err *err)
     return STATUS_OK;
 }
 
+static const NamedValue *find(const imtet_result *r, const char *name)
+{
+    for (size_t i = 0; i < r->n; i++)
+        if (strcmp(r->value[i].name, name) == 0)
+            return &r->value[i];
+    return NULL;
+}
+
+/* A name that is there keeps its value: NULL, as where there is no memory. */
 static NamedValue *add(imtet_result *r, const char *name)
 {
+    if (find(r, name))
+        return NULL;
     if (r->n == r->room) {
         const size_t room = 2 * r->room + 32;
         NamedValue *wider = realloc(r->value, room * sizeof *wider);
@@ -90,14 +101,6 @@ Status result_finish(imtet_result **out, Status status, Err *err)
 const char *imtet_result_name(const imtet_result *result, size_t i)
 {
     return result && i < result->n ? result->value[i].name : NULL;
-}
-
-static const NamedValue *find(const imtet_result *r, const char *name)
-{
-    for (size_t i = 0; i < r->n; i++)
-        if (strcmp(r->value[i].name, name) == 0)
-            return &r->value[i];
-    return NULL;
 }
 
 const char *imtet_result_text(const imtet_result *result, const char *name)

@@ -254,14 +254,16 @@ static Status simulate(const Problem *p, const Question *q, Err *err)
     LinearDevice device;
     TRY(find_device(p, q, &device, err));
     TRY(tower_simulate(p, 1, &(SimTask){.kind = q->kind, .x = q->x, .device = device}, &s, err));
-    const size_t n = (size_t)s.n_floors;
     for (int k = 0; k < MEASURES_LISTED; k++)
         result_numbers(r, measure(k)->name, 1, (double[]){measure_value(&s, k)});
-    result_numbers(r, "peak_displacement_m", n, s.peak_displacement_m);
-    result_numbers(r, "peak_drift_m", n, s.peak_drift_m);
-    result_numbers(r, "peak_acceleration_g", n, s.peak_acceleration_g);
-    result_numbers(r, "floor_drift_ratio", n, s.drift_ratio);
-    result_numbers(r, "mode_share_pct", (size_t)s.n_modes, s.mode_share_pct);
+    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
+        double values[SIDES * FLOORS_MAX];
+        size_t rows;
+        const size_t n = result_part(&s, SCENES[q->kind].has, part, values, &rows);
+        double *own = n > 0 ? result_table(r, part->name, rows > 1 ? rows : n, rows > 1 ? n : 1) : NULL;
+        if (own)
+            memcpy(own, values, rows * n * sizeof *own);
+    }
     result_text(r, "outcome", outcome_word(measure_outcome(s.outcome)));
     result_text(r, "reason", s.reason);
     return STATUS_OK;

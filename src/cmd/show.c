@@ -249,122 +249,21 @@ Status show_json(json_t *all, Err *err)
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-/* What a figure is, and what it takes to have it. */
-typedef enum { OF_NUMBER, OF_LONG, OF_INT, OF_STOREY, OF_FLAG, OF_FLOORS, OF_MODES, OF_SIDES, OF_COUNTS } FieldKind;
-enum {
-    IF_FORCES = 1,
-    IF_CORE = 2,
-    IF_CONTACTS = 4,
-    IF_STRESS = 8,
-    IF_BUCKLING = 16,
-    IF_DEVICE = 32,
-    IF_BUMPER = 64,
-    IF_YIELDING = 128,
-    IN_CORE = IF_FORCES | IF_CORE
-};
-
-#define FIELD(kind, needs, field)                                                                                      \
-    {                                                                                                                  \
-#field, kind, needs, offsetof(SimResult, field)                                                                \
-    }
-#define FORCE(kind, needs, field)                                                                                      \
-    {                                                                                                                  \
-#field, kind, needs, offsetof(SimResult, forces.field)                                                         \
-    }
-#define NAMED(name, kind, needs, field)                                                                                \
-    {                                                                                                                  \
-        name, kind, needs, offsetof(SimResult, field)                                                                  \
-    }
-static const struct {
-    const char *name;
-    FieldKind kind;
-    unsigned needs;
-    size_t at;
-} FIELDS[] = {
-    FIELD(OF_LONG, 0, impacts),
-    FIELD(OF_NUMBER, IF_DEVICE, stroke_m),
-    FIELD(OF_NUMBER, IF_DEVICE, dashpot_n),
-    FIELD(OF_LONG, 0, v0_limited),
-    FIELD(OF_NUMBER, 0, settled_s),
-    FIELD(OF_INT, 0, repeated),
-    FIELD(OF_FLOORS, 0, peak_displacement_m),
-    FIELD(OF_FLOORS, 0, peak_drift_m),
-    FIELD(OF_FLOORS, 0, peak_acceleration_g),
-    FIELD(OF_STOREY, 0, drift_ratio_storey),
-    NAMED("peak_drift_ratio", OF_FLOORS, 0, drift_ratio),
-    FIELD(OF_MODES, 0, mode_share_pct),
-    FORCE(OF_NUMBER, IF_FORCES, building_overturning_nm),
-    FORCE(OF_FLOORS, IF_FORCES, building_shear_n),
-    FORCE(OF_NUMBER, IF_FORCES, base_shear_ratio),
-    FORCE(OF_NUMBER, IF_FORCES, overturning_nm),
-    FORCE(OF_FLOORS, IF_FORCES, peak_velocity_m_s),
-    FORCE(OF_NUMBER, IN_CORE, core_top_m),
-    FORCE(OF_NUMBER, IN_CORE, base_translation_m),
-    FORCE(OF_FLOORS, IN_CORE, core_shear_n),
-    FORCE(OF_FLOORS, IN_CORE, core_moment_nm),
-    FORCE(OF_STOREY, IN_CORE | IF_STRESS, core_stress_storey),
-    FORCE(OF_FLOORS, IN_CORE | IF_STRESS, core_storey_stress_pa),
-    FORCE(OF_NUMBER, IN_CORE | IF_STRESS, core_shear_stress_pa),
-    FORCE(OF_FLOORS, IN_CORE | IF_BUCKLING, core_slenderness),
-    FORCE(OF_FLOORS, IN_CORE | IF_BUCKLING, core_buckling_pa),
-    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, contact_force_n),
-    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, contact_impulse_ns),
-    FORCE(OF_COUNTS, IF_FORCES | IF_CONTACTS, contacts),
-    FORCE(OF_SIDES, IF_FORCES | IF_CONTACTS, indentation_m),
-    FIELD(OF_NUMBER, 0, damped_building_j),
-    FIELD(OF_NUMBER, 0, damped_core_j),
-    FIELD(OF_NUMBER, 0, kinetic_strain_j),
-    FIELD(OF_NUMBER, IF_YIELDING, hysteresis_j),
-    FIELD(OF_FLOORS, IF_YIELDING, plastic_drift_m),
-    FIELD(OF_FLOORS, IF_YIELDING, residual_drift_m),
-    FIELD(OF_NUMBER, 0, contact_loss_j),
-    FIELD(OF_NUMBER, 0, contact_stored_j),
-    FIELD(OF_NUMBER, 0, clamp_j),
-    FIELD(OF_NUMBER, 0, indentation_max_m),
-    FIELD(OF_FLAG, 0, contact_yields),
-    FIELD(OF_NUMBER, IF_BUMPER, bumper_compression_m),
-    FIELD(OF_NUMBER, IF_BUMPER, bumper_strain),
-    FIELD(OF_FLAG, IF_BUMPER, bumper_bottoms_out),
-    FIELD(OF_LONG, 0, steps),
-    FIELD(OF_LONG, 0, force_evaluations),
-    FIELD(OF_NUMBER, 0, seconds),
-};
-
-static json_t *json_counts(size_t n, const long counts[])
+/* One value, a list, or [u > v, u < v] of lists. */
+static json_t *json_part(const ResultPart *part, size_t rows, size_t n, const double of[])
 {
-    json_t *list = json_array();
-    for (size_t i = 0; i < n; i++)
-        json_array_append_new(list, json_real((double)counts[i]));
-    return list;
-}
-
-static json_t *json_field(FieldKind kind, const SimResult *r, const void *at)
-{
-    const double *of = at;
-    const long *counts = at;
-    const int *whole = at;
-    const size_t n = r->n_floors;
-    switch (kind) {
-    case OF_NUMBER:
+    switch (part->shape) {
+    case PART_NUMBER:
         return json_number(*of);
-    case OF_LONG:
-        return json_integer(*counts);
-    case OF_INT:
-        return json_integer(*whole);
-    case OF_STOREY:
-        return json_integer(*whole + 1);
-    case OF_FLAG:
-        return json_boolean(*whole);
-    case OF_FLOORS:
-        return json_numbers(n, of);
-    case OF_MODES:
-        return json_numbers(r->n_modes, of);
-    case OF_SIDES: /* [u > v, u < v][floor] */
-        return json_pair(n, of, of + FLOORS_MAX);
-    case OF_COUNTS:
-        return json_pack("[o, o]", json_counts(n, counts), json_counts(n, counts + FLOORS_MAX));
+    case PART_LONG:
+    case PART_INT:
+    case PART_STOREY:
+        return json_integer((json_int_t)*of);
+    case PART_FLAG:
+        return json_boolean(*of != 0);
+    default:
+        return rows == SIDES ? json_pair(n, of, of + n) : json_numbers(n, of);
     }
-    return NULL;
 }
 
 static json_t *json_damage(const SimResult *r)
@@ -383,19 +282,18 @@ static json_t *json_damage(const SimResult *r)
 
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r)
 {
-    const unsigned scene = SCENES[kind].has;
-    const unsigned has = (r->forces_known ? IF_FORCES : 0u) | (scene & HAS_CORE ? IF_CORE : 0u) |
-                         (scene & HAS_GAPS ? IF_CONTACTS : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
-                         (r->forces.buckling_known ? IF_BUCKLING : 0u) | (scene & HAS_DEVICE ? IF_DEVICE : 0u) |
-                         (r->bumper_strain > 0 ? IF_BUMPER : 0u) | (r->yields ? IF_YIELDING : 0u);
     json_t *o = json_of("scene=%s outcome=%s reason=%s", SCENES[kind].key, outcome_word(measure_outcome(r->outcome)),
                         r->reason);
     put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
-    for (size_t i = 0; i < N_OF(FIELDS); i++)
-        if (!(FIELDS[i].needs & ~has))
-            json_object_set_new(o, FIELDS[i].name, json_field(FIELDS[i].kind, r, (const char *)r + FIELDS[i].at));
+    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
+        double values[SIDES * FLOORS_MAX];
+        size_t rows;
+        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
+        if (n > 0)
+            json_object_set_new(o, part->name, json_part(part, rows, n, values));
+    }
     return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
 }
 

@@ -44,16 +44,6 @@ struct SimWorker {
 static const double REFINEMENTS[] = {1, 4, 16};
 enum { N_REFINEMENTS = sizeof REFINEMENTS / sizeof REFINEMENTS[0] };
 
-const char *run_outcome_words(RunOutcome outcome)
-{
-    static const char *const WORDS[] = {
-#define X(name, words) words,
-        RUN_OUTCOME_LIST(X)
-#undef X
-    };
-    return WORDS[outcome];
-}
-
 /* At coarse three times what nine designs in ten of a front have (docs/promise.md). */
 double sim_energy_balance_max(const SimOptions *o)
 {

@@ -1,0 +1,104 @@
+#include "sim/result.h"
+
+#include <stddef.h>
+
+#include "sim/cases.h"
+
+const char *run_outcome_words(RunOutcome outcome)
+{
+    static const char *const WORDS[] = {
+#define X(name, words) words,
+        RUN_OUTCOME_LIST(X)
+#undef X
+    };
+    return WORDS[outcome];
+}
+
+/* What a part needs beside HAS_CORE, HAS_GAPS and HAS_DEVICE of the case. */
+enum { IF_FORCES = 32, IF_STRESS = 64, IF_BUCKLING = 128, IF_BUMPER = 256, IF_YIELDING = 512 };
+
+#define NAMED(name, shape, needs, member)                                                                              \
+    {                                                                                                                  \
+        name, shape, needs, offsetof(SimResult, member)                                                                \
+    }
+#define FIELD(shape, needs, member) NAMED(#member, shape, needs, member)
+#define FORCE(shape, needs, member) NAMED(#member, shape, needs, forces.member)
+const ResultPart RESULT_PARTS[] = {FIELD(PART_LONG, 0, impacts),
+                                   FIELD(PART_NUMBER, HAS_DEVICE, stroke_m),
+                                   FIELD(PART_NUMBER, HAS_DEVICE, dashpot_n),
+                                   FIELD(PART_LONG, 0, v0_limited),
+                                   FIELD(PART_NUMBER, 0, settled_s),
+                                   FIELD(PART_INT, 0, repeated),
+                                   FIELD(PART_FLOORS, 0, peak_displacement_m),
+                                   FIELD(PART_FLOORS, 0, peak_drift_m),
+                                   FIELD(PART_FLOORS, 0, peak_acceleration_g),
+                                   FIELD(PART_STOREY, 0, drift_ratio_storey),
+                                   NAMED("peak_drift_ratio", PART_FLOORS, 0, drift_ratio),
+                                   FIELD(PART_MODES, 0, mode_share_pct),
+                                   FORCE(PART_NUMBER, IF_FORCES, building_overturning_nm),
+                                   FORCE(PART_FLOORS, IF_FORCES, building_shear_n),
+                                   FORCE(PART_NUMBER, IF_FORCES, base_shear_ratio),
+                                   FORCE(PART_NUMBER, IF_FORCES, overturning_nm),
+                                   FORCE(PART_FLOORS, IF_FORCES, peak_velocity_m_s),
+                                   FORCE(PART_NUMBER, IF_FORCES | HAS_CORE, core_top_m),
+                                   FORCE(PART_NUMBER, IF_FORCES | HAS_CORE, base_translation_m),
+                                   FORCE(PART_FLOORS, IF_FORCES | HAS_CORE, core_shear_n),
+                                   FORCE(PART_FLOORS, IF_FORCES | HAS_CORE, core_moment_nm),
+                                   FORCE(PART_STOREY, IF_FORCES | HAS_CORE | IF_STRESS, core_stress_storey),
+                                   FORCE(PART_FLOORS, IF_FORCES | HAS_CORE | IF_STRESS, core_storey_stress_pa),
+                                   FORCE(PART_NUMBER, IF_FORCES | HAS_CORE | IF_STRESS, core_shear_stress_pa),
+                                   FORCE(PART_FLOORS, IF_FORCES | HAS_CORE | IF_BUCKLING, core_slenderness),
+                                   FORCE(PART_FLOORS, IF_FORCES | HAS_CORE | IF_BUCKLING, core_buckling_pa),
+                                   FORCE(PART_SIDES, IF_FORCES | HAS_GAPS, contact_force_n),
+                                   FORCE(PART_SIDES, IF_FORCES | HAS_GAPS, contact_impulse_ns),
+                                   FORCE(PART_COUNTS, IF_FORCES | HAS_GAPS, contacts),
+                                   FORCE(PART_SIDES, IF_FORCES | HAS_GAPS, indentation_m),
+                                   FIELD(PART_NUMBER, 0, damped_building_j),
+                                   FIELD(PART_NUMBER, 0, damped_core_j),
+                                   FIELD(PART_NUMBER, 0, kinetic_strain_j),
+                                   FIELD(PART_NUMBER, IF_YIELDING, hysteresis_j),
+                                   FIELD(PART_FLOORS, IF_YIELDING, plastic_drift_m),
+                                   FIELD(PART_FLOORS, IF_YIELDING, residual_drift_m),
+                                   FIELD(PART_NUMBER, 0, contact_loss_j),
+                                   FIELD(PART_NUMBER, 0, contact_stored_j),
+                                   FIELD(PART_NUMBER, 0, clamp_j),
+                                   FIELD(PART_NUMBER, 0, indentation_max_m),
+                                   FIELD(PART_FLAG, 0, contact_yields),
+                                   FIELD(PART_NUMBER, IF_BUMPER, bumper_compression_m),
+                                   FIELD(PART_NUMBER, IF_BUMPER, bumper_strain),
+                                   FIELD(PART_FLAG, IF_BUMPER, bumper_bottoms_out),
+                                   FIELD(PART_LONG, 0, steps),
+                                   FIELD(PART_LONG, 0, force_evaluations),
+                                   FIELD(PART_NUMBER, 0, seconds),
+                                   {0}};
+
+/* Value i of the member. */
+static double value_at(PartShape shape, const void *member, size_t i)
+{
+    switch (shape) {
+    case PART_LONG:
+    case PART_COUNTS:
+        return (double)((const long *)member)[i];
+    case PART_INT:
+    case PART_FLAG:
+        return *(const int *)member;
+    case PART_STOREY:
+        return *(const int *)member + 1;
+    default:
+        return ((const double *)member)[i];
+    }
+}
+
+size_t result_part(const SimResult *r, unsigned scene, const ResultPart *part, double values[], size_t *rows)
+{
+    const unsigned has = scene | (r->forces_known ? IF_FORCES : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
+                         (r->forces.buckling_known ? IF_BUCKLING : 0u) | (r->bumper_strain > 0 ? IF_BUMPER : 0u) |
+                         (r->yields ? IF_YIELDING : 0u);
+    const size_t n = part->shape < PART_FLOORS ? 1 : (size_t)(part->shape == PART_MODES ? r->n_modes : r->n_floors);
+    *rows = part->shape >= PART_SIDES ? SIDES : 1;
+    if (part->needs & ~has)
+        return 0;
+    for (size_t i = 0; i < *rows * n; i++)
+        values[i] = value_at(part->shape, (const char *)r + part->at, i / n * FLOORS_MAX + i % n);
+    return n;
+}
