@@ -122,16 +122,18 @@ TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
         Settings other = all;
         const int is_finer = strcmp(e->key, "sim.accuracy") == 0;
         CHECK_OK(settings_put(&other, e->key, is_finer ? e->with : e->without, &err), &err);
-        const SimResult r = simulated(&other, x);
-        const double ratio = r.j1_m / with.j1_m;
-        assert_less(fabs(e->change[0] - ((is_finer ? 1 / ratio : ratio) - 1)), 1e-9);
         int exceeds = 0;
-        for (int k = 0; k < LADDER_MEASURES; k++)
-            exceeds |= fabs(e->change[k]) > l->tolerance[k];
+        for (int c = 0; c < LADDER_SCENES; c++) {
+            const double ratio =
+                simulated_as(LADDER_SCENE[c], &other, x).j1_m / simulated_as(LADDER_SCENE[c], &all, x).j1_m;
+            assert_less(fabs(e->change[c][0] - ((is_finer ? 1 / ratio : ratio) - 1)), 1e-9);
+            for (int k = 0; k < LADDER_MEASURES; k++)
+                exceeds |= fabs(e->change[c][k]) > (c == 0 ? l->tolerance[k] : LADDER_TOLERANCE);
+        }
         assert_int_equal(e->is_needed, exceeds);
         assert_true(e->is_kept >= e->is_needed);
     }
-    assert_less(0, fabs(effect(l, "contact.bumper_stiffness_n_m")->change[2])); /* gaps close */
+    assert_less(0, fabs(effect(l, "contact.bumper_stiffness_n_m")->change[0][2])); /* gaps close */
     Settings set = composed(&s, l, kept);
     if (l->hardening > 0) { /* said as it was simulated: nothing has to be raised any more */
         Building b;
@@ -167,14 +169,14 @@ TEST(a_brief_ladder_has_the_same_changes_and_verdicts_without_steps_and_costs)
         assert_int_equal(brief->effect[i].is_needed, whole->effect[i].is_needed);
         assert_true(isnan(brief->effect[i].cost_s) && whole->effect[i].cost_s != 0);
         for (int k = 0; k < LADDER_MEASURES; k++)
-            assert_close(1 + brief->effect[i].change[k], 1 + whole->effect[i].change[k], 1e-9);
+            assert_close(1 + brief->effect[i].change[0][k], 1 + whole->effect[i].change[0][k], 1e-9);
     }
     free(whole);
     free(brief);
 }
 
 /* Gaps that never close: nothing of the core or its contacts matters, and what is left is the building alone. */
-TEST(without_contact_nothing_of_the_core_is_needed)
+TEST(without_contact_nothing_of_the_core_changes_the_design_or_the_building_alone)
 {
     static const char *const OF_CORE[] = {"core.theory", "core.foundation", "contact.bumper_stiffness_n_m"};
     double x[N + 2];
@@ -184,7 +186,9 @@ TEST(without_contact_nothing_of_the_core_is_needed)
     for (int i = 0; i < 3; i++) {
         const LadderEffect *e = effect(l, OF_CORE[i]);
         assert_non_null(e);
-        assert_true(!e->is_needed && !e->is_kept && fabs(e->change[0]) < 1e-9);
+        for (int c = 0; c < LADDER_SCENES; c++)
+            assert_true(LADDER_SCENE[c] == SCENE_RIGID || fabs(e->change[c][0]) < 1e-9);
+        assert_true(!e->is_needed || LADDER_SCENE[e->decided_in] == SCENE_RIGID);
     }
     assert_true(effect(l, "building.p_delta")->is_needed);
     free(l);
@@ -275,6 +279,28 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     json_decref(o);
     expect_output(": no fault", "check configs/engineer.ini");
     expect(65, "--ladder: problem.kind is no tower", "check configs/quick.ini --ladder --set problem.kind=dtlz2");
+}
+
+/* Links hold the tower so well that its storeys stay elastic; alone they yield, so that the comparison needs it. */
+TEST(an_effect_is_needed_where_only_the_building_alone_needs_it_and_the_set_has_all_three_scenes)
+{
+    double x[3] = {10, 0.03, 4e6};
+    const Settings s = scene_of((const char *const[]){
+        "design.variables=gaps,thickness,links", "design.gap_zones=1", "design.link_zones=1",
+        "design.link_n_s_m=1e3,1e8", "design.thickness_m=0.01,0.05", "search.objectives=j1_m,ductility",
+        "building.yield_drift=0.01", "motion.pga_g=0.5", NULL});
+    double design[4] = {x[0], x[1], x[1], x[2]};
+    Ladder *l = found(&s, design, 6);
+    const LadderEffect *yielding = effect(l, "building.yield_drift");
+    assert_less(fabs(yielding->change[0][0]), LADDER_TOLERANCE);
+    assert_true(yielding->is_needed);
+    assert_int_equal(LADDER_SCENE[yielding->decided_in], SCENE_NO_CORE);
+    const Settings all = composed(&s, l, all_but_steps);
+    for (int c = 0; c < LADDER_SCENES; c++) {
+        const SimResult with = simulated_as(LADDER_SCENE[c], &all, design);
+        assert_at_most(fabs(l->set[c][0] / with.j1_m - 1), LADDER_TOLERANCE);
+    }
+    free(l);
 }
 
 SUITE(make_building, clear_place)

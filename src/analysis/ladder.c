@@ -24,15 +24,15 @@ static const struct {
 enum { BETWEEN, SHEAR, P_DELTA, GROUND, YIELDING, FLEXIBILITY, END, STEPS, KINDS };
 
 typedef struct {
-    const Settings *s; /* as given */
+    Settings s; /* as given, but for objectives and limits */
     Settings all;
     const double *x;
     double strong_s;
     int is_brief;
     int kind[LADDER_MAX]; /* of an effect: its line above */
     Ladder *out;
-    Measured first[REPLICATES],
-        other[LADDER_MAX][REPLICATES]; /* replicate 0 is the design; the others also tell time */
+    Measured parts[1 + LADDER_MAX][REPLICATES];    /* with all, without each; 0 is the design, the others tell time */
+    Measured scene[1 + LADDER_MAX][LADDER_SCENES]; /* the same of the scenes; of the design as in parts */
 } Job;
 
 typedef struct {
@@ -60,12 +60,12 @@ static void set_values(const Job *job, int kind, const char *now, LadderEffect *
     if (kind == END)
         snprintf(e->without, sizeof e->without, "%.6g", job->strong_s);
     if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core */
-        snprintf(e->with, sizeof e->with, "soil=C radius=%g", job->s->core.width_m);
+        snprintf(e->with, sizeof e->with, "soil=C radius=%g", job->s.core.width_m);
 }
 
 static int is_there(const Job *job, int kind)
 {
-    const Settings *s = job->s;
+    const Settings *s = &job->s;
     switch (kind) {
     case BETWEEN:
         return frame_is(s->building.model);
@@ -93,19 +93,19 @@ static Status find_hardening(const Settings *s, double *hardening, Err *err)
 static Status list_effects(Job *job, Err *err)
 {
     Ladder *l = job->out;
-    job->all = *job->s;
+    job->all = job->s;
     for (int kind = 0; kind < KINDS; kind++) {
         char now[OPTION_TEXT_MAX] = "";
         LadderEffect *e = &l->effect[l->n];
         if (!is_there(job, kind))
             continue;
-        settings_each(job->s, take_value, &(Wanted){EFFECTS[kind].key, now});
+        settings_each(&job->s, take_value, &(Wanted){EFFECTS[kind].key, now});
         set_values(job, kind, now, e);
         job->kind[l->n++] = kind;
         TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
     }
     for (int i = 0; i < YIELDING_KEYS; i++)
-        settings_each(job->s, take_value, &(Wanted){YIELDING_KEY[i], l->yielding[i]});
+        settings_each(&job->s, take_value, &(Wanted){YIELDING_KEY[i], l->yielding[i]});
     return find_hardening(&job->all, &l->all_hardening, err);
 }
 
@@ -121,12 +121,19 @@ static double change(const Measured *to, const Measured *from, int k)
     return fabs(by) < ROUNDING ? 0 : by;
 }
 
-static int is_within(const double changes[], const double tolerance[])
+/* The largest of the changes, in tolerances, and the scene that has it; INFINITY: one is not known. */
+static double largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene)
 {
-    int all = 1;
-    for (int k = 0; k < LADDER_MEASURES; k++)
-        all = all && fabs(changes[k]) <= tolerance[k];
-    return all;
+    double most = -1;
+    for (int i = 0; i < LADDER_SCENES; i++)
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            const double of = fabs(changes[i][k]) / (i == 0 ? l->tolerance[k] : LADDER_TOLERANCE);
+            if (!(of <= most)) {
+                most = isnan(of) ? INFINITY : of;
+                *scene = i;
+            }
+        }
+    return most;
 }
 
 /* Of the simulations that were made: other processes disturb. NAN: one alone tells nothing. */
@@ -142,20 +149,21 @@ static double least_seconds(const Job *job, const Measured parts[REPLICATES])
 static void conclude(Job *job, const ReplicateSummary *as_built)
 {
     Ladder *l = job->out;
-    l->all_s = least_seconds(job, job->first);
+    l->all_s = least_seconds(job, job->parts[0]);
     for (int k = 0; k < LADDER_MEASURES; k++) {
         const double scatter = as_built->sd[LADDER_MEASURE[k]] / as_built->mean[LADDER_MEASURE[k]];
-        l->value[k] = job->first[0].value[LADDER_MEASURE[k]];
+        l->value[k] = job->parts[0][0].value[LADDER_MEASURE[k]];
         l->tolerance[k] = fmax(LADDER_TOLERANCE, isfinite(scatter) ? scatter : 0);
     }
     for (size_t i = 0; i < l->n; i++) {
         LadderEffect *e = &l->effect[i];
         const int is_finer = job->kind[i] == STEPS; /* of which the model with all has the other value */
-        const Measured *with = is_finer ? job->other[i] : job->first, *without = is_finer ? job->first : job->other[i];
-        for (int k = 0; k < LADDER_MEASURES; k++)
-            e->change[k] = change(without, with, k);
-        e->cost_s = least_seconds(job, with) - least_seconds(job, without);
-        e->is_needed = e->is_kept = !is_within(e->change, l->tolerance);
+        const size_t with = is_finer ? 1 + i : 0, without = is_finer ? 0 : 1 + i;
+        for (int c = 0; c < LADDER_SCENES; c++)
+            for (int k = 0; k < LADDER_MEASURES; k++)
+                e->change[c][k] = change(&job->scene[without][c], &job->scene[with][c], k);
+        e->cost_s = least_seconds(job, job->parts[with]) - least_seconds(job, job->parts[without]);
+        e->is_needed = e->is_kept = largest(l, e->change, &e->decided_in) > 1;
     }
 }
 
@@ -163,10 +171,11 @@ static void conclude(Job *job, const ReplicateSummary *as_built)
 static Status leave_out_each(Job *job, Err *err)
 {
     const Ladder *l = job->out;
-    const char *const record = job->s->motion.record;
+    const char *const record = job->s.motion.record;
     SceneChange scene[1 + LADDER_MAX] = {{0}};
-    SimTask task[1 + LADDER_MAX];
+    SimTask task[(1 + LADDER_MAX) * LADDER_SCENES];
     ReplicateSummary as_built;
+    size_t n = 0;
     Settings s = job->all;
     Problem p;
     s.sim.replicates = REPLICATES;
@@ -175,16 +184,24 @@ static Status leave_out_each(Job *job, Err *err)
         snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", l->effect[i].key,
                  job->kind[i] == STEPS ? l->effect[i].with : l->effect[i].without);
     TRY(tower_open_scenes(&p, &s, 1, &record, 1 + l->n, scene, err));
-    task[0] = (SimTask){.x = job->x, .n_parts = REPLICATES, .parts = job->first, .summary = &as_built};
-    for (size_t i = 0; i < l->n; i++)
-        task[1 + i] = (SimTask){.x = job->x,
-                                .scene = 1 + i,
-                                .n_parts = job->kind[i] == STEPS || job->is_brief ? 1 : REPLICATES,
-                                .parts = job->other[i]};
-    const Status status = tower_run(&p, 1 + l->n, task, NULL, NULL, err);
+    for (size_t i = 0; i <= l->n; i++) {
+        const int is_once = i > 0 && (job->kind[i - 1] == STEPS || job->is_brief);
+        task[n++] = (SimTask){.x = job->x,
+                              .scene = i,
+                              .n_parts = is_once ? 1 : REPLICATES,
+                              .parts = job->parts[i],
+                              .summary = i == 0 ? &as_built : NULL};
+        for (int c = 1; c < LADDER_SCENES; c++)
+            task[n++] = (SimTask){.kind = LADDER_SCENE[c], .x = job->x, .scene = i, .parts = &job->scene[i][c]};
+    }
+    const Status status = tower_run(&p, n, task, NULL, NULL, err);
     problem_close(&p);
-    if (status == STATUS_OK && job->first[0].outcome != RUN_OK)
-        return bad_data(err, "ladder: the model with all effects failed: %s", job->first[0].reason);
+    for (size_t i = 0; i <= l->n; i++)
+        job->scene[i][0] = job->parts[i][0];
+    for (int c = 0; c < LADDER_SCENES && status == STATUS_OK; c++)
+        if (job->scene[0][c].outcome != RUN_OK)
+            return bad_data(err, "ladder: the model with all effects failed (%s): %s", SCENES[LADDER_SCENE[c]].words,
+                            job->scene[0][c].reason);
     if (status == STATUS_OK)
         conclude(job, &as_built);
     return status;
@@ -195,7 +212,7 @@ static Status leave_out_each(Job *job, Err *err)
 static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err)
 {
     Ladder *l = job->out;
-    Settings s = *job->s;
+    Settings s = job->s;
     Problem p;
     SimTask task[LADDER_SCENES];
     s.sim.replicates = 1;
@@ -215,14 +232,12 @@ static LadderEffect *largest_left_out(Ladder *l)
 {
     LadderEffect *found = NULL;
     double most = -1;
-    for (size_t i = 0; i < l->n; i++)
-        for (int k = 0; k < LADDER_MEASURES; k++) {
-            const double of = fabs(l->effect[i].change[k]) / l->tolerance[k];
-            if (!l->effect[i].is_kept && of > most) {
-                most = of;
-                found = &l->effect[i];
-            }
-        }
+    for (size_t i = 0; i < l->n; i++) {
+        int scene;
+        const double of = l->effect[i].is_kept ? -1 : largest(l, l->effect[i].change, &scene);
+        found = of > most ? &l->effect[i] : found;
+        most = fmax(of, most);
+    }
     return found;
 }
 
@@ -231,16 +246,17 @@ static Status shorten(Job *job, Err *err)
     Ladder *l = job->out;
     for (LadderEffect *back = NULL;;) {
         Measured set[LADDER_SCENES];
+        int scene;
         const int is_fine = job->kind[l->n - 1] == STEPS && l->effect[l->n - 1].is_kept;
         TRY(simulate_set(job, set, err));
-        for (int k = 0; k < LADDER_MEASURES; k++) {
-            l->off[k] = change(set, is_fine ? job->other[l->n - 1] : job->first, k);
-            for (int i = 0; i < LADDER_SCENES; i++)
+        for (int i = 0; i < LADDER_SCENES; i++)
+            for (int k = 0; k < LADDER_MEASURES; k++) {
+                l->off[i][k] = change(&set[i], &job->scene[is_fine ? l->n : 0][i], k);
                 l->set[i][k] = set[i].outcome == RUN_OK ? set[i].value[LADDER_MEASURE[k]] : NAN;
-        }
+            }
         l->set_s = job->is_brief ? NAN : set->seconds;
         back = largest_left_out(l);
-        if (!back || is_within(l->off, l->tolerance))
+        if (!back || largest(l, l->off, &scene) <= 1)
             return STATUS_OK;
         back->is_kept = 1;
     }
@@ -248,8 +264,10 @@ static Status shorten(Job *job, Err *err)
 
 Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err)
 {
-    Job job = {.s = s, .x = x, .strong_s = strong_s, .is_brief = is_brief, .out = out};
+    Job job = {.s = *s, .x = x, .strong_s = strong_s, .is_brief = is_brief, .out = out};
     *out = (Ladder){0};
+    TRY(settings_put(&job.s, "search.objectives", "j1_m, drift_ratio, j3_g", err));
+    TRY(settings_put(&job.s, "search.limits", "none", err));
     TRY(list_effects(&job, err));
     TRY(leave_out_each(&job, err));
     return shorten(&job, err);

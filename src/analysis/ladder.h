@@ -2,17 +2,21 @@
  *
  *   all        the settings with every effect that they have, and by a common value every one that they do not have
  *   change     measure m without the effect over that with it, less 1
- *   tolerance  the larger of LADDER_TOLERANCE and the scatter as built: standard deviation over REPLICATES of the model
- *              with all, whose gaps differ by sim.gap_tolerance_m (0: GAP_SD_M) and by what sim.uncertain says
- *   needed     a change of J1, of the drift ratio or of J3 exceeds it (or is not known: a simulation failed)
+ *   scenes     the design, the same core rigidly connected and the building alone: whether the design is the better one
+ *              hangs on all three
+ *   tolerance  LADDER_TOLERANCE; of the design the larger of it and the scatter as built: standard deviation over
+ *              REPLICATES of the model with all, whose gaps differ by sim.gap_tolerance_m (0: GAP_SD_M) and by what
+ *              sim.uncertain says
+ *   needed     in one of the scenes a change of J1, of the drift ratio or of J3 exceeds it (or is not known: a
+ *              simulation failed)
  *   the set    effects that are needed; where the model with these alone is not within the tolerance of the one with
- *              all, the largest change that is left out is put back, until it is. By it the design, the same core
- *              rigidly connected and the building alone, for whether the design is still the better one
+ *              all in every scene, the largest change that is left out is put back, until it is
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
  * core, storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps:
  * the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
- * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts.
+ * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The objectives
+ * and limits of the settings have no part in it: some need an effect that is left out.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
  * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.
@@ -40,7 +44,8 @@ typedef struct {
     const char *words, *key;
     char with[OPTION_TEXT_MAX], without[OPTION_TEXT_MAX]; /* values of the setting */
     int is_set;                                           /* the settings have it */
-    double change[LADDER_MEASURES];                       /* [-] NAN: a simulation failed */
+    double change[LADDER_SCENES][LADDER_MEASURES];        /* [-] NAN: a simulation failed */
+    int decided_in;                                       /* the scene with the largest change, in its tolerances */
     double cost_s;                                        /* what it adds to a simulation */
     int is_needed, is_kept;                               /* by itself; in the set */
 } LadderEffect;
@@ -49,7 +54,7 @@ typedef struct {
     size_t n;
     LadderEffect effect[LADDER_MAX];
     double value[LADDER_MEASURES], tolerance[LADDER_MEASURES]; /* with all; [-] */
-    double off[LADDER_MEASURES];                               /* [-] the set from the model with all */
+    double off[LADDER_SCENES][LADDER_MEASURES];                /* [-] the set from the model with all */
     double set[LADDER_SCENES][LADDER_MEASURES];                /* by the set; NAN: a simulation failed */
     double all_s, set_s;                                       /* of a simulation */
     /* [-] of the set and of the model with all, raised where the building would not stand; 0: nothing yields */

@@ -467,7 +467,12 @@ static void climb(Check *c, const CheckedScene *p)
         json_put(o, "design=%p", ladder_design(p));
         json_put(c->out, "ladder=%p", o);
     }
-    if (p->impacts == 0)
+    Design d = {0};
+    int has_links = 0;
+    design_of(&p->space, p->x, &d);
+    for (int j = 0; j < p->building.n; j++)
+        has_links |= design_has_link(&d, j);
+    if (p->impacts == 0 && !has_links)
         warn("--ladder",
              "no gap closes in any of the designs that were tried: what the core and its contacts need cannot be said; "
              "take narrower gaps (design.gap_m), or a --design that collides",

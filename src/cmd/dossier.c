@@ -476,6 +476,7 @@ static void write_demand(const Dossier *o)
 static void write_ladder(const Dossier *o)
 {
     const Ladder *l = o->d->ladder;
+    char verdict[64];
     json_t *table = json_array();
     heading(o, "Which effects the model needs");
     for (size_t i = 0; l && i < l->n; i++) {
@@ -484,17 +485,23 @@ static void write_ladder(const Dossier *o)
         for (int k = 0; k < LADDER_MEASURES; k++) {
             char head[64];
             snprintf(head, sizeof head, "%s [%%]", measure(LADDER_MEASURE[k])->words.title);
-            figures_put(row, head, 100 * e->change[k], NAN, NAN);
+            figures_put(row, head, 100 * e->change[0][k], NAN, NAN);
         }
         put_text(row, " in the study", e->is_set ? "yes" : "no");
-        put_text(row, " verdict", e->is_needed ? "needed" : "not needed");
+        snprintf(verdict, sizeof verdict,
+                 e->is_needed && e->decided_in ? "needed: %s"
+                 : e->is_needed                ? "needed"
+                                               : "not needed",
+                 SCENES[LADDER_SCENE[e->decided_in]].words);
+        put_text(row, " verdict", verdict);
     }
     show_any(o, table);
     if (l)
         say_under(o, "All");
     say(o, l ? "What leaving out each effect changes of a model that has them all; needed: more than 2 % or the "
-               "scatter as "
-               "built. An effect that is needed and not in the study is an open point of this design."
+               "scatter as built, of the design, of the core rigidly connected or of the building alone, which is "
+               "named. An "
+               "effect that is needed and not in the study is an open point of this design."
            : *o->d->no_ladder.text ? o->d->no_ladder.text
                                    : "Only the engine fast has this.");
 }

@@ -99,13 +99,14 @@ static json_t *json_by_measure(const double values[], const char *end, double fa
 json_t *ladder_json(const Ladder *l)
 {
     json_t *effects = json_array(), *all = json_by_measure(l->value, "", 1), *settings = json_object(),
-           *set = json_by_measure(l->off, "_pct", 100), *by_set = json_object();
+           *set = json_by_measure(l->off[0], "_pct", 100), *by_set = json_object();
     for (size_t i = 0; i < l->n; i++) {
         const LadderEffect *e = &l->effect[i];
         json_t *row = json_of("without=%s", e->words);
-        json_object_update_new(row, json_by_measure(e->change, "_pct", 100));
-        json_put(row, "costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s", 1e3 * e->cost_s,
-                 e->is_needed ? "needed" : "not", e->is_set ? "yes" : "no", e->key, e->with, e->without);
+        json_object_update_new(row, json_by_measure(e->change[0], "_pct", 100));
+        json_put(row, "most_in=%s costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s",
+                 SCENES[LADDER_SCENE[e->decided_in]].key, 1e3 * e->cost_s, e->is_needed ? "needed" : "not",
+                 e->is_set ? "yes" : "no", e->key, e->with, e->without);
         json_array_append_new(effects, row);
         json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
     }

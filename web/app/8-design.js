@@ -201,7 +201,7 @@ function ladderPart(host, d) {
       "imtet check --ladder repeats it with the steps, and says what each costs." +
       (l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : "")),
     table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
-      l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
+      l.effects.map((e) => line([e.without, ...changes(e), e.verdict === "needed" && e.most_in !== "with_core" ? `needed: ${SCENES[e.most_in].words}` : e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
     element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
     table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], ["with_core", "rigid", "no_core"].map(scene)));
