@@ -329,10 +329,34 @@ TEST(a_tied_core_rocks_too_and_its_dashpots_take_energy)
 {
     SceneOptions s = on_ground("rotation=5.5e11");
     const SimResult springs = simulated(&s, "builtin:sylmar-like", 0.008, 10, SCENE_RIGID);
-    s = on_ground("rotation=5.5e11 rotation_dashpot=3e10");
+    s = on_ground("rotation=5.5e11 rotation_dashpot=1e10");
     const SimResult damped = simulated(&s, "builtin:sylmar-like", 0.008, 10, SCENE_RIGID);
     assert_less(damped.forces.core_overturning_nm, springs.forces.core_overturning_nm);
     assert_less(damped.energy_balance_error, 1e-6);
+}
+
+/* Beyond 0.3 of the springs they would change the modes, which are found without them. */
+TEST(dashpots_that_are_large_beside_their_springs_are_refused_with_the_figure)
+{
+    static const struct {
+        const char *foundation;
+        int is_refused;
+    } CASES[] = {{"rotation=5e11 translation=5e9 rotation_dashpot=1e11 translation_dashpot=1e9", 1},
+                 {"rotation=5e11 rotation_dashpot=1e11", 1},
+                 {"rotation=5e11 translation=5e9 translation_dashpot=1e9", 1},
+                 {"rotation=5e11 translation=5e9 rotation_dashpot=1e10 translation_dashpot=1e8", 0},
+                 {"soil=D radius=11.28", 0}};
+    for (size_t i = 0; i < N_OF(CASES); i++) {
+        Scene *scene;
+        Err err = {0};
+        SceneOptions s = on_ground(CASES[i].foundation);
+        s.design.thickness_m.at[1] = 0.03;
+        const Status status = scene_create(&scene, &s, NULL, &err);
+        assert_int_equal(status, CASES[i].is_refused ? STATUS_BAD_DATA : STATUS_OK);
+        assert_true(!CASES[i].is_refused || strstr(err.text, "core.foundation: omega C / K of its dashpots is "));
+        if (status == STATUS_OK)
+            scene_free(scene);
+    }
 }
 
 TEST(what_is_no_foundation_is_refused_in_words)

@@ -249,7 +249,7 @@ TEST(settings_that_let_storeys_yield_say_how)
     json_t *settings = json_object_get(json_object_get(weak, "ladder"), "settings");
     assert_string_equal(json_string_value(json_object_get(settings, "building.yield_drift")), "0.003");
     assert_string_equal(json_string_value(json_object_get(settings, "building.hysteresis")), "bouc_wen");
-    assert_string_equal(json_string_value(json_object_get(settings, "building.bouc_wen_exponent")), "2");
+    assert_string_equal(json_string_value(json_object_get(settings, "building.bouc_wen_exponent")), "10");
     settings = json_object_get(json_object_get(strong, "ladder"), "settings");
     assert_string_equal(json_string_value(json_object_get(settings, "building.yield_drift")), "0");
     assert_null(json_object_get(settings, "building.hysteresis"));

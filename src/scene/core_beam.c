@@ -189,6 +189,14 @@ double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], in
            foundation_loss(c->base.translation, c->base.translation_dashpot, omega) * translation * translation;
 }
 
+double core_beam_dashpot_share(const CoreBeam *c)
+{
+    const Foundation *f = &c->base;
+    const double omega = c->omega[0],
+                 turns = f->rotation > 0 ? omega * foundation_rotation_dashpot(f, omega) / f->rotation : 0;
+    return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
+}
+
 static void set_base(CoreBeam *c, const double storey_m[])
 {
     double z = 0;

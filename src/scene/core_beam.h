@@ -70,6 +70,9 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
  * apart, are the core's nodes in it. */
 double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], int stride);
 
+/* omega C / K at the first mode of the larger of the foundation's dashpots. */
+double core_beam_dashpot_share(const CoreBeam *c);
+
 /* The section in storey 0..n-1. */
 typedef struct {
     double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */

@@ -98,7 +98,7 @@ static const Option OPTIONS[] = {
          "would not stand"),
     CHOICE(building.hysteresis, Hysteresis, HYSTERESIS_LIST, "bilinear",
            "of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
-    REAL(building.bouc_wen_exponent, "-", "2", 0.1, 100, "bouc_wen: how sharply a storey yields; large: bilinear"),
+    REAL(building.bouc_wen_exponent, "-", "10", 0.1, 100, "bouc_wen: how sharply a storey yields; large: bilinear"),
     REAL(building.strength_degradation, "-", "0", 0, 10,
          "bouc_wen: loss of strength for every 2 elastic energies at yield that went in (docs/theory.md)"),
     REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, the same way"),
