@@ -483,7 +483,7 @@ class Run(_Copied):
             self._read(db)
         finally:
             db.close()
-        self._scene = None
+        self._scenes = {}
 
     def _read(self, db):
         text, n_var, provenance = db.execute("SELECT settings, n_var, provenance FROM run").fetchone()
@@ -498,7 +498,8 @@ class Run(_Copied):
         rows = db.execute(f"SELECT e.id, e.generation, e.kind, e.outcome, COALESCE(f.violation, e.violation), {chosen} "
                           "FROM evaluation e LEFT JOIN finer f ON f.id = e.id WHERE e.kind IS NOT NULL "
                           "ORDER BY e.kind = 'polished', e.id").fetchall()
-        named = db.execute("SELECT COUNT(*) FROM finer").fetchone()[0] > 0
+        self._levels = dict(db.execute("SELECT id, level FROM finer"))
+        named = bool(self._levels)
         marks = {row[0] for row in db.execute("SELECT evaluation FROM front" + ("" if named else " WHERE left IS NULL"))}
         kinds = [("id", np.int64), ("generation", np.int64), ("kind", "U12"), ("outcome", "U16"),
                  ("violation", np.float64)] + [(n, np.float64) for n in numbers]
@@ -538,13 +539,17 @@ class Run(_Copied):
         return rows[0]
 
     def simulate(self, number):
-        """The Result of a design of a tower by its id, simulated again as the run simulates."""
-        if self._scene is None:
-            if self.settings["problem.kind"] != "tower":
-                raise ValueError("the problem of this run is no tower: `imtet simulate` asks its worker")
-            self._scene = Scene(None, [f"{k}={v}" for k, v in self.settings.items()])
-        row = self.design(number)
-        return self._scene.simulate(np.array([row[n] for n in self.variables]))
+        """The Result of a design of a tower by its id, simulated again as the run simulates: a design that its end named
+        with more steps, so that the numbers are those of `designs`."""
+        if self.settings["problem.kind"] != "tower":
+            raise ValueError("the problem of this run is no tower: `imtet simulate` asks its worker")
+        row, level = self.design(number), self._levels.get(number, 0)
+        if level not in self._scenes:
+            accuracy = self.settings["sim.accuracy"]
+            if level and accuracy != "fine":  # times that the steps are doubled, which go with the error^(-2/3)
+                accuracy = (_ERRORS.get(accuracy) or float(accuracy)) * 2 ** (-1.5 * level)
+            self._scenes[level] = Scene(None, [f"{k}={v}" for k, v in {**self.settings, "sim.accuracy": accuracy}.items()])
+        return self._scenes[level].simulate(np.array([row[n] for n in self.variables]))
 
 
 def _read_settings(text):
@@ -563,6 +568,7 @@ def open_run(path):
     return Run(path)
 
 
+_ERRORS = {"coarse": 0.08, "standard": 0.01}  # as numbers, by their steps per contact
 _NOT_OF_THE_PROBLEM = ("search.", "run.", "problem.command", "problem.timeout_s", "sim.threads")
 _FILES = ("motion.record", "motion.records", "motion.forces", "building.model")  # told apart by their content
 

@@ -272,6 +272,11 @@ class Simulating(unittest.TestCase):
         again = run.simulate(int(row.id))
         self.assertAlmostEqual(again.j1_m, row.j1_m, delta=0.02 * row.j1_m)
         self.assertEqual(again.mcore_kg, row.mcore_kg)
+        named = [n for n, level in run._levels.items() if level > 0]
+        for number in named[:3]:
+            for name in run.objectives:
+                self.assertAlmostEqual(run.simulate(number)[name], run.design(number)[name], delta=1e-6 * abs(run.design(number)[name]))
+        self.assertGreater(len(named), 0)
         with self.assertRaisesRegex(KeyError, "no design has the id 100000"):
             run.design(100000)
         with self.assertRaisesRegex(KeyError, "'knee' is no id"):
