@@ -421,10 +421,9 @@ const Command CMD_SIMULATE = {
         "Of a problem that is no tower its simulator is asked, an external worker say, as a study asks it.\n"
         "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
         "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
-        "--json gives one object for one design and a list of them for several. Behind +- stands the likely error of "
-        "the\n"
-        "integration, by a second run with twice the steps (docs/promise.md); digits that it leaves open are not "
-        "shown.\n"
+        "--json gives one object for one design and a list of them for several. Behind +- stands the error of the\n"
+        "integration that 95 % of all figures keep, by a second run with twice the steps (docs/promise.md); digits\n"
+        "that it leaves open are not shown.\n"
         "--horizon: impacts magnify differences: two runs that differ in the last digit part ways after some hundreds\n"
         "of them. Before the predictability horizon results can be compared digit by digit, after it only by their\n"
         "mean and standard deviation, there of 16 runs whose gaps are off by 1 um, standard deviation.",

@@ -197,7 +197,7 @@ static void write_summary(const Dossier *o)
                     : "");
     else
         say_under(o, "All");
-    say(o, "Behind the sign stands the likely error of the integration. The other "
+    say(o, "Behind the sign stands the error of the integration, which 95 % of such figures keep. The other "
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
     fputs("<p class=\"lines\">", o->out);

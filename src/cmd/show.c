@@ -386,13 +386,15 @@ const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
     return text;
 }
 
-/* What there is of errors and deviations; NULL: nothing. word: what the deviation is, in the place of "sd". */
+/* What there is of errors and deviations; NULL: nothing. error: likely ones, behind the sign stands their bound, which 95 % keep, as
+ * the errors of named designs do. word: what the deviation is, in the place of "sd". */
 static void put_objectives(json_t *row, const MeasureOrder *order, const double value[], const double error[],
                            const double sd[], const char *word)
 {
     for (int i = 0; i < order->n_obj; i++) {
         const int k = order->of[i];
-        put_as(row, measures_name(order, k), value[k], error ? error[k] : NAN, sd ? sd[k] : NAN, word);
+        put_as(row, measures_name(order, k), value[k], error ? ESTIMATE_FACTOR * error[k] : NAN, sd ? sd[k] : NAN,
+               word);
     }
 }
 

@@ -18,7 +18,7 @@ static Status simulate(const Problem *p, const double x[], int with_devices, Det
     if (tower_record(tower_of(p), 0)->options.sim.engine == ENGINE_FAST)
         TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, sd, err));
     for (int k = 0; k < N_MEASURES; k++)
-        d->error[k] = fmax(d->error[k], sd[k]); /* what is known of both */
+        d->error[k] = fmax(ESTIMATE_FACTOR * d->error[k], sd[k]); /* what is known of both */
     TRY(baselines_find(p, x, with_devices, d->baseline, err));
     for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
         d->result[k] = d->baseline[k].first;

@@ -36,7 +36,7 @@ typedef struct {
     char record[128];
     double pga_g, scale, stretch, duration_s;
     SimResult result[N_SCENES];  /* by SceneKind, under the first record */
-    double error[N_MEASURES];    /* of the design, likely or sd, the larger (analysis/estimate.h); NAN: not known */
+    double error[N_MEASURES];    /* of the design, bound or sd, the larger (analysis/estimate.h); NAN: not known */
     Baseline baseline[N_SCENES]; /* under all records of the run, by its rule */
     size_t n_records;            /* of the run */
     SimResult *by_record;        /* (n_records) the design under each of them; NULL: there is one */
