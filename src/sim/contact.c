@@ -92,7 +92,7 @@ ContactForce contact_bumper_force(const Contact *c, double mass, double p, doubl
                       .elastic = s.force,
                       .dp = slope * (1 + damping * p_dot) + apart * share_slope * p_dot,
                       .dv = s.force * damping};
-    if (c->xi > 0 && p_dot > 0) {
+    if (c->xi > 0 && p_dot > c->xi_above) {
         const double dashpot = 2 * c->xi * s.share * sqrt(mass * s.force / p);
         f.raw += dashpot * p_dot;
         f.dp += dashpot * p_dot * (share_slope / (s.share * s.force) + 0.5 * (slope / s.force - 1 / p));
@@ -129,7 +129,7 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
             "0.01 or more, or contact.law = paper",
             r);
     c->k = 2 * o->youngs_modulus_pa * sqrt(o->radius_m) / (3 * (1 - nu * nu));
-    c->a = c->xi = 0;
+    c->a = c->xi = c->xi_above = 0;
     switch (law) {
     case LAW_PAPER:
         c->a = 1.5 * (1 - r);

@@ -35,7 +35,8 @@
 typedef struct {
     double k;        /* [N/m^1.5] */
     double a;        /* [-] */
-    double xi;       /* [-] */
+    double xi;       /* [-] of a dashpot */
+    double xi_above; /* [m/s] it acts where p' is larger: 0, closing; -INFINITY: both ways */
     double v0_floor; /* [m/s] */
     double bumper;   /* [N/m] k_b; 0: none */
     double bumper_a; /* [-] a_b */
@@ -94,7 +95,7 @@ static inline ContactForce contact_force(const Contact *c, double mass, double p
         return contact_bumper_force(c, mass, p, p_dot, v0);
     const double root = sqrt(p), hertz = c->k * p * root, damping = c->a / v0, loss = 1.0 + damping * p_dot;
     ContactForce f = {.raw = hertz * loss, .elastic = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
-    if (c->xi > 0 && p_dot > 0) {
+    if (c->xi > 0 && p_dot > c->xi_above) {
         const double dashpot = 2 * c->xi * sqrt(mass * c->k * root);
         f.raw += dashpot * p_dot;
         f.dp += 0.25 * dashpot * p_dot / p;
