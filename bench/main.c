@@ -342,6 +342,7 @@ static const ArgOption PROBLEM_OPTIONS[] = {
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
     SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
+    {"--noise", "SHARE", NULL, 0, "standard deviation of an objective that the search sees, as a share of its value"},
     OPTION_CSV,
     OPTION_SET,
     OPTION_END,
@@ -421,8 +422,8 @@ static const Command COMMANDS[] = {
      .example = "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
      .details =
          "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one row\n"
-         "each in their order: variables, then objectives. With problem.noise the noisy objectives of the search\n"
-         "stand before the exact ones.",
+         "each in their order: variables, then objectives. With --noise the noisy objectives of the search stand\n"
+         "before the exact ones.",
      .options = PROBLEM_OPTIONS,
      .run = problem_run,
      .program = "imtet-bench"},

@@ -24,6 +24,14 @@
     "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"                               \
     "[design]\ngap_m = 0.001, 0.05\n[motion]\npga_g = 0.3\n"
 
+/* A worker that answers with DTLZ2 (bench/textbook.h). As options and as a settings file. */
+#define DTLZ2(n_var, n_obj)                                                                                            \
+    "--set problem.kind=external --set problem.variables=" #n_var " --set problem.objectives=" #n_obj                  \
+    " --set 'problem.command=build/textbook dtlz2 " #n_var " " #n_obj "' "
+#define DTLZ2_INI(n_var, n_obj)                                                                                        \
+    "[problem]\nkind = external\ncommand = build/textbook dtlz2 " #n_var " " #n_obj "\nvariables = " #n_var            \
+    "\nobjectives = " #n_obj "\n"
+
 typedef struct {
     int code; /* exit status */
     char *out, *err;

@@ -4,7 +4,7 @@
 #include "searches.h"
 
 #include "base/random.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "moga/constants.h"
 #include "moga/search.h"
 

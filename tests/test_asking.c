@@ -6,7 +6,7 @@
 
 #include "base/linalg.h"
 #include "base/random.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "imtet.h"
 
 enum { ROWS_MAX = 200, VAR_MAX = 6, OBJ_MAX = 3, CON_MAX = 2, ASKED_MAX = 64 };
@@ -52,12 +52,12 @@ static const char *answer_tenth(long id, const double x[], double f[], double g[
     "[problem]\nkind = external\ncommand = sh tests/worker.sh " mode "\nvariables = 3\nobjectives = 2\nupper = 20\n"   \
     "kinds = " kinds "\n"
 #define SEARCH "[search]\ninitial = 16\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
-#define DTLZ2  "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n" SEARCH
+#define SPHERE  DTLZ2_INI(6, 3) SEARCH
 #define WISH   "f1 0.2,f2 0.2,f3 0.6"
 
 static const Exercise EXERCISES[] = {
-    {"dtlz2", DTLZ2, "real", "none", 6, 3, 0, 40, 1, answer_dtlz2},
-    {"wished", DTLZ2 "aspire = " WISH "\n", "real", WISH, 6, 3, 0, 40, 1, answer_dtlz2},
+    {"dtlz2", SPHERE, "real", "none", 6, 3, 0, 40, 1, answer_dtlz2},
+    {"wished", SPHERE "aspire = " WISH "\n", "real", WISH, 6, 3, 0, 40, 1, answer_dtlz2},
     {"bounded", WORKER("bounded", "int, int, choice:a|b") SEARCH, "int,int,choice:a|b", "none", 3, 2, 2, 40, 20,
      answer_bounded},
     {"tenth", WORKER("tenth", "real") SEARCH, "real", "none", 3, 2, 0, 40, 20, answer_tenth},

@@ -12,7 +12,7 @@
 #include "base/random.h"
 #include "check.h"
 #include "evaluate/external.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "evaluate/schema.h"
 #include "evaluate/adapter.h"
 #include "settings/settings.h"
@@ -514,20 +514,16 @@ TEST(lists_that_do_not_fit_are_refused_by_name)
 TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
 {
     enum { DRAWS = 2000 };
-    Settings s;
+    static const TextbookOptions NOISY = {"dtlz2", VAR, OBJ, 0.03, 1, "real"};
     Err err = {0};
-    settings_defaults(&s);
-    CHECK_OK(settings_set(&s, "problem.kind=dtlz2", &err), &err);
-    CHECK_OK(settings_set(&s, "problem.noise=0.03", &err), &err);
     double first[OBJ], x[VAR], exact[OBJ], sum = 0, square = 0;
     for (size_t d = 0; d < VAR; d++)
         x[d] = 0.4;
     for (int again = 0; again < 2; again++) {
-        Adapter *adapter;
-        CHECK_OK(adapter_open(&adapter, &s, &err), &err);
-        const Problem *p = adapter_problem(adapter);
+        Problem p;
         Queue *q;
-        CHECK_OK(queue_open(&q, p, &err), &err);
+        CHECK_OK(textbook_open(&p, &NOISY, &err), &err);
+        CHECK_OK(queue_open(&q, &p, &err), &err);
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;
@@ -536,12 +532,12 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
                 memcpy(first, f, sizeof f);
             else if (i == 0)
                 assert_memory_equal(first, f, sizeof f);
-            textbook_exact(p, x, exact);
+            textbook_exact(&p, x, exact);
             sum += (f[0] / exact[0] - 1) / (2 * DRAWS);
             square += (f[0] / exact[0] - 1) * (f[0] / exact[0] - 1) / (2 * DRAWS);
         }
         queue_close(q);
-        adapter_close(adapter);
+        problem_close(&p);
     }
     assert_less(fabs(sum), 0.003);
     assert_close(sqrt(square), 0.03, 0.06);

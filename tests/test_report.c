@@ -36,8 +36,8 @@ static int set_up(void **state)
            "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --set "
            "'search.limits=core_stress_pa<=1e10' --out @/tower");
     expect(0, "",
-           "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
-           "problem.objectives=3 --max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
+           "optimize configs/quick.ini " DTLZ2(
+               5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
     write_in_place("own.csv", MOTION);
     write_in_place("twin.csv", MOTION);
     expect(0, "twin.csv has the content of ", "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2");
@@ -520,9 +520,9 @@ TEST(a_run_of_another_problem_has_no_tower_in_its_report)
 TEST(names_cannot_break_out_of_the_page)
 {
     expect(0, "",
-           "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
-           "problem.objectives=4 --set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
-           "--set search.population=8 --set search.initial=20 --out @/names");
+           "optimize configs/quick.ini " DTLZ2(
+               5, 4) "--set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
+                     "--set search.population=8 --set search.initial=20 --out @/names");
     expect(0, "", "report @/names");
     json_t *run = run_of("names");
     const json_t *objectives = json_object_get(json_object_get(run, "schema"), "objectives");

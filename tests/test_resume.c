@@ -9,7 +9,7 @@
 #include "base/pack.h"
 #include "check.h"
 #include "study/search_loop.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "functions.h"
 #include "searches.h"
 

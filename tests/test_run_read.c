@@ -72,10 +72,10 @@ TEST(what_is_wrong_in_one_cell_is_named)
 
 TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 {
-    free(output_of("optimize @/textbook.ini --set problem.noise=0 --out @/sound --new"));
+    free(output_of("optimize @/textbook.ini " EXACT "--out @/sound --new"));
     change("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
     expect(74, "evaluation 20 is missing; --new --set search.start=",
-           "optimize @/textbook.ini --set problem.noise=0 --out @/sound-2 --max-evals 50");
+           "optimize @/textbook.ini " EXACT "--out @/sound-2 --max-evals 50");
 }
 
 TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
@@ -185,7 +185,7 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     Err err = {0};
     size_t n = 0;
     char path[2][PATH_MAX];
-    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
+    write_in_place("plain.ini", DTLZ2_INI(4, 2));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/first"));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --seed 2 --set search.start=@/first"));
     const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
@@ -246,8 +246,8 @@ TEST(every_number_has_a_column_of_its_name)
     sqlite3 *db;
     sqlite3_stmt *row;
     Said s;
-    write_in_place("names.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\nobjective_names = a b,it's\n"
-                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
+    write_in_place("names.ini", DTLZ2_INI(3, 2) "objective_names = a b,it's\n"
+                                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
     write_in_place("many.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 1990\n"
                                "objectives = 2\n[search]\ninitial = 4\npopulation = 4\nmax_evals = 4\n");
     free(output_of("optimize @/names.ini --out @/names"));

@@ -917,8 +917,7 @@ static int begin(void **state)
     if (prepare(state) != 0)
         return -1;
     static const char *const RUNS[] = {
-        "--out @/runs/a", "--out @/runs/b --set search.seed=2",
-        "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2",
+        "--out @/runs/a", "--out @/runs/b --set search.seed=2", "--out @/runs/c " DTLZ2(4, 2),
         "--out @/runs/d --set design.step_thickness_m=0.01,0.02,0.03 --set search.max_evals=24 --set sim.duration_s=12 "
         "--set search.initial=16 --set "
         "search.population=8 --set sim.replicates=2 --set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 "

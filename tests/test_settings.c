@@ -7,7 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "evaluate/textbook.h"
 #include "settings/settings.h"
 
 enum { KEYS_MAX = 200 };
@@ -97,25 +96,6 @@ TEST(keys_are_unique)
     for (int i = 0; i < p.n; i++)
         for (int j = 0; j < i; j++)
             assert_string_not_equal(p.key[i], p.key[j]);
-}
-
-/* The words of a choice and the enumeration come from one list; those of problem.kind are the textbook's names too. */
-TEST(the_words_of_problem_kind_are_the_names_of_the_textbook_problems)
-{
-    int kind = 0;
-    while (strcmp(settings_key(kind), "problem.kind") != 0)
-        kind++;
-    char words[200] = "tower|external";
-    size_t n = 0;
-    for (; textbook(n); n++) {
-        Settings s;
-        settings_defaults(&s);
-        set(&s, "problem.kind", textbook(n)->name);
-        assert_int_equal(s.problem.kind, PROBLEM_TEXTBOOK + n);
-        strcat(strcat(words, "|"), textbook(n)->name);
-    }
-    assert_int_equal(PROBLEM_TEXTBOOK + n, PROBLEM_KIND_COUNT);
-    assert_string_equal(settings_words(kind), words);
 }
 
 typedef struct {

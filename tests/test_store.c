@@ -161,8 +161,8 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     sqlite3 *db;
     StudySummary summary;
     Err err = {0};
-    int left = 20;
-    const Settings s = settings_of(TEXTBOOK, "version");
+    int left = 15;
+    const Settings s = settings_of(TOWER, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
     Run stopped = run_in("version");
@@ -195,7 +195,7 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     s.search.max_evals = 40;
     Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
     snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
-    refused_with(&other, 0, "problem.command is none there, now no000", "problem.command");
+    refused_with(&other, 0, "problem.command is build/textbook dtlz2 6 3 0.05 there, now no000", "problem.command");
     refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
     Err err = {0};
@@ -535,8 +535,8 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
 TEST(an_export_of_thousands_has_every_design_in_its_order)
 {
     enum { DESIGNS = 4200 };
-    write_in_place("large.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nsurrogate = off\n"
-                                "stop_after = 0\nmax_evals = 4200\n");
+    write_in_place("large.ini", DTLZ2_INI(3, 2) "[search]\nsurrogate = off\n"
+                                                "stop_after = 0\nmax_evals = 4200\n");
     free(output_of("optimize @/large.ini --out @/large"));
     char *all = all_of("large");
     long n = 0;
