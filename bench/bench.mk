@@ -1,6 +1,6 @@
 # imtet-bench: engines compared by speed, accuracy and reliability. What only its engines need is linked here alone.
 
-BENCH_SRC    := $(filter-out bench/main.c bench/ranks.c bench/textbook_worker.c,$(wildcard bench/*.c bench/*/*.c))
+BENCH_SRC    := $(filter-out bench/main.c bench/textbook_worker.c,$(wildcard bench/*.c bench/*/*.c))
 BENCH_LIB    := $(BUILD)/libimtetbench.a
 BENCH        := $(BUILD)/imtet-bench
 BENCH_LDLIBS := -lsundials_arkode -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lsundials_sunnonlinsolnewton

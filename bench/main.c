@@ -1,6 +1,6 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | schedule [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | problem [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
@@ -13,7 +13,6 @@
 #include "bench/promise.h"
 #include "bench/paper.h"
 #include "bench/problem.h"
-#include "bench/schedule.h"
 #include "cmd/args.h"
 #include "motion/motion_scale.h"
 #include "store/output.h"
@@ -263,8 +262,6 @@ static Status run_factors(const Args *args, Err *err)
     FactorPlan plan = {.settings = &s,
                        .problems = args_value(args, "--problem"),
                        .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside"),
-                       .rounded = args_has(args, "--rounded"),
-                       .against_random = args_has(args, "--random"),
                        .keep = args_value(args, "--keep")};
     const long budgets[] = {300, 500, 1000};
     settings_defaults(&s);
@@ -283,8 +280,6 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
     {"--aside", NULL, NULL, 0, "those kept aside instead"},
     {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
-    {"--rounded", NULL, NULL, 0, "beside a search of reals, of which the problem rounds some"},
-    {"--random", NULL, NULL, 0, "beside random designs (a Latin hypercube), not a plain search"},
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
@@ -319,22 +314,6 @@ static const ArgOption LOOP_OPTIONS[] = {
     OPTION_CSV,
     OPTIONS_MOTION,
     OPTION_SET,
-    OPTION_END,
-};
-
-static Status run_schedule(const Args *args, Err *err)
-{
-    SchedulePlan plan = {.folder = args->operand};
-    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
-    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
-    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
-    return schedule(&plan, stdout, err);
-}
-
-static const ArgOption SCHEDULE_OPTIONS[] = {
-    {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
-    {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
-    {"--chain", "S", NULL, 0, "the longest chain in it"},
     OPTION_END,
 };
 
@@ -426,14 +405,6 @@ static const Command COMMANDS[] = {
          "before the exact ones.",
      .options = PROBLEM_OPTIONS,
      .run = problem_run,
-     .program = "imtet-bench"},
-    {.name = "schedule",
-     .operand = "RUN",
-     .summary = "a run of one thread replayed on 1 to 64 workers",
-     .example = "imtet-bench schedule results/kobe",
-     .details = "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-     .options = SCHEDULE_OPTIONS,
-     .run = run_schedule,
      .program = "imtet-bench"},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };

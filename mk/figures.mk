@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures ladder bench promise named pages paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures ladder bench promise named pages paper chart ablation pictures study web setup-browser report-bench serve-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -26,13 +26,6 @@ chart: $(BENCH) ## speed against accuracy of every engine
 	@scripts/tables chart
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
-# CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
-compare: $(PROGRAM) $(BENCH) setup-figures ## the search on textbook problems, other families and the tower
-	@rm -f build/search.md
-	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out build/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
-	@scripts/tables --from build/search.md search search-plain search-families search-aside
-	@cp build/search.svg docs
-
 paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
 	@scripts/paper --program ./$(PROGRAM) --bench $(BENCH) $(ARGS)
 
@@ -40,16 +33,6 @@ ablation: setup-figures ## what each tuned constant of the search earns: every o
 	@rm -f build/constants.md
 	@scripts/ablation --out build/constants.md $(ARGS)
 	@if [ -e build/constants.md ]; then scripts/tables --from build/constants.md constants; fi
-
-fidelity: $(PROGRAM) setup-figures ## what search.fidelity = replicates saves on the tower under three records; ARGS="--seeds 1,2" or --short
-	@scripts/fidelity --program ./$(PROGRAM) $(ARGS)
-
-# SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
-scale-cost: $(PROGRAM) ## what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate
-	@printf '<!-- %s -->\n<!-- end -->\n' measured surrogate > build/scale.md
-	@scripts/scale-cost --program ./$(PROGRAM) --out build/scale.md $(if $(PART),--part $(PART)) $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
-	@if [ -e build/scale.svg ]; then cp build/scale.svg docs; fi
-	@scripts/tables --from build/scale.md $(if $(filter surrogate,$(PART)),,scale scale-commands) $(if $(filter plain,$(PART)),,scale-surrogate)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@mkdir -p $(BUILD)/pictures

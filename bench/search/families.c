@@ -9,7 +9,7 @@
 
 typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
-typedef enum { FAIL_NEVER, FAIL_SLAB, FAIL_BALL, FAIL_CHECKER } Failing;
+typedef enum { NEVER, SLAB, BALL, CHECKER } Failing;
 
 typedef struct {
     Family family;
@@ -22,69 +22,34 @@ typedef struct {
 } Recipe;
 
 static const Recipe RECIPES[] = {
-    {{"ripples2", "Rastrigin, two objectives", 10, 2, 0, 0}, RASTRIGIN, CONVEX, FAIL_NEVER, 4, 0.3, 0, 0},
-    {{"ripples5", "Rastrigin, rotated, five objectives", 15, 5, 0, 0}, RASTRIGIN, CONCAVE, FAIL_NEVER, 3, 0.2, 1, 0},
-    {{"ackley3", "Ackley, shifted, three objectives", 12, 3, 0, 0}, ACKLEY, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"valley3", "Rosenbrock, rotated", 12, 3, 0, 0}, ROSENBROCK, CONCAVE, FAIL_NEVER, 0, 0, 1, 0},
-    {{"curve6", "degenerate: the front is a curve", 14, 6, 0, 0}, SPHERE, CURVE, FAIL_NEVER, 0, 0, 1, 0},
-    {{"pieces4", "disconnected", 12, 4, 0, 0}, SPHERE, PIECES, FAIL_NEVER, 0, 0, 1, 0},
-    {{"scales40", "objectives of 1e-3 to 1e6, 40 variables", 40, 3, 0, 0}, SPHERE, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
-    {{"quadratics10", "ten quadratics, rotated", 16, 10, 0, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
-    {{"limits4", "quadratics under two limits", 10, 4, 2, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
-    {{"slab3", "a third of the box fails, the best of it", 10, 3, 0, 0}, SPHERE, CONCAVE, FAIL_SLAB, 0, 0, 1, 0},
-    {{"ball4", "fails about the minima of the quadratics", 8, 4, 0, 0}, SPHERE, QUADRATICS, FAIL_BALL, 0, 0, 1, 0},
-    {{"ripples3", "Rastrigin, rotated, aside", 12, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 5, 0.25, 1, 0},
-    {{"valley6", "Rosenbrock in six objectives, aside", 20, 6, 0, 1}, ROSENBROCK, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
-    {{"limits7", "Ackley under a limit, aside", 14, 7, 1, 1}, ACKLEY, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"checker3", "a third of the box fails, in squares, aside", 8, 3, 0, 1},
-     SPHERE,
-     QUADRATICS,
-     FAIL_CHECKER,
-     0,
-     0,
-     0,
-     0},
-    {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, FAIL_SLAB, 0, 0, 1, 0},
-    {{"combs2", "Rastrigin, steep, ten waves, two objectives", 10, 2, 0, 0},
-     RASTRIGIN,
-     CONVEX,
-     FAIL_NEVER,
-     10,
-     1,
-     0,
-     0},
-    {{"combs7", "Rastrigin, steep, six waves, seven objectives", 16, 7, 0, 0},
-     RASTRIGIN,
-     CONCAVE,
-     FAIL_NEVER,
-     6,
-     1,
-     0,
-     0},
-    {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 8, 1.5, 0, 0},
-    {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, FAIL_NEVER, 0, 0, 0, 0},
-    {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3},
-     SPHERE,
-     CONCAVE,
-     FAIL_NEVER,
-     0,
-     0,
-     0,
-     0},
-    {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3},
-     ROSENBROCK,
-     CONVEX,
-     FAIL_NEVER,
-     0,
-     0,
-     0,
-     0},
-    {{"beam2", "welded beam of four materials", 6, 2, 4, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"reducer2", "speed reducer with whole teeth", 7, 2, 11, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"vessel2", "pressure vessel of plates", 4, 2, 2, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"ripples2", "Rastrigin, two objectives", 10, 2, 0, 0}, RASTRIGIN, CONVEX, NEVER, 4, 0.3, 0, 0},
+    {{"ripples5", "Rastrigin, rotated, five objectives", 15, 5, 0, 0}, RASTRIGIN, CONCAVE, NEVER, 3, 0.2, 1, 0},
+    {{"ackley3", "Ackley, shifted, three objectives", 12, 3, 0, 0}, ACKLEY, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"valley3", "Rosenbrock, rotated", 12, 3, 0, 0}, ROSENBROCK, CONCAVE, NEVER, 0, 0, 1, 0},
+    {{"curve6", "degenerate: the front is a curve", 14, 6, 0, 0}, SPHERE, CURVE, NEVER, 0, 0, 1, 0},
+    {{"pieces4", "disconnected", 12, 4, 0, 0}, SPHERE, PIECES, NEVER, 0, 0, 1, 0},
+    {{"scales40", "objectives of 1e-3 to 1e6, 40 variables", 40, 3, 0, 0}, SPHERE, CONVEX, NEVER, 0, 0, 1, 1},
+    {{"quadratics10", "ten quadratics, rotated", 16, 10, 0, 0}, SPHERE, QUADRATICS, NEVER, 0, 0, 1, 0},
+    {{"limits4", "quadratics under two limits", 10, 4, 2, 0}, SPHERE, QUADRATICS, NEVER, 0, 0, 1, 0},
+    {{"slab3", "a third of the box fails, the best of it", 10, 3, 0, 0}, SPHERE, CONCAVE, SLAB, 0, 0, 1, 0},
+    {{"ball4", "fails about the minima of the quadratics", 8, 4, 0, 0}, SPHERE, QUADRATICS, BALL, 0, 0, 1, 0},
+    {{"ripples3", "Rastrigin, rotated, aside", 12, 3, 0, 1}, RASTRIGIN, LINEAR, NEVER, 5, 0.25, 1, 0},
+    {{"valley6", "Rosenbrock in six objectives, aside", 20, 6, 0, 1}, ROSENBROCK, CONVEX, NEVER, 0, 0, 1, 1},
+    {{"limits7", "Ackley under a limit, aside", 14, 7, 1, 1}, ACKLEY, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"checker3", "a third of the box fails, in squares, aside", 8, 3, 0, 1}, SPHERE, QUADRATICS, CHECKER, 0, 0, 0, 0},
+    {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, SLAB, 0, 0, 1, 0},
+    {{"combs2", "Rastrigin, steep, ten waves", 10, 2, 0, 0}, RASTRIGIN, CONVEX, NEVER, 10, 1, 0, 0},
+    {{"combs7", "Rastrigin, steep, six waves", 16, 7, 0, 0}, RASTRIGIN, CONCAVE, NEVER, 6, 1, 0, 0},
+    {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, NEVER, 8, 1.5, 0, 0},
+    {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, NEVER, 0, 0, 0, 0},
+    {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3}, SPHERE, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3}, ROSENBROCK, CONVEX, NEVER, 0, 0, 0, 0},
+    {{"beam2", "welded beam of four materials", 6, 2, 4, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"reducer2", "speed reducer with whole teeth", 7, 2, 11, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"vessel2", "pressure vessel of plates", 4, 2, 2, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
 
@@ -239,15 +204,15 @@ static int fails(const Made *m, const double x[])
     const size_t n = m->recipe.family.n_var;
     double side = 0.0;
     switch (m->recipe.failing) {
-    case FAIL_NEVER:
+    case NEVER:
         return 0;
-    case FAIL_SLAB: /* x[2] near the distance's zero, and its side */
+    case SLAB: /* x[2] near the distance's zero, and its side */
         return x[2] > m->shift[2] - 0.08 && x[2] < m->shift[2] + 0.25;
-    case FAIL_BALL:
+    case BALL:
         for (size_t i = 0; i < n; i++)
             side += x[i] / (double)n;
         return square_off(n, x, m->shift) < 0.03 * (double)n || side < 0.42;
-    case FAIL_CHECKER:
+    case CHECKER:
         return ((int)(4.0 * x[0]) + (int)(4.0 * x[1])) % 3 == 0;
     }
     return 0;
