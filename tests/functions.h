@@ -4,8 +4,6 @@
 
 #include "check.h"
 
-#include <string.h>
-
 #include "evaluate/queue.h"
 #include "evaluate/tasks.h"
 

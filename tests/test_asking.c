@@ -52,7 +52,7 @@ static const char *answer_tenth(long id, const double x[], double f[], double g[
     "[problem]\nkind = external\ncommand = sh tests/worker.sh " mode "\nvariables = 3\nobjectives = 2\nupper = 20\n"   \
     "kinds = " kinds "\n"
 #define SEARCH "[search]\ninitial = 16\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
-#define SPHERE  DTLZ2_INI(6, 3) SEARCH
+#define SPHERE DTLZ2_INI(6, 3) SEARCH
 #define WISH   "f1 0.2,f2 0.2,f3 0.6"
 
 static const Exercise EXERCISES[] = {

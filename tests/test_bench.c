@@ -1,11 +1,6 @@
 /* The bench measures what it says: its scenes, its errors, its tables. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "bench/distribution.h"
 #include "bench/promise.h"
 #include "bench/search/families.h"

@@ -1,8 +1,6 @@
 /* Buildings from files against closed forms: frames, storeys, units, P-delta, damping. */
 #include "program.h"
 
-#include <sys/stat.h>
-
 #include "base/linalg.h"
 #include "scene/building.h"
 #include "scene/frame.h"

@@ -3,9 +3,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "motion/motion_scale.h"
 #include "scene_options.h"

@@ -1,8 +1,6 @@
 /* `imtet check`: what it says of a sound building, and which warning each implausible one gets. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "evaluate/tower.h"
 #include "motion/motion_scale.h"
 #include "motion/spectrum.h"

@@ -1,5 +1,4 @@
 /* Designs by name: every command takes the same words, and every word leads to the same numbers. */
-#include <sys/stat.h>
 
 #include "runs.h"
 

@@ -1,7 +1,5 @@
 /* Devices of a design: links and the tuned mass against the baselines, and engines against each other where
  * floors and core collide as well. */
-#include <string.h>
-#include <unistd.h>
 
 #include "check.h"
 #include "scene_options.h"

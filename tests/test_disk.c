@@ -1,10 +1,8 @@
 /* Disks that are full, read-only or damaged, other processes at the same run: said, and nothing lost. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include "store/folder.h"
 

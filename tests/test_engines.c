@@ -4,9 +4,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "bench/engines/engines.h"
 #include "scene_options.h"
 

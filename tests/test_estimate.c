@@ -1,9 +1,6 @@
 /* The estimated error of a result: twice the steps, and above the error in most windows. */
 #include "check.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "bench/promise.h"
 #include "motion/motion_scale.h"
 #include "scene_options.h"

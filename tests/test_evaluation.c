@@ -1,9 +1,6 @@
 /* The record of an evaluated design and the table that holds such rows. */
 #include "check.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "evaluate/evaluation.h"
 
 TEST(every_outcome_and_kind_is_found_by_its_word)

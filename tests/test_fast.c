@@ -4,10 +4,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "base/csv.h"
 #include "sim/fast/fast.h"
 #include "motion/motion_scale.h"

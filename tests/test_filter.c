@@ -1,9 +1,6 @@
 /* Gain and phase of the Butterworth filter against their closed forms. */
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/filter.h"
 
 static double warped(double hz, double dt)

@@ -1,8 +1,6 @@
 /* Core modes that the engine leaves out act as springs: results hardly depend on how many are left out. */
 #include "check.h"
 
-#include <stdlib.h>
-
 #include "bench/promise.h"
 #include "motion/motion_scale.h"
 #include "scene_options.h"

@@ -3,9 +3,6 @@
 #include "check.h"
 #include "scene_options.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "bench/stability/bob.h"
 #include "motion/motion_scale.h"
 #include "evaluate/measures.h"

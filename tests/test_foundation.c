@@ -3,10 +3,6 @@
 #include "check.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/linalg.h"
 #include "base/units.h"

@@ -1,9 +1,6 @@
 /* The predictability horizon. */
 #include "check.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "analysis/horizon.h"
 #include "scene_options.h"
 

@@ -1,9 +1,6 @@
 /* search.max_hours = auto: what a Slurm job has left, from its environment or from scontrol. */
 #include "program.h"
 
-#include <sys/stat.h>
-#include <time.h>
-
 #include "study/job_limit.h"
 
 TEST(the_environment_says_when_the_job_ends)

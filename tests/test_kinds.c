@@ -2,8 +2,6 @@
 #include "runs.h"
 #include "searches.h"
 
-#include <math.h>
-
 #include "analysis/baselines.h"
 #include "evaluate/kinds.h"
 #include "bench/textbook.h"

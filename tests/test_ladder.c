@@ -2,10 +2,6 @@
  * against the model with all, and effects of which the answer is known beforehand. */
 #include "program.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <sys/stat.h>
-
 #include "analysis/ladder.h"
 #include "settings/settings.h"
 

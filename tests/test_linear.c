@@ -1,7 +1,5 @@
 /* Baselines: floors and core as one, a tuned mass, links. */
 #include <complex.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 #include "check.h"

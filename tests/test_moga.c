@@ -1,7 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
-
 #include "check.h"
 #include "moga/archive.h"
 #include "moga/credit.h"

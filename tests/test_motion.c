@@ -1,11 +1,6 @@
 /* Readers of ground motions, their scaling, response spectra and intensity figures. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-#include <string.h>
-
 #include "motion/motion_scale.h"
 #include "motion/motion_read.h"
 #include "motion/spectrum.h"

@@ -6,10 +6,6 @@
 #include <archive_entry.h>
 #include <ctype.h>
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "base/csv.h"
 #include "motion/formats/record.h"

@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <omp.h>
-#include <signal.h>
 #include <spawn.h>
 
 #include "mpi/message.h"

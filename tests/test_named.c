@@ -1,5 +1,4 @@
 /* The designs that a study names: simulated until their error is known (study/named.h). */
-#include <signal.h>
 
 #include "runs.h"
 #include "study/study.h"

@@ -1,11 +1,6 @@
 /* Two buildings that pound: closed forms of two single masses, floors by number, what is refused. */
 #include "check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-
 #include "base/units.h"
 #include "program.h"
 #include "scene/neighbour.h"

@@ -1,9 +1,6 @@
 /* Answers that scatter: what is learnt of the spread, who dominates whom then, what is simulated again and reported. */
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "moga/archive.h"
 #include "base/dominance.h"
 #include "study/search_loop.h"

@@ -1,6 +1,3 @@
-#include <math.h>
-#include <string.h>
-
 #include "functions.h"
 #include "study/polish.h"
 #include "study/refine.h"

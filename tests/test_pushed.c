@@ -1,11 +1,6 @@
 /* Forces on floors over time: closed forms of a single mass, a ground motion told as forces, files that are wrong. */
 #include "check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-
 #include "base/units.h"
 #include "bench/stability/bob.h"
 #include "motion/forces.h"

@@ -2,10 +2,7 @@
  * number. */
 #include "check.h"
 
-#include <signal.h>
 #include <stdatomic.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/random.h"
 #include "evaluate/isolated.h"

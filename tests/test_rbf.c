@@ -1,6 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "check.h"
 #include "rbf/model.h"

@@ -3,9 +3,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "sim/engine.h"
 #include "sim/joined.h"

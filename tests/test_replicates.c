@@ -1,6 +1,4 @@
-#include <stdio.h>
 /* One rule for replicates: a study, `imtet simulate --replicates` and the summary of a tower agree to the last digit. */
-#include <string.h>
 
 #include "runs.h"
 #include "scene_options.h"

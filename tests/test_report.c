@@ -2,8 +2,6 @@
  * browser: test_browser.c. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "base/linalg.h"
 #include "base/random.h"
 #include "base/stat.h"

@@ -1,7 +1,4 @@
 /* A search that goes on from any generation's end makes the same bytes as one that never stopped. */
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "base/linalg.h"
 #include <omp.h>

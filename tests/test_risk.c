@@ -1,8 +1,6 @@
 /* Objectives over a suite of records, fragility curves and yearly rates, by closed forms and known samples. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "analysis/evaluations.h"
 #include "base/random.h"
 #include "base/stat.h"

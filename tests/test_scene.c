@@ -1,10 +1,6 @@
 /* The scene against printed numbers and closed forms: buildings, core beam, modes, contact laws, modal flow. */
 #include "check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "scene/building.h"

@@ -1,7 +1,5 @@
 /* Screening: which designs are evaluated by the cheap level alone, and what becomes of them. */
 #include <float.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 

@@ -1,6 +1,4 @@
 /* Slopes of results: closed forms where there are some. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "check.h"
 #include "scene_options.h"

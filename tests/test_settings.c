@@ -2,10 +2,6 @@
 #include "bad_inputs.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "settings/settings.h"
 

@@ -2,7 +2,6 @@
  * statfs says NFS in this process alone (--wrap=statfs); studies run in children of it. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sys/vfs.h>
 
 #include "study/study.h"

@@ -1,10 +1,6 @@
 /* Gaps of which the two sides differ: a single mass against closed forms, the tower against its own mirror image. */
 #include "check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/units.h"
 #include "bench/stability/bob.h"
 #include "evaluate/replicates.h"

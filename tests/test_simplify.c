@@ -1,8 +1,6 @@
 /* A design simplified: what each step of the path promises, on a short study of the tower. */
 #include "runs.h"
 
-#include <math.h>
-
 #include "study/simplify.h"
 
 #define STEP 0.01

@@ -1,7 +1,6 @@
 /* A run that is interrupted, refused, watched: what it stores and how it goes on. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sqlite3.h>
 
 #include "base/linalg.h"

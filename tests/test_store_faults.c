@@ -5,9 +5,7 @@
 #include "runs.h"
 
 #include <execinfo.h>
-#include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <sqlite3.h>
 

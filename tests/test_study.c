@@ -2,7 +2,6 @@
 #include "program.h"
 
 #include <dirent.h>
-#include <sys/stat.h>
 
 #define SMALL_STUDY_OF(max_evals)                                                                                      \
     "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=4 --set search.initial=28 "                         \

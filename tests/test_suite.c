@@ -1,8 +1,6 @@
 /* Suites of records: what builtin:suite promises, and how folders, lists and sources are read. */
 #include "program.h"
 
-#include <sys/stat.h>
-
 #include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "motion/suite.h"

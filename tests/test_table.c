@@ -1,11 +1,6 @@
 /* Tables of numbers, and the design files built on them. */
 #include "bad_inputs.h"
 
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "scene/design.h"
 #include "base/csv.h"
 

@@ -1,9 +1,6 @@
 /* The end of a run: what is left of a motion is known beforehand, and contacts end where it can change nothing. */
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "bench/case.h"
 #include "motion/motion_scale.h"
 #include "scene_options.h"

@@ -3,7 +3,6 @@
 #include "program.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 
 #include "store/run_read.h"

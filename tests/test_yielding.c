@@ -1,11 +1,6 @@
 /* Storeys that yield: closed forms, reference numbers, energies, and every engine against the other. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "one_scene.h"
 #include "sim/engine.h"
 
