@@ -26,19 +26,28 @@
 #define SANITIZED 0
 #endif
 
+/* What the calls of a test say of their faults; it begins empty. A function may have one of its own. */
+static Err err __attribute__((unused));
+#pragma GCC diagnostic ignored "-Wshadow"
+
 /* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
 enum { TESTS_MAX = 128 };
 static struct CMUnitTest all_tests[TESTS_MAX] __attribute__((unused));
 static size_t n_tests __attribute__((unused));
 #define TEST(name)                                                                                                     \
-    static void test_##name(void **state);                                                                             \
+    static void body_##name(void **state);                                                                             \
+    static void test_##name(void **state)                                                                              \
+    {                                                                                                                  \
+        err = (Err){0};                                                                                                \
+        body_##name(state);                                                                                            \
+    }                                                                                                                  \
     __attribute__((constructor(200 + __LINE__))) static void add_##name(void)                                          \
     {                                                                                                                  \
         if (n_tests == TESTS_MAX)                                                                                      \
             abort(); /* too many in one file */                                                                        \
         all_tests[n_tests++] = (struct CMUnitTest){"test_" #name, test_##name, NULL, NULL, NULL};                      \
     }                                                                                                                  \
-    static void test_##name(__attribute__((unused)) void **state)
+    static void body_##name(__attribute__((unused)) void **state)
 
 /* The tests of one file, tests/test_NAME.c. Every file ends with SUITE(set up, tear down); tests/main.c, with which
  * files are linked into one program, runs those that it is asked for. */

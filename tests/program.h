@@ -41,7 +41,6 @@ static Place place;
 
 __attribute__((noinline)) static char *text_of(const char *path)
 {
-    Err err = {0};
     char *text;
     size_t length;
     CHECK_OK(file_read(path, FILE_LARGEST, &text, &length, &err), &err);
@@ -214,7 +213,6 @@ static inline void assert_same_files(const char *name, const char *other)
 static inline Table table_of(const char *name)
 {
     Table t;
-    Err err = {0};
     char *path = in_place(name);
     CHECK_OK(table_read(&t, path, 1, &err), &err);
     free(path);

@@ -32,7 +32,6 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
 static inline Run run_in(const char *name)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
     return run;
@@ -41,7 +40,6 @@ static inline Run run_in(const char *name)
 static inline Settings settings_of(const char *text, const char *out)
 {
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     CHECK_OK(settings_parse(&s, "here.ini", text, &err), &err);
     snprintf(s.run.out, sizeof s.run.out, "%s/%s", place.folder, out);
@@ -56,7 +54,6 @@ static inline char *json_export(const char *folder)
     static const char OUT[] = "\"run.out\":\"";
     char *text = NULL;
     size_t length;
-    Err err = {0};
     FILE *f = open_memstream(&text, &length);
     Run run;
     CHECK_OK(run_read(&run, folder, &err), &err);

@@ -182,7 +182,6 @@ static void assert_same_designs(imtet_search *s, const Exercise *e, const Run *r
 static void optimize(const Exercise *e, Run *run)
 {
     char name[64], path[PATH_MAX];
-    Err err = {0};
     snprintf(name, sizeof name, "%s.ini", e->name);
     write_in_place(name, e->ini);
     if (access(path_of(e->name, path), F_OK) != 0)
@@ -469,7 +468,6 @@ TEST(a_file_that_is_damaged_is_refused)
 {
     char path[PATH_MAX], *bytes;
     size_t length;
-    Err err = {0};
     imtet_error error;
     imtet_search *s = drive(&EXERCISES[2], 8, NULL);
     must(imtet_search_save(s, path_of("whole.search", path), &error), &error);

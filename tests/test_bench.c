@@ -17,7 +17,6 @@ typedef struct {
 
 static void ground_open(Ground *g)
 {
-    Err err;
     Settings s;
     paper_defaults(&s);
     g->s = settings_scene(&s);
@@ -61,7 +60,6 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     static TimedRun o, changed;
     BenchCase bench_case = {0};
     Ground g;
-    Err err;
     ground_open(&g);
     CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
     CHECK_OK(timed_run(&bench_case, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
@@ -95,7 +93,6 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
     Sweep sweep = {0};
     BenchCase bench_case = {0};
     Ground g;
-    Err err;
     char *csv = NULL;
     size_t size;
     ground_open(&g);
@@ -129,7 +126,6 @@ TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
                         MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21, 0.5};
     Ground g;
     PromiseCase c, again;
-    Err err;
     ground_open(&g);
     const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 10};
     for (long k = 0; k < plan.n_scenes * N_GAPS; k++) {
@@ -181,7 +177,6 @@ static void write_soft_floors(BuildingOptions *o, char folder[])
 TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
     Ground g;
-    Err err;
     char *page = NULL, folder[] = "/tmp/bench-XXXXXX";
     size_t size;
     ground_open(&g);
@@ -258,7 +253,6 @@ static void check_nothing_is_beyond(const Course *reference, const Course *found
 /* Of the families with these names, on whose fronts a point of zero distance is not. */
 static void search_plainly(const char *names)
 {
-    Err err;
     Settings s;
     settings_defaults(&s);
     for (size_t i = 0; i < family_count(); i++) {
@@ -300,7 +294,6 @@ static double sum_of(const Course *c, size_t i)
 /* Of slab3: the least sum of objectives among the designs that succeed, after 200 evaluations and after the first 52. */
 TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 {
-    Err err;
     Settings s;
     settings_defaults(&s);
     s.search.population = 40;
@@ -328,7 +321,6 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 
 TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
 {
-    Err err;
     Course c, back = {0};
     int found;
     char path[] = "/tmp/imtet-course-XXXXXX";
@@ -353,7 +345,6 @@ TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
 /* Of dtlz2: simulations of the first sample, after the last iteration, with the last population, of the search. */
 static void loop_simulations(double error_max, size_t found[4], double volume[2])
 {
-    Err err;
     Settings s;
     char *text;
     size_t size, n = 0;

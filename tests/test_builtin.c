@@ -31,7 +31,6 @@ static void building_alone(const Motion *m, const char *model, double J[3])
     Scene *scene;
     SimWorker *worker;
     SimResult r;
-    Err err = {0};
     const double none[FLOORS_MAX + 2] = {0};
     SceneOptions s = paper_scene();
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
@@ -49,7 +48,6 @@ static void building_alone(const Motion *m, const char *model, double J[3])
 static Motion prepared(int k)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, MOTIONS[k].stretch, &err), &err);
     return m;
@@ -59,7 +57,6 @@ static Motion prepared(int k)
 static int prepared_record(int k, Motion *m)
 {
     char path[128];
-    Err err;
     snprintf(path, sizeof path, "../shared/records/%s", MOTIONS[k].record);
     const Status s = motion_load(m, path, UNIT_FROM_FILE, &err);
     if (s == STATUS_MISSING)
@@ -127,7 +124,6 @@ TEST(a_generated_motion_is_the_same_every_time)
 TEST(an_unknown_name_is_refused_with_the_known_ones)
 {
     Motion m;
-    Err err;
     assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "builtin:kobe is no built-in motion; did you mean builtin:kobe-like?"));
     motion_free(&m);

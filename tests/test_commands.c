@@ -157,7 +157,6 @@ __attribute__((constructor(200))) static void read_table(void)
 {
     char *text;
     size_t length;
-    Err err = {0};
     int group = 0;
     if (file_read("tests/commands.txt", FILE_LARGEST, &text, &length, &err) != STATUS_OK)
         return;

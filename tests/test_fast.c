@@ -27,7 +27,6 @@ typedef struct {
  * `until` >= 0 the run stops there, in units of Hertz's duration after closing. */
 static void bounce(const Ball *ball, double until, Bounce *b)
 {
-    Err err = {0};
     SimModel model;
     FastWork *work;
     b->penetration = contact_hertz_indentation(ball->k, ball->m, ball->v);
@@ -136,7 +135,6 @@ TEST(at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step)
 /* A heavy floor flies freely and holds a million times the energy of the blow. */
 TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 {
-    Err err = {0};
     const Contact contact = {.k = 4.865e10, .v0_floor = 1e-300};
     for (int i = 0; i < 60; i++) {
         SimModel model;
@@ -163,7 +161,6 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 static SimResult tower_run(Tower *t, SceneKind kind)
 {
     SimResult r;
-    Err err = {0};
     CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
     return r;
 }
@@ -293,7 +290,6 @@ TEST(motion_that_is_not_a_number_fails_the_run_and_says_so)
 TEST(a_negative_gap_is_no_design)
 {
     Tower t;
-    Err err = {0};
     SimResult r;
     builtin_tower(&t);
     t.x[4] = -0.001;

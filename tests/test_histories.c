@@ -223,7 +223,6 @@ static void add_sums(const SimSample *s, void *user)
 
 TEST(the_base_shear_is_what_inertia_and_damping_need)
 {
-    Err err = {0};
     Motion motion = {0};
     Scene *scene;
     SimWorker *worker;
@@ -282,7 +281,6 @@ static const double CUTOFF = 25;
 static double filtered_peak(double h, double (*u)(double t, double parameter), double parameter, double ground)
 {
     FloorFilter *f;
-    Err err = {0};
     double peaks[3];
     CHECK_OK(floor_filter_create(&f, 3, CUTOFF, &err), &err);
     floor_filter_start(f, h);
@@ -365,7 +363,6 @@ static void add_sample(const SimSample *s, void *user)
 
 TEST(samples_that_are_left_out_change_no_filtered_peak)
 {
-    Err err = {0};
     Motion motion = {0};
     Scene *scene;
     SimWorker *worker;

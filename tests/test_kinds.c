@@ -223,7 +223,6 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
     static const BaselineKind KIND[] = {BASELINE_LINKS, BASELINE_TMD};
     Settings s = settings_of(DEVICES, "unused");
     Problem p;
-    Err err = {0};
     write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/devices"));
     Run run = run_in("devices");

@@ -144,7 +144,6 @@ TEST(a_run_without_a_front_says_why_there_is_none)
 {
     const Settings s = settings_of(UNMET, "begun");
     StudySummary summary;
-    Err err = {0};
     long left = 5;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .progress = see_progress, .user = &left},
                                &summary, NULL, &err),

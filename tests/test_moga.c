@@ -129,7 +129,6 @@ TEST(the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume)
     double F[N * M], lower[M] = {0}, reference[M];
     for (size_t k = 0; k < M; k++)
         reference[k] = 1.1;
-    Err err = {0};
     for (uint32_t seed = 0; seed < 10; seed++) {
         Hypervolume *estimate;
         sphere_points(seed, N, M, F);
@@ -173,7 +172,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
 static size_t n_directions(size_t n_obj, size_t outer, size_t inner)
 {
     Directions d;
-    Err err = {0};
     CHECK_OK(directions_create(&d, n_obj, outer, inner, &err), &err);
     directions_free(&d);
     return d.n;
@@ -276,7 +274,6 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
     size_t outer, inner;
     Directions d;
     Selection *s;
-    Err err = {0};
     directions_choose(M, KEEP, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
@@ -316,7 +313,6 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     size_t chosen[N];
     Directions d;
     Selection *s;
-    Err err = {0};
     CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
@@ -341,7 +337,6 @@ TEST(thousands_of_designs_are_selected_in_seconds)
     size_t *selected = calloc(N, sizeof *selected), outer, inner;
     Directions d;
     Selection *s;
-    Err err = {0};
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     assert_true(F && selected);
     for (size_t i = 0; i < N; i++) {
@@ -403,7 +398,6 @@ static NdTree *filled_tree(size_t m, const double F[], size_t n, const unsigned 
 {
     size_t rows[400], n_in = 0;
     NdTree *t;
-    Err err = {0};
     for (size_t i = 0; i < n; i++)
         if (in[i])
             rows[n_in++] = i;
@@ -447,7 +441,6 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
     enum { N = 80, M = 3 };
     double F[N * M], G[N], X[N];
     unsigned char ok[N];
-    Err err = {0};
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive a;
         CHECK_OK(pareto_archive_init(&a, 3, 1, M, 1, &err), &err);
@@ -525,7 +518,6 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     unsigned char allowed[] = {1, 1, 1, 1, 1};
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, NULL, &err), &err);
     infill_measure(q, 3, rows, front);
@@ -630,7 +622,6 @@ TEST(the_lengths_of_rays_measure_the_hypervolume)
     const double front[] = {0, 0.5, 1, 1, 0, 0.5, 0.5, 1, 0}; /* 0..1 in every objective */
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_spread(&d, 3, 300, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_HYPERVOLUME, 2, &d, NULL, &err), &err);
     infill_measure(q, 3, (const size_t[]){0, 1, 2}, front);
@@ -659,7 +650,6 @@ TEST(the_slope_of_pbi_equals_differences)
     }
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_spread(&d, M, 12, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, NULL, &err), &err);
     infill_measure(q, ROWS, rows, F);

@@ -155,7 +155,6 @@ static Text read_specimen(const char *file)
 {
     char path[128];
     Text t;
-    Err err;
     specimen_path(file, path);
     CHECK_OK(file_read(path, FILE_LARGEST, &t.text, &t.length, &err), &err);
     return t;
@@ -413,7 +412,6 @@ TEST(words_without_numbers_are_no_known_format_and_their_first_line_is_quoted)
 
 TEST(a_file_of_nothing_but_a_byte_order_mark_is_refused)
 {
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "mark", "\xef\xbb\xbf", 3, &FIRST, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "mark: holds 0 samples"));
 }
@@ -434,7 +432,6 @@ static void refused(const char *file, const MotionHow *how, const char *says)
 TEST(counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name)
 {
     Motion m;
-    Err err = {0};
     refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.unit (--unit) to counts=VALUE");
     refused("little.sac", &(MotionHow){0}, "set motion.unit (--unit) to counts=VALUE");
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
@@ -496,7 +493,6 @@ TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_fo
     Text one = read_specimen("one.knet");
     Text broken = members(2, (const char *const[]){"a.NS", "b.NS"}, &one, one.length - 60);
     Text twins = members(2, (const char *const[]){"x/a.NS", "y/a.NS"}, &one, one.length);
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "two.tar", broken.text, broken.length, &(MotionHow){0}, &err),
                      STATUS_BAD_DATA);
     if (!strstr(err.text, "two.tar: a member of this archive is damaged: b.NS:"))
@@ -520,7 +516,6 @@ TEST(of_many_channels_of_an_archive_the_first_are_listed_and_how_many_there_are)
         list[k] = names[k];
     }
     Text one = read_specimen("one.knet"), all = members(N, list, &one, one.length);
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "a.tar", all.text, all.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "holds 26 channels: 1 'N-S"));
     assert_non_null(strstr(err.text, "3 'N-S"));
@@ -542,7 +537,6 @@ TEST(a_column_of_velocities_is_not_taken_for_an_acceleration)
 {
     static const char text[] = "time_s,accel_m_s2,velocity\n0.00,1.0,0.0\n0.02,2.0,0.1\n";
     Motion m;
-    Err err;
     CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){0}, &err), &err);
     assert_string_equal(m.channel, "accel_m_s2");
     assert_close(m.accel[1], 2, 0);
@@ -555,7 +549,6 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
     refused("irregular.csv", &(MotionHow){.dt_s = 1e-9}, "would make");
     static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
     Motion m;
-    Err err;
     CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){.dt_s = 0.05}, &err), &err);
     assert_int_equal(m.n, 21);
     assert_string_equal(m.processed, "resampled every 0.05 s by straight lines");
@@ -570,7 +563,6 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
 TEST(an_equal_step_is_left_alone_by_a_request_to_resample)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.dt_s = 0.5}, &err), &err);
     assert_close(m.dt_s, DT, 0);
     assert_string_equal(m.processed, "");
@@ -581,7 +573,6 @@ TEST(the_step_of_a_bare_column_can_be_given_and_of_no_other)
 {
     static const char text[] = "1\n2\n-3\n0\n";
     Motion m;
-    Err err;
     const MotionHow how = {.unit = UNIT_M_S2, .dt_s = 0.02};
     CHECK_OK(motion_parse(&m, "text", text, strlen(text), &how, &err), &err);
     assert_int_equal(m.n, 4);
@@ -693,7 +684,6 @@ TEST(a_mutated_binary_file_or_archive_is_read_or_refused)
 TEST(the_offset_of_a_recorder_is_subtracted_and_said)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_read(&m, "tests/motion/one.knet", &(MotionHow){0}, &err), &err);
     double sum = 0;
     for (size_t i = 0; i < m.n; i++)
@@ -716,7 +706,6 @@ static Status read_with_peak(const char *stated, Motion *m, Err *err)
 TEST(a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5)
 {
     Motion m;
-    Err err;
     CHECK_OK(read_with_peak("124.400", &m, &err), &err); /* 0.8 % */
     assert_string_equal(m.warning, "");
     motion_free(&m);
@@ -839,7 +828,6 @@ TEST(the_location_tells_the_channels_of_a_building_apart)
 {
     Text t = {NULL, 0};
     Motion m;
-    Err err = {0};
     FILE *f = open_memstream(&t.text, &t.length);
     assert_non_null(f);
     for (int k = 1; k <= 12; k++) {
@@ -867,7 +855,6 @@ TEST(the_location_tells_the_channels_of_a_building_apart)
 TEST(quoted_cells_are_read)
 {
     Motion m;
-    Err err = {0};
     assert_int_equal(parse_text(&m, "\"time [s]\",\"acc [m/s^2]\"\n\"0.00\",\"0.1\"\n\"0.01\",\"-1.25\"\n", &err),
                      STATUS_OK);
     assert_int_equal(m.n, 2);
@@ -881,7 +868,6 @@ TEST(quoted_cells_are_read)
 TEST(units_in_other_words_are_taken_or_named)
 {
     Motion m;
-    Err err = {0};
     assert_int_equal(parse_text(&m, "A\nB\nUNITS OF CM/SEC**2\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
     assert_close(m.accel[1], 0.02, 1e-15);
     motion_free(&m);
@@ -907,7 +893,6 @@ TEST(a_sample_of_a_binary_file_that_is_no_number_is_refused)
     Text t = read_specimen("three.mseed");
     memcpy(t.text + 64 + 4 * 40, NOT_A_NUMBER, 4);
     Motion m;
-    Err err = {0};
     const MotionHow how = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5};
     assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "a.mseed: sample 41 of the channel is not a finite number"));
@@ -1062,7 +1047,6 @@ TEST(a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere)
                                              {"acc_x1000_m_s2", "does not say the unit"}};
     char text[200];
     Motion m;
-    Err err = {0};
     for (size_t i = 0; i < sizeof IN_G / sizeof IN_G[0]; i++) {
         snprintf(text, sizeof text, "# dt=0.01 s\n%s\n1\n2\n-3\n", IN_G[i]);
         CHECK_OK(parse_text(&m, text, &err), &err);
@@ -1123,7 +1107,6 @@ TEST(steps_are_read_in_their_unit_and_contradictions_are_refused)
                                         "dt=0.005 s; sampling rate: 200 Hz"};
     char text[200];
     Motion m;
-    Err err = {0};
     for (size_t i = 0; i < sizeof STEPS / sizeof STEPS[0]; i++) {
         snprintf(text, sizeof text, "# %s\n# units: cm/s2\n1\n2\n-3\n", STEPS[i]);
         CHECK_OK(parse_text(&m, text, &err), &err);
@@ -1227,7 +1210,6 @@ TEST(kiknet_numbers_are_directions_and_what_is_no_direction_is_refused)
 TEST(five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel)
 {
     Motion m;
-    Err err = {0};
     Text t = rows_of("", 20, 5);
     assert_int_equal(motion_parse(&m, "opensees.txt", t.text, t.length, &(MotionHow){.unit = UNIT_G}, &err),
                      STATUS_BAD_DATA);
@@ -1239,7 +1221,6 @@ TEST(five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel)
 TEST(the_body_of_a_file_of_three_components_is_asked_about_and_not_joined)
 {
     Motion m;
-    Err err = {0};
     for (int width = 2; width <= 4; width++) {
         Text t = rows_of("# units: m/s2, dt=0.01\n", 40, width);
         assert_int_equal(motion_parse(&m, "body", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
@@ -1251,7 +1232,6 @@ TEST(the_body_of_a_file_of_three_components_is_asked_about_and_not_joined)
 TEST(a_step_in_the_first_line_above_words_is_found)
 {
     Motion m;
-    Err err = {0};
     CHECK_OK(parse_text(&m, "Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &err), &err);
     assert_close(m.dt_s, 0.005, 1e-15);
     assert_int_equal(m.n, 4);
@@ -1333,7 +1313,6 @@ TEST(a_spectrum_is_no_motion_with_any_option)
 TEST(unequal_steps_without_the_name_of_times_are_not_resampled)
 {
     Motion m;
-    Err err = {0};
     static const char text[] = "# units: g\n0.01 1\n0.02 2\n0.05 3\n0.1 2\n0.2 1\n";
     assert_int_equal(motion_parse(&m, "there", text, strlen(text), &(MotionHow){.dt_s = 0.01}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "name the column of its times time_s and set motion.dt_s"));
@@ -1377,7 +1356,6 @@ TEST(a_record_behind_a_record_is_a_channel_in_every_format)
 TEST(numbers_below_other_words_are_not_dropped_in_silence)
 {
     Motion m;
-    Err err = {0};
     Text t = joined(read_specimen("equals.at2"), (Text){strdup("Some words\n 1.0 2.0\n"), 20});
     assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, "more numbers, below words, than the header announces"))
@@ -1426,7 +1404,6 @@ TEST(a_stated_foreign_quantity_is_not_overruled_by_an_option)
         expect(header, &(MotionHow){0}, "does not say the unit");
         expect(header, &(MotionHow){.unit = UNIT_G}, NULL);
     }
-    Err err = {0};
     Text t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, M/S", 1);
     assert_int_equal(
         motion_parse(&(Motion){0}, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2, .channel = "1"}, &err),

@@ -67,7 +67,6 @@ TEST(an_objective_is_lowered_to_what_the_bound_on_the_other_allows)
 {
     Toy w = {0};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, KEPT, 200, &r, &err), &err);
     assert_at_most(r.f[1], 1.0);
     assert_close(r.f[0], 1.0, 1e-3);
@@ -80,7 +79,6 @@ TEST(without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_found)
     const double both[OBJ] = {2, 1};
     Toy w = {0};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, FREE, 100, &r, &err), &err);
     assert_less(r.f[0], 1e-6);
     CHECK_OK(polish(&w, both, FREE, 100, &r, &err), &err);
@@ -123,7 +121,6 @@ TEST(what_is_left_to_gain_is_not_followed_below_what_is_worth_it)
 {
     Toy w = {.gain_min = 1e-3};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, KEPT, 5000, &r, &err), &err);
     assert_close(r.f[0], 1.0, 5e-3);
     assert_less(w.n, 200);
@@ -149,7 +146,6 @@ TEST(a_program_fault_ends_it_with_its_message)
 {
     Toy w = {.breaks = 1};
     Polished r;
-    Err err = {0};
     assert_int_equal(polish(&w, FIRST, KEPT, 300, &r, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "disk"));
 }

@@ -148,7 +148,6 @@ static ProblemOptions command_of(const char *command, double timeout_s, long n_v
 /* Two batches: workers live on between them. */
 static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
 {
-    Err err = {0};
     Problem p;
     Queue *q;
     Finished done;
@@ -307,7 +306,6 @@ TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
     ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
     for (size_t i = 0; i < N; i++)
         assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
-    Err err = {0};
     Problem p;
     ProblemOptions options = command_of("sh 'tests", 1, 3);
     assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
@@ -396,7 +394,6 @@ TEST(workers_end_with_a_program_whose_helper_was_killed_before)
 
 TEST(a_command_that_does_not_exist_ends_the_search_by_name)
 {
-    Err err = {0};
     Problem p;
     Queue *q;
     double x[3] = {0}, f[2];
@@ -424,7 +421,6 @@ static Settings external_settings(void)
                                       "problem.objective_names=profit, cost",
                                       "search.limits=profit>=-0.5,cost <= 2"};
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++)
         CHECK_OK(settings_set(&s, SET[i], &err), &err);
@@ -452,7 +448,6 @@ static Status hear(const Evaluation *e, void *user, Err *err)
 TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
 {
     const Settings s = external_settings();
-    Err err = {0};
     Adapter *adapter;
     CHECK_OK(adapter_open(&adapter, &s, &err), &err);
     const Problem *p = adapter_problem(adapter);
@@ -509,7 +504,6 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
 {
     enum { DRAWS = 2000 };
     static const TextbookOptions NOISY = {"dtlz2", VAR, OBJ, 0.03, 1, "real"};
-    Err err = {0};
     double first[OBJ], x[VAR], exact[OBJ], sum = 0, square = 0;
     for (size_t d = 0; d < VAR; d++)
         x[d] = 0.4;

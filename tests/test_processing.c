@@ -77,7 +77,6 @@ TEST(a_base_line_of_its_degree_leaves_no_trace)
 
 TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 {
-    Err err = {0};
     Motion m = motion_of(200, 0.01, parabola);
     const MotionOptions o = options();
     CHECK_OK(motion_process(&m, &o, &err), &err);
@@ -91,7 +90,6 @@ TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 
 TEST(too_few_samples_for_a_base_line_are_refused)
 {
-    Err err = {0};
     MotionOptions o = options();
     o.baseline = BASELINE_QUADRATIC;
     Motion m = motion_of(3, 0.01, noise);
@@ -146,7 +144,6 @@ static double slow_tone(double t)
 
 TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 {
-    Err err = {0};
     MotionOptions o = options();
     o.lowpass_hz = 8;
     Motion m = motion_of(6001, 0.005, two_tones);
@@ -159,7 +156,6 @@ TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 
 TEST(a_cutoff_that_the_record_cannot_have_is_refused_by_its_key)
 {
-    Err err = {0};
     MotionOptions o = options();
     Motion m = motion_of(100, 0.01, noise);
     o.lowpass_hz = 50;
@@ -183,7 +179,6 @@ static double psa_at(const Motion *m, double T)
 
 static Motion scaled(const MotionOptions *o)
 {
-    Err err = {0};
     Motion m = motion_of(3001, 0.01, offset_quake);
     CHECK_OK(motion_scale(&m, o, &err), &err);
     return m;
@@ -218,7 +213,6 @@ TEST(a_spectral_value_is_reached_at_its_period_after_stretching)
 static CodeSpectrum target_of(const char *text)
 {
     CodeSpectrum c;
-    Err err = {0};
     CHECK_OK(target_parse(text, &c, &err), &err);
     return c;
 }

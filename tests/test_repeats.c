@@ -24,7 +24,6 @@ static void study(const char *text, const char *out, long piece)
     const Settings s = settings_of(text, out);
     Status status;
     StudySummary summary;
-    Err err = {0};
     do {
         long left = piece;
         const StudyOptions options = {.stop = piece > 0 ? stop_after : NULL, .user = &left};

@@ -12,7 +12,6 @@ enum { DESIGNS = 3, N_VAR = 22 };
 static Settings short_scene(const char *records, long replicates, const char *tolerance)
 {
     Settings s;
-    Err err = {0};
     char text[120];
     paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
@@ -44,7 +43,6 @@ static void run_designs(const Settings *settings, long threads, Replicated *out)
     double X[DESIGNS * N_VAR];
     Settings s = *settings;
     Problem p;
-    Err err = {0};
     designs(X);
     s.search.threads = threads;
     memset(out, 0, sizeof *out);
@@ -113,7 +111,6 @@ TEST(without_contact_there_is_no_spread)
     Problem p;
     SimResult shown;
     ReplicateSummary sum;
-    Err err = {0};
     for (int j = 0; j < N_VAR; j++)
         x[j] = j < 20 ? 4.0 * (j + 1) : 0.01;
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
@@ -134,7 +131,6 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     Queue *q;
     Finished done;
     SimResult alone;
-    Err err = {0};
     designs(X);
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     CHECK_OK(queue_open(&q, &p, &err), &err);
@@ -162,7 +158,6 @@ TEST(a_design_asked_for_again_gets_further_replicates)
 static void run_as_built(const Problem *p, const AsBuilt *built, const double x[], SimResult *r)
 {
     SimWorker *w;
-    Err err = {0};
     CHECK_OK(sim_worker_create(&w, tower_record(tower_of(p), 0)->scene, &err), &err);
     CHECK_OK(sim_worker_as_built(w, built, &err), &err);
     CHECK_OK(sim_run(w, SCENE_IMPACT, x, r, &err), &err);
@@ -173,7 +168,6 @@ static SimResult run_scene(const Settings *s, const AsBuilt *built)
 {
     double X[DESIGNS * N_VAR];
     Problem p;
-    Err err = {0};
     SimResult r;
     designs(X);
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
@@ -229,7 +223,6 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 TEST(a_stiffer_building_vibrates_faster_by_the_root_of_it)
 {
     Building b, out;
-    Err err = {0};
     double *store = NULL;
     AsBuilt stiff = AS_DESIGNED;
     stiff.building_stiffness = 1.21;

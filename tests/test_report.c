@@ -21,7 +21,6 @@ static Report report;
 
 static int set_up(void **state)
 {
-    Err err = {0};
     char path[PATH_MAX];
     const char *records[] = {"builtin:sylmar-like"};
     linalg_pin(); /* as the program does: other threads, other last digits, other impacts */
@@ -89,7 +88,6 @@ TEST(the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_
 /* 200 designs of three variables in the unit cube and f = a x1 + b x2 + c x1 x2. */
 static Importance importance_of_plane(double a, double b, double c)
 {
-    Err err = {0};
     Importance m;
     Random r = random_stream(3, RANDOM_TEST, 0, 0);
     Run run = {.schema = {.n_var = 3, .n_obj = 1}, .table = evaluation_table(3, 1, 0)};
@@ -124,7 +122,6 @@ TEST(importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in)
 TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
 {
     Scenario w;
-    Err err = {0};
     History h;
     const SceneOptions options = settings_scene(tower.settings);
     CHECK_OK(scenario_of(&w, &options, &tower.settings->motion, &err), &err);
@@ -227,7 +224,6 @@ static json_t *run_of(const char *run)
 TEST(growth_is_the_hypervolume_that_status_tells)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
     json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
@@ -304,7 +300,6 @@ TEST(notes_that_are_damaged_or_of_other_designs_are_named_by_the_report)
 
 TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 {
-    Err err = {0};
     OtherRecords *r = calloc(1, sizeof *r);
     Settings s;
     settings_defaults(&s);
@@ -332,7 +327,6 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 {
     static const char OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
-    Err err = {0};
     OtherRecords *r = calloc(1, sizeof *r);
     char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
     MotionOptions study = tower.settings->motion;
@@ -359,7 +353,6 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
 {
     static const char *const RECORDS[] = {"builtin:kobe-like", "builtin:sylmar-like", "builtin:elcentro-like"};
-    Err err = {0};
     Settings s = *tower.settings;
     Detail several, alone;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
@@ -410,7 +403,6 @@ static double extreme(const Run *run, size_t n, const size_t rows[], size_t colu
 TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&run, path_of("dtlz", path), &err), &err);
     const size_t n_columns = run.schema.n_obj + run.schema.n_var, most = 2 * n_columns + 4;

@@ -96,7 +96,6 @@ static void forget(Seen *s)
 
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
-    Err err = {0};
     memset(seen, 0, sizeof *seen);
     CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
 }

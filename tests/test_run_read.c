@@ -80,7 +80,6 @@ TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 
 TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 {
-    Err err = {0};
     FILE *full = fopen("/dev/full", "we");
     assert_non_null(full);
     setvbuf(full, NULL, _IONBF, 0);
@@ -141,7 +140,6 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
         designs[i] = (Evaluation){
             .outcome = i == 2 ? OUTCOME_ERROR : OUTCOME_OK, .x = x, .f = f[i], .violation = i == 3 ? 0.5 : 0.0};
     Run sound, h;
-    Err err = {0};
     char folder[PATH_MAX];
     sound = run_in("sound");
     CHECK_OK(add_to_run(changed("SELECT 1", folder), 6, designs, NULL, &err), &err);
@@ -182,7 +180,6 @@ static int is_dominated(const Run *a, size_t i, const Run *b)
 TEST(several_runs_are_one_front_on_which_a_design_stands_once)
 {
     Run a, b, both;
-    Err err = {0};
     size_t n = 0;
     char path[2][PATH_MAX];
     write_in_place("plain.ini", DTLZ2_INI(4, 2));
@@ -229,7 +226,6 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 {
     char path[PATH_MAX], name[PATH_MAX + 64];
     Run run;
-    Err err = {0};
     assert_int_equal(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "nothing: there is no such file or folder"));
     memset(name, 'a', sizeof name);
@@ -272,7 +268,6 @@ TEST(a_lock_names_its_holder_and_who_cannot_have_one_is_told_why)
     char path[PATH_MAX], lock[PATH_MAX];
     Folder first, second;
     LockHolder holder;
-    Err err = {0};
     CHECK_OK(folder_take(&first, path_of("held", path), 0, &err), &err);
     folder_note(&first, 7);
     assert_true(folder_is_held(path, &holder) && holder.pid == getpid());

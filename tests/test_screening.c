@@ -166,7 +166,6 @@ static void run(World *w, Seen *s, const SearchStart *start)
 {
     const SearchConfig config = config_of();
     StopReason reason;
-    Err err = {0};
     s->world = w;
     CHECK_OK(search_resume(&w->problem, &config, start, observe, s, &reason, &err), &err);
     assert_int_equal(reason, STOP_EVALUATIONS);
@@ -350,7 +349,6 @@ static double share_left(const World *w, int is_biased, double (*unseen)(const d
     const double *at[PAIRS];
     double left = 0.0, all = 0.0, y;
     Levels *levels;
-    Err err = {0};
     for (size_t i = 0; i < 2 * PAIRS; i++) {
         for (size_t d = 0; d < VAR; d++)
             x[i][d] = 0.5 + 0.5 * noise_of((const double[VAR]){(double)i}, d, 7);

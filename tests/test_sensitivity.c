@@ -31,7 +31,6 @@ static const Sensitivity *named(const Sensitivity *list, size_t n, const char *n
 TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], base = 0, top = 0;
@@ -52,7 +51,6 @@ TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], j1[2];
@@ -83,7 +81,6 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
 TEST(the_ground_is_a_parameter_where_there_is_one)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], rotation[2];
@@ -115,7 +112,6 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
 TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR];
@@ -138,7 +134,6 @@ TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *one, *two;
     size_t n, same;
     double x[N_VAR], j1[2];

@@ -78,7 +78,6 @@ static Served serve_here(const char *folder)
 {
     const Served before = server;
     char path[PATH_MAX];
-    Err err = {0};
     const ServeOptions options = {.folder = path_of(folder, path)};
     CHECK_OK(serve_open(&server.own, &options, &err), &err);
     take_address(serve_url(server.own));
@@ -805,7 +804,6 @@ TEST(a_run_that_is_not_asked_for_any_more_is_released)
     Watch *w;
     View first, again, kept;
     const RecordPaths moved = {0};
-    Err err = {0};
     CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);

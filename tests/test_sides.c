@@ -20,7 +20,6 @@ static SimResult push(Engine engine, double omega, double right, double left, do
     const Motion motion = {.accel = pulse, .n = 3, .dt_s = 1};
     SimModel model;
     SimResult r;
-    Err err = {0};
     bobs_model(&model, 1, &(Bob){.mass = MASS, .omega = omega}, 0,
                &(Contact){.k = 4.8650e10, .a = 0, .v0_floor = 1e-6});
     CHECK_OK(model_set_gaps(&model, &right, &left, &err), &err);
@@ -75,7 +74,6 @@ TEST(an_oscillator_at_a_stop_has_twice_its_frequency)
 static SimResult tower(GapSides sides, Engine engine, double sign, const double x[])
 {
     SceneOptions o = scene_defaults();
-    Err err = {0};
     Motion motion;
     Scene *scene;
     SimWorker *worker;

@@ -40,7 +40,6 @@ static SimplifyConfig config_of(double slack)
 static Simplified simplified(const SimplifyConfig *c)
 {
     Simplified s;
-    Err err = {0};
     CHECK_OK(simplify_design(&study, row, c, &s, &err), &err);
     return s;
 }

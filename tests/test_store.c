@@ -102,7 +102,6 @@ TEST(a_run_stopped_while_it_polishes_and_one_that_polishes_side_by_side_end_with
 static void grant_and_die(Settings *s, long max_evals)
 {
     RunStore *store;
-    Err err = {0};
     CHECK_OK(store_open(&store, s->run.out, 0, &err), &err);
     Settings granted = *store_run(store)->settings;
     granted.search.max_evals = s->search.max_evals = max_evals;
@@ -113,7 +112,6 @@ static void grant_and_die(Settings *s, long max_evals)
 TEST(more_simulations_go_on_the_same_whenever_they_are_granted)
 {
     StudySummary summary;
-    Err err = {0};
     int left = 17;
     const StudyOptions stopped = {.stop = stop_after, .user = &left};
     Settings late = settings_of(TEXTBOOK, "late"), early = settings_of(TEXTBOOK, "early");
@@ -159,7 +157,6 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     char path[PATH_MAX], command[3 * PATH_MAX];
     sqlite3 *db;
     StudySummary summary;
-    Err err = {0};
     int left = 15;
     const Settings s = settings_of(TOWER, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
@@ -197,7 +194,6 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     refused_with(&other, 0, "problem.command is build/textbook dtlz2 6 3 0.05 there, now no000", "problem.command");
     refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
-    Err err = {0};
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err); /* they are the run's now */
 }
@@ -355,7 +351,6 @@ TEST(a_second_signal_ends_at_once)
 TEST(hours_are_obeyed_within_a_batch)
 {
     StudySummary summary = {0};
-    Err err = {0};
     Settings s = settings_of(STEADY, "hours");
     s.search.threads = 1;
     for (double limit_s = 0.2; limit_s < 1.6 && summary.n_simulated == 0; limit_s *= 1.5) {
@@ -399,7 +394,6 @@ TEST(polished_designs_join_the_front_but_not_the_search)
 {
     char path[PATH_MAX], id[24];
     long first;
-    Err err = {0};
     StudySummary summary;
     int left = 20;
     Settings s = settings_of(TEXTBOOK, "polished");
@@ -516,7 +510,6 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
     const double lower[3] = {0, -1, 2}, reference[3] = {1, 1, 6};
     const double F[] = {0.2, 0, 3, 0.5, -0.5, 2.5, 0.1, 0.9, 5, 2, 2, 7};
     Hypervolume *h;
-    Err err = {0};
     CHECK_OK(hypervolume_create(&h, 3, lower, reference, 1, &err), &err);
     double before = 0;
     for (size_t i = 0; i < 4; i++) {

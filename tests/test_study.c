@@ -240,7 +240,6 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     char *all, *line;
     size_t length;
     Table front, three;
-    Err err = {0};
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
     CHECK_OK(table_read(&three, three_path, 1, &err), &err);
     CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);

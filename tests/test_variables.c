@@ -10,7 +10,6 @@ static DesignSpace space_of(const char *variables, long gap_zones, long bumper_z
 {
     DesignOptions o = scene_defaults().design;
     DesignSpace space;
-    Err err = {0};
     snprintf(o.variables, sizeof o.variables, "%s", variables);
     o.gap_zones = gap_zones;
     o.bumper_zones = bumper_zones;
@@ -47,7 +46,6 @@ TEST(a_core_of_given_areas_has_no_thickness_to_search)
     DesignOptions o = scene_defaults().design;
     DesignSpace s;
     Design d;
-    Err err = {0};
     double lower[3], upper[3];
     snprintf(o.variables, sizeof o.variables, "gaps, thickness, bumper");
     CHECK_OK(design_space_make(&s, &o, CORE_EFFECTIVE, 2, &err), &err);
@@ -110,7 +108,6 @@ TEST(wrong_variables_are_refused_with_their_key)
         forget(&s);
     }
     DesignSpace space;
-    Err err = {0};
     DesignOptions o = scene_defaults().design;
     o.gap_zones = 5;
     assert_int_equal(design_space_make(&space, &o, CORE_BOX, 4, &err), STATUS_BAD_DATA);
@@ -121,7 +118,6 @@ TEST(wrong_variables_are_refused_with_their_key)
 
 static SimResult simulate(const SceneOptions *o, const double x[])
 {
-    Err err = {0};
     Motion motion;
     Scene *scene;
     SimWorker *worker;
@@ -189,7 +185,6 @@ static int end_run(void **state)
 TEST(a_named_design_that_cannot_be_predicted_is_said_to_be_so)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     long n = 0;
     CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
