@@ -4,11 +4,11 @@
 #include <cblas.h>
 #include <string.h>
 
-#include "bench/distribution.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
+#include "bench/sweep.h"
 #include "bench/throughput.h"
 #include "bench/promise.h"
 #include "bench/paper.h"
@@ -16,8 +16,6 @@
 #include "cmd/args.h"
 #include "motion/motion_scale.h"
 #include "store/output.h"
-
-static const double DISTRIBUTION_LIMIT_S = 0.4; /* for one run; there are 64 */
 
 typedef struct {
     SceneOptions options;
@@ -42,7 +40,6 @@ static Status prepare(const Args *args, Bench *b, Err *err)
 typedef struct {
     Bench bench;
     Sweep sweep;
-    DistributionTest distribution;
     SweepPlan plan;
     unsigned kinds; /* bit by benchmark case */
 } Chart;
@@ -84,10 +81,6 @@ static Status run_case(Chart *c, int k, Err *err)
     Status status = bench_case_open(&bench_case, bench_kind(k), &b->options, &b->motion, b->quick, err);
     if (status == STATUS_OK)
         status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
-    const int irregular = strcmp(bench_case.kind->name, "irregular") == 0;
-    if (status == STATUS_OK && !b->quick && irregular)
-        status = distribution_test_run(&c->distribution, &c->sweep, &bench_case, &b->options, DISTRIBUTION_LIMIT_S,
-                                       stderr, err);
     bench_case_close(&bench_case);
     return status;
 }
@@ -105,11 +98,6 @@ static Status make_chart(const Args *args, Chart *c, Err *err)
     Output o;
     TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
     sweep_write(&c->sweep, o.stream);
-    TRY(output_close(&o, err));
-    if (!(c->distribution.duration > 0) || !args_has(args, "--distribution"))
-        return STATUS_OK;
-    TRY(output_open(&o, args_value(args, "--distribution"), err));
-    distribution_test_write(&c->distribution, o.stream);
     return output_close(&o, err);
 }
 
@@ -125,8 +113,7 @@ static Status run_sweep(const Args *args, Err *err)
 static const ArgOption SWEEP_OPTIONS[] = {
     {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
     {"--engine", "NAME,...", NULL, 0, "all unless given"},
-    {"--quick", NULL, NULL, 0, "half the time, no distribution test"},
-    {"--distribution", "FILE", NULL, 0, "CSV of the distances of distributions after the predictability horizon"},
+    {"--quick", NULL, NULL, 0, "half the time"},
     OPTION_CSV,
     OPTIONS_MOTION,
     OPTION_SET,

@@ -22,7 +22,7 @@ named: $(PROGRAM) ## whether the likely errors of what studies name cover the tr
 	@scripts/tables promise
 
 chart: $(BENCH) ## speed against accuracy of every engine
-	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv --distribution docs/measured/distribution.csv
+	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv
 	@scripts/tables chart
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 

@@ -1,7 +1,7 @@
 /* The bench measures what it says: its scenes, its errors, its tables. */
 #include "check.h"
 
-#include "bench/distribution.h"
+#include "bench/sweep.h"
 #include "bench/promise.h"
 #include "bench/search/families.h"
 #include "bench/search/factors.h"
@@ -75,16 +75,6 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     assert_close(some.first_s, 1e-3, 1e-9);
     bench_case_close(&bench_case);
     motion_free(&g.m);
-}
-
-TEST(the_distance_of_two_samples_is_that_of_their_steps)
-{
-    double a[] = {4, 1, 3, 2}, b[] = {8, 5, 7, 6}, c[] = {2.5, 3.5, 4.5, 5.5}, d[] = {3, 2, 1, 4};
-    assert_close(ks_distance(4, a, 4, b), 1, 1e-15);
-    assert_close(ks_distance(4, a, 4, c), 0.5, 1e-15);
-    assert_close(ks_distance(4, a, 4, d), 0, 1e-15);
-    assert_close(ks_distance(4, a, 2, c), 0.5, 1e-15);
-    assert_close(ks_critical(64), 0.24, 1e-2);
 }
 
 TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
@@ -198,30 +188,6 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     assert_non_null(strstr(page, "\nthree floors,\"true / estimated error\",edcs_pct,1,1,"));
     assert_non_null(strstr(page, "\ncvode,\"fine\",share_points,1,1,"));
     free(page);
-    motion_free(&g.m);
-}
-
-/* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
-TEST(the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings)
-{
-    double spread[2];
-    Ground g;
-    ground_open(&g);
-    g.m.n = (size_t)(22 / g.m.dt_s); /* what is left of a window of 60 s */
-    for (int i = 0; i < 2; i++) {
-        BenchCase bench_case = {0};
-        DistributionTest test = {0};
-        Err err;
-        g.s.sim.gap_tolerance_m = i * 5e-3;
-        CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
-        CHECK_OK(distribution_test_run(&test, &(Sweep){0}, &bench_case, &g.s, 1, stderr, &err), &err);
-        assert_int_equal(test.again.finished, DISTRIBUTION_RUNS);
-        assert_close(test.tolerance_m, g.s.sim.gap_tolerance_m, 0);
-        spread[i] = test.spread[0];
-        bench_case_close(&bench_case);
-    }
-    print_message("spread of j1: %g, %g with errors of 5 mm\n", spread[0], spread[1]);
-    assert_less(2 * spread[0], spread[1]);
     motion_free(&g.m);
 }
 
