@@ -26,8 +26,9 @@ chart: $(BENCH) ## speed against accuracy of every engine
 	@scripts/tables chart
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
-paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
+paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the numbers and pictures of the paper item by item, with its records where they are at hand; ARGS="--evals N"
 	@scripts/paper --program ./$(PROGRAM) --bench $(BENCH) $(ARGS)
+	@scripts/tables paper
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@rm -f build/constants.md
