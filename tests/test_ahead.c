@@ -6,7 +6,6 @@
 #include "base/random.h"
 #include "bench/textbook.h"
 #include "moga/constants.h"
-#include "moga/search.h"
 
 enum { VAR = 5, OBJ = 2, ROWS_MAX = 400 };
 

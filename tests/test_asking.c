@@ -2,8 +2,6 @@
  * calls that make no sense. */
 #include "runs.h"
 
-#include <sys/wait.h>
-
 #include "base/linalg.h"
 #include "base/random.h"
 #include "bench/textbook.h"

@@ -7,7 +7,6 @@
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/search/reference.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 
 typedef struct {

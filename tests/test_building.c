@@ -2,7 +2,6 @@
 #include "program.h"
 
 #include "base/linalg.h"
-#include "scene/building.h"
 #include "scene/frame.h"
 #include "scene_options.h"
 

@@ -1,7 +1,6 @@
 /* Generated motions: what they promise by themselves, and how near they are to the records that they stand in for. */
 #include "check.h"
 
-#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene_options.h"
 #include "sim/sim.h"

@@ -4,7 +4,6 @@
 #include "bench/stability/bob.h"
 
 #include "base/random.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"

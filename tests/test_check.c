@@ -2,7 +2,6 @@
 #include "runs.h"
 
 #include "evaluate/tower.h"
-#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene/summary.h"
 #include "scene_options.h"

@@ -1,12 +1,10 @@
 /* The engine `fast` against closed forms, symmetry, conservation and printed numbers. Limits of gaps, strength and steps
  * are cases of `imtet-bench stability`, agreement with CVODE is in test_window.c. */
-#include "check.h"
 
 #include "bench/stability/bob.h"
 
 #include "base/csv.h"
 #include "sim/fast/fast.h"
-#include "motion/motion_scale.h"
 #include "one_scene.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */

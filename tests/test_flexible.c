@@ -2,7 +2,6 @@
 #include "check.h"
 
 #include "bench/promise.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/fast/fast.h"
 

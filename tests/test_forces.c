@@ -4,7 +4,6 @@
 #include "scene_options.h"
 
 #include "bench/stability/bob.h"
-#include "motion/motion_scale.h"
 #include "evaluate/measures.h"
 #include "sim/engine.h"
 #include "sim/fast/fast.h"

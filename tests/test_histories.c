@@ -3,7 +3,6 @@
 #include "runs.h"
 #include "scene_options.h"
 
-#include "motion/motion_scale.h"
 #include "sim/floor_filter.h"
 #include "sim/sim.h"
 

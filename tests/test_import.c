@@ -1,7 +1,6 @@
 /* OpenSees models written for the test, read as plane frames: closed forms, a frame there and back, refusals. */
 #include "program.h"
 
-#include "scene/building.h"
 #include "scene/frame.h"
 #include "scene_options.h"
 

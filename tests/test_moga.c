@@ -1,8 +1,6 @@
-#include "check.h"
 #include "moga/archive.h"
 #include "moga/credit.h"
 #include "moga/directions.h"
-#include "base/dominance.h"
 #include "moga/normalisation.h"
 #include "base/hypervolume.h"
 #include "moga/infill.h"

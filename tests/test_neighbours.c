@@ -1,5 +1,4 @@
 /* Two buildings that pound: closed forms of two single masses, floors by number, what is refused. */
-#include "check.h"
 
 #include "base/units.h"
 #include "program.h"

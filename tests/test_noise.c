@@ -1,5 +1,4 @@
 /* Answers that scatter: what is learnt of the spread, who dominates whom then, what is simulated again and reported. */
-#include "check.h"
 
 #include "moga/archive.h"
 #include "base/dominance.h"

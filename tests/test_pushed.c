@@ -1,5 +1,4 @@
 /* Forces on floors over time: closed forms of a single mass, a ground motion told as forces, files that are wrong. */
-#include "check.h"
 
 #include "base/units.h"
 #include "bench/stability/bob.h"

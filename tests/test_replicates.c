@@ -5,7 +5,6 @@
 #include "base/stat.h"
 #include "sim/as_built.h"
 #include "evaluate/adapter.h"
-#include "settings/settings.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };
 

@@ -11,7 +11,6 @@
 #include "report/report.h"
 #include "report/report_json.h"
 #include "scene_options.h"
-#include "settings/settings.h"
 #include "report/words.h"
 #include "settings/options.h"
 

@@ -4,7 +4,6 @@
 #include <omp.h>
 
 #include "base/pack.h"
-#include "check.h"
 #include "study/search_loop.h"
 #include "bench/textbook.h"
 #include "functions.h"

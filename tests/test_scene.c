@@ -3,7 +3,6 @@
 
 #include "base/linalg.h"
 #include "scene/core_beam.h"
-#include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
 #include "sim/flow.h"

@@ -4,7 +4,6 @@
 #include "base/linalg.h"
 
 #include "base/hash.h"
-#include "check.h"
 #include "moga/constants.h"
 #include "base/dominance.h"
 #include "moga/levels.h"

@@ -2,7 +2,6 @@
 #include <omp.h>
 
 #include "base/random.h"
-#include "check.h"
 #include "functions.h"
 #include "searches.h"
 #include "base/dominance.h"

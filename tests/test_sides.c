@@ -1,5 +1,4 @@
 /* Gaps of which the two sides differ: a single mass against closed forms, the tower against its own mirror image. */
-#include "check.h"
 
 #include "base/units.h"
 #include "bench/stability/bob.h"

@@ -2,7 +2,6 @@
 #include "check.h"
 
 #include "bench/case.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"

@@ -2,7 +2,6 @@
 #include "runs.h"
 
 #include "base/random.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/sim.h"
 

@@ -3,7 +3,6 @@
 
 #include "bench/timed_run.h"
 #include "motion/motion_read.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 

@@ -1,5 +1,4 @@
 /* Storeys that yield: closed forms, reference numbers, energies, and every engine against the other. */
-#include "check.h"
 
 #include "one_scene.h"
 #include "sim/engine.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "bench/search/mixed.h"
 
 typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
@@ -47,24 +46,16 @@ static const Recipe RECIPES[] = {
     {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, NEVER, 0, 0, 0, 0},
     {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3}, SPHERE, CONCAVE, NEVER, 0, 0, 0, 0},
     {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3}, ROSENBROCK, CONVEX, NEVER, 0, 0, 0, 0},
-    {{"beam2", "welded beam of four materials", 6, 2, 4, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
-    {{"reducer2", "speed reducer with whole teeth", 7, 2, 11, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
-    {{"vessel2", "pressure vessel of plates", 4, 2, 2, 3}, SPHERE, LINEAR, NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
 
-/* Which of the last variables are whole numbers and choices, or what stands in the place of all parts. */
+/* How many of the last variables are whole numbers and choices. */
 typedef struct {
     const char *name;
     size_t n_whole, n_choice;
-    const Mixed *mixed;
 } Mix;
 
-static const Mix MIXES[] = {{"mixed7", 6, 6, NULL},
-                            {"mixed3", 4, 4, NULL},
-                            {"beam2", 0, 0, &MIXED_BEAM},
-                            {"reducer2", 0, 0, &MIXED_REDUCER},
-                            {"vessel2", 0, 0, &MIXED_VESSEL}};
+static const Mix MIXES[] = {{"mixed7", 6, 6}, {"mixed3", 4, 4}};
 enum { N_MIXES = sizeof MIXES / sizeof *MIXES };
 
 /* A recipe with its constants. */
@@ -236,10 +227,6 @@ static void evaluate(const Made *m, const double x_real[], double f[], double g[
     double design[FAMILY_VAR_MAX], x[FAMILY_VAR_MAX], y[FAMILY_VAR_MAX];
     for (size_t j = 0; j < a->n_var; j++)
         design[j] = m->kind[j] == VARIABLE_WHOLE || m->kind[j] == VARIABLE_CHOICE ? round(x_real[j]) : x_real[j];
-    if (m->mix && m->mix->mixed) {
-        m->mix->mixed->evaluate(design, f, g);
-        return;
-    }
     to_unit(m, design, x);
     if (m->recipe.front == QUADRATICS) {
         quadratics(m, x, f);
@@ -273,7 +260,7 @@ size_t family_place(const Problem *p, const double w[], double share, double x[]
         x[j] = m->kind[j] == VARIABLE_WHOLE    ? round(TENTHS * m->shift[j])
                : m->kind[j] == VARIABLE_CHOICE ? 4.0
                                                : m->shift[j];
-    if (m->recipe.front == QUADRATICS || (m->mix && m->mix->mixed))
+    if (m->recipe.front == QUADRATICS)
         return 0;
     if (m->recipe.front != CURVE)
         return place_on_simplex(p->n_obj, w, x);
@@ -364,12 +351,6 @@ static void set_kinds(Made *m)
         m->kind[j] = is_whole ? VARIABLE_WHOLE : VARIABLE_CHOICE;
         m->upper[j] = is_whole ? TENTHS : 4.0;
         m->shift[j] = is_whole ? round(TENTHS * m->shift[j]) / TENTHS : WORDS[4];
-    }
-    for (size_t j = 0; mix->mixed && j < n; j++) {
-        m->kind[j] = mix->mixed->kind[j];
-        m->lower[j] = mix->mixed->lower[j];
-        m->upper[j] = mix->mixed->upper[j];
-        m->shift[j] = 0.5 * (m->lower[j] + m->upper[j]);
     }
 }
 
