@@ -149,7 +149,6 @@ TEST(a_search_that_is_interrupted_a_hundred_times_asks_the_same)
             tell(&again, s, &out, random_below(&r, MIN_OF(out.n, 10)));
         if (random_below(&r, 3) > 0)
             continue;
-        Err err = {0};
         EvaluationTable rows = evaluation_table(VAR, OBJ, 0);
         const SearchView v = search_look(s);
         for (size_t i = 0; i < v.all->n; i++) {

@@ -42,7 +42,6 @@ TEST(scenes_have_as_many_impacts_as_their_names_say)
     ground_open(&g);
     for (int k = 0; k < N_BENCH_KINDS; k++) {
         BenchCase bench_case = {0};
-        Err err;
         static TimedRun o;
         CHECK_OK(bench_case_open(&bench_case, bench_kind(k), &g.s, &g.m, 1, &err), &err);
         CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);

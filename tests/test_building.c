@@ -475,7 +475,6 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
                        "sim.engine=%s --json --contacts @/contacts.csv",
                        i ? "cvode" : "fast");
         Table contacts;
-        Err err = {0};
         char *path = in_place("contacts.csv");
         double highest = 0;
         CHECK_OK(table_read(&contacts, path, 1, &err), &err);

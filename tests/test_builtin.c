@@ -71,7 +71,6 @@ TEST(generated_motions_have_the_stated_peak_and_duration)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
-        Err err;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_G, &err), &err); /* the unit of files does not matter */
         motion_figures(&m, &f);
@@ -89,7 +88,6 @@ TEST(generated_motions_leave_the_ground_at_rest)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
-        Err err;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         motion_figures(&m, &f);
@@ -108,7 +106,6 @@ TEST(a_generated_motion_is_the_same_every_time)
     uint64_t hash[N_MOTIONS];
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m[2];
-        Err err;
         for (int i = 0; i < 2; i++)
             CHECK_OK(motion_load(&m[i], MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         assert_memory_equal(m[0].accel, m[1].accel, m[0].n * sizeof(double));

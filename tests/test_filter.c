@@ -56,7 +56,6 @@ TEST(low_and_high_pass_of_an_impulse_add_up_in_area)
     enum { N = 20001 };
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
-        Err err = {0};
         double *x = calloc(N, sizeof *x), area = 0;
         CHECK_OK(filter_butterworth(&f, kind, 1.0, 0.005, &err), &err);
         x[N / 2] = 1;
@@ -75,7 +74,6 @@ TEST(the_padding_takes_up_what_rings_on)
     enum { N = 400 };
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
-        Err err = {0};
         CHECK_OK(filter_butterworth(&f, kind, 2.0, 0.01, &err), &err);
         const size_t pad = filter_padding(&f), all = N + 20 * pad;
         double *x = calloc(all, sizeof *x), *y = calloc(all, sizeof *y);

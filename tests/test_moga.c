@@ -150,7 +150,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         const size_t m = cases[c].m;
         Directions d;
-        Err err = {0};
         CHECK_OK(directions_create(&d, m, cases[c].outer, cases[c].inner, &err), &err);
         assert_int_equal(d.n, cases[c].n);
         for (size_t i = 0; i < d.n; i++) {
@@ -413,7 +412,6 @@ TEST(the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time)
         unsigned char in[N] = {0}, wanted[N] = {0};
         NdTree *t;
         NdChange change;
-        Err err = {0};
         make_stream(seed, N, m, F);
         CHECK_OK(nd_tree_create(&t, m, &err), &err);
         for (size_t i = 0; i < N; i++) {
@@ -476,7 +474,6 @@ TEST(an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was)
     unsigned char ok[N];
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive whole, again;
-        Err err = {0};
         Random r = random_stream(seed, RANDOM_TEST, 9, 0);
         make_stream(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -548,7 +545,6 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
         unsigned char allowed[N], asked[N];
         Directions d;
         Infill *lazy, *anew;
-        Err err = {0};
         Random r = random_stream(seed, RANDOM_TEST, 1, 0);
         coarse_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -588,7 +584,6 @@ TEST(spread_directions_have_the_axes_and_keep_apart)
 {
     for (size_t m = 2; m <= 7; m++) {
         Directions d;
-        Err err = {0};
         const size_t n = 40;
         CHECK_OK(directions_spread(&d, m, n, &err), &err);
         double least = INFINITY;

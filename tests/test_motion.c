@@ -86,7 +86,6 @@ TEST(times_printed_with_few_digits_are_uniform)
             p += sprintf(p, ",%d\n", i % 3);
         }
         Motion m;
-        Err err;
         CHECK_OK(parse(&m, text, UNIT_FROM_FILE, &err), &err);
         assert_int_equal(m.n, n);
         assert_close(m.dt_s, CASES[c].dt, 1e-5);
@@ -210,7 +209,6 @@ TEST(the_benchmark_records_are_read)
     for (size_t i = 0; i < sizeof RECORDS / sizeof *RECORDS; i++) {
         char path[128];
         Motion m;
-        Err err;
         snprintf(path, sizeof path, "../shared/records/%s", RECORDS[i].file);
         const Status s = motion_load(&m, path, UNIT_FROM_FILE, &err);
         if (s == STATUS_MISSING)

@@ -84,7 +84,6 @@ TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
     for (int i = 0; i < N_SPECIMENS; i++) {
         char path[128];
         Motion m;
-        Err err;
         specimen_path(SPECIMENS[i].file, path);
         CHECK_OK(motion_read(&m, path, &(MotionHow){.channel = SPECIMENS[i].channel}, &err), &err);
         const double want = 0.01 * PEAK_GAL[SPECIMENS[i].component];
@@ -131,7 +130,6 @@ TEST(binary_files_and_archives_are_read_to_their_samples)
     for (int i = 0; i < N_BINARY; i++) {
         char path[128];
         Motion m;
-        Err err;
         specimen_path(BINARY[i].file, path);
         CHECK_OK(motion_read(&m, path, &BINARY[i].how, &err), &err);
         const double want = 0.01 * PEAK_GAL[BINARY[i].component];
@@ -1075,12 +1073,10 @@ TEST(a_long_line_and_many_records_take_no_square_of_their_length)
         for (int i = 0; i < COLUMNS; i++, p += 2)
             memcpy(p, with_names ? "a," : "0 ", 2);
         memcpy(p, with_names ? "a\n1,2,\n" : "0\n1 2\n", 7);
-        Err err = {0};
         assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
     }
     free(row);
     Text t = repeated(read_specimen("three.mseed"), 4096);
-    Err err = {0};
     refuse("six.mseed", t, &FIRST, "more than 128 channels");
     t = repeated((Text){strdup("\n"), 1}, 1 << 20);
     memcpy(t.text, "Origin Time", strlen("Origin Time"));
@@ -1433,7 +1429,6 @@ TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
     for (int width = 5; width <= 8; width += 3)
         for (int with_word = 0; with_word < 2; with_word++) {
             Motion m;
-            Err err = {0};
             Text t = rows_of("", 20, width);
             t.length -= 30; /* two numbers */
             memcpy(t.text + t.length, with_word ? "\nend\n" : "\n", with_word ? 6 : 2);
@@ -1455,7 +1450,6 @@ TEST(a_record_that_its_agency_corrected_is_not_called_uncorrected)
     static const char *const RAW[] = {"three.csmip.v1", "three.v1a", "one.cosmos.v1", "one.csmnc", "equals.at2"};
     for (int i = 0; i < 10; i++) {
         Motion m;
-        Err err = {0};
         char path[128];
         specimen_path(i < 5 ? CORRECTED[i] : RAW[i - 5], path);
         CHECK_OK(motion_read(&m, path, &FIRST, &err), &err);

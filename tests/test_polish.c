@@ -93,7 +93,6 @@ TEST(on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_again_and_again
     for (int again = 0; again < 2; again++) {
         Toy w = {.jag = 0.1};
         Polished r;
-        Err err = {0};
         CHECK_OK(polish(&w, FIRST, bound, 120, &r, &err), &err);
         assert_at_most(r.f[1], 1.2);
         assert_less(r.f[0], 0.6 * AT_START);
@@ -109,7 +108,6 @@ TEST(no_more_simulations_are_made_than_allowed)
         for (size_t evals = 0; evals < 40; evals += 13) {
             Toy w = {0};
             Polished r;
-            Err err = {0};
             CHECK_OK(polish(&w, FIRST, keeps ? KEPT : FREE, evals, &r, &err), &err);
             assert_at_most(w.n, evals);
             assert_at_most(r.f[0], AT_START + 1e-12);
@@ -132,7 +130,6 @@ TEST(failed_simulations_are_a_finite_wall_and_never_the_answer)
         for (int keeps = 0; keeps < 2; keeps++) {
             Toy w = {.fails = fails};
             Polished r;
-            Err err = {0};
             CHECK_OK(polish(&w, FIRST, keeps ? KEPT : FREE, 300, &r, &err), &err);
             assert_less(0, r.n_failed);
             assert_at_most(w.n, 300);

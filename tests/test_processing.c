@@ -55,7 +55,6 @@ static double (*const DRIFTING[])(double t) = {noise, constant, ramp, parabola};
 TEST(a_base_line_of_its_degree_leaves_no_trace)
 {
     for (int degree = 0; degree <= 2; degree++) {
-        Err err = {0};
         MotionOptions o = options();
         Motion a = motion_of(1501, 0.01, noise), b = motion_of(1501, 0.01, DRIFTING[degree + 1]);
         o.baseline = (MotionBaseline)(BASELINE_MEAN + degree);
@@ -109,7 +108,6 @@ static double offset_quake(double t)
 TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
 {
     for (double hz = 0.05; hz < 0.3; hz *= 2) {
-        Err err = {0};
         MotionFigures before, after;
         MotionOptions o = options();
         o.highpass_hz = hz;
@@ -249,7 +247,6 @@ TEST(the_scale_to_a_code_spectrum_makes_the_mean_square_least)
         Motion m = scaled(&o);
         const double least = target_misfit(&m, &target);
         for (int side = 0; side < 2; side++) {
-            Err err = {0};
             MotionOptions other = options();
             other.factor = m.scale * (side ? 1.05 : 0.95);
             Motion off = motion_of(3001, 0.01, offset_quake);
@@ -304,7 +301,6 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
                                       "motion.unit=g=2",
                                       "motion.unit=feet"};
     for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++) {
-        Err err = {0};
         Settings s;
         settings_defaults(&s);
         CHECK_OK(settings_set(&s, SET[i], &err), &err);

@@ -126,7 +126,6 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 {
     for (size_t workers = 1; workers <= WORKERS; workers++) {
         Finished done;
-        Err err = {0};
         forget();
         bench.rests = 1;
         bench.problem.observer = (Observer){.done = note_done, .user = &bench};
@@ -215,7 +214,6 @@ TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
 {
     for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
         Finished done;
-        Err err = {0};
         Status status = STATUS_OK;
         forget();
         bench.rests = 1;

@@ -180,7 +180,6 @@ TEST(tuning_finds_the_nugget_of_answers_of_different_variance)
         F[i * OUT] += deviation * sqrt(V[i * OUT]) * random_normal(&r);
     }
     for (int told = 0; told < 2; told++) {
-        Err err = {0};
         Rbf *m;
         CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
         CHECK_OK(rbf_tune(m, MANY, X, F, told ? V : NULL, &err), &err);
@@ -296,7 +295,6 @@ TEST(the_slope_of_the_surface_equals_differences_for_every_form)
     enum { FORMS = RBF_N_KERNELS * RBF_N_TAILS };
     for (int form = 0; form < FORMS; form++) {
         Rbf *m = fitted(N, X, F, 1);
-        Err err = {0};
         for (size_t k = 0; k < OUT; k++)
             m->output[k].form = (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6};
         CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);

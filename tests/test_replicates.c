@@ -294,7 +294,6 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
         Settings single = s;
         double x[N_VAR];
         Problem p;
-        Err err = {0};
         SimResult r;
         const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.sim.uncertain);
         memcpy(x, X, sizeof x);

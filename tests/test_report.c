@@ -276,7 +276,6 @@ TEST(an_objective_of_several_simulations_says_of_which)
                  {"a.csv", "0.9", "quantile 0.9 of 2 records x 8 replicates", 8}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Settings s;
-        Err err = {0};
         char text[RULE_WORDS_MAX];
         settings_defaults(&s);
         CHECK_OK(settings_put(&s, "motion.records", CASES[i].records, &err), &err);

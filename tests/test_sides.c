@@ -184,7 +184,6 @@ TEST(replicates_change_both_sides_together_only_where_they_are_one_variable)
         DesignOptions o = scene_defaults().design;
         DesignSpace s;
         Design d, was;
-        Err err = {0};
         o.gap_sides = sides;
         CHECK_OK(design_space_make(&s, &o, CORE_BOX, 2, &err), &err);
         assert_int_equal(s.n_var, sides == GAPS_EACH ? 6 : 4);

@@ -220,7 +220,6 @@ static void wait_for(const char *out, size_t n)
     const double begun = now_s();
     for (size_t found = 0; found < n; rest(0.02)) {
         Run saved = {0};
-        Err err = {0};
         if (now_s() > begun + 60)
             fail_msg("%s: %zu evaluations after a minute, wanted %zu", out, found, n);
         if (run_is_there(path_of(out, folder))) {

@@ -114,7 +114,6 @@ TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
     };
     const double want[] = {1.5, -2.25, 3e-7, 0.1, 4, 5};
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Err err = {0};
         Table t;
         CHECK_OK(parse(&t, FORMS[i], 0, &err), &err);
         assert_int_equal(t.n_rows, 2);
@@ -133,7 +132,6 @@ TEST(a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes)
         "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n",
     };
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Err err = {0};
         Table t;
         CHECK_OK(parse(&t, FORMS[i], 1, &err), &err);
         assert_int_equal(table_column(&t, "gap_01_m"), 0);
