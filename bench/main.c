@@ -93,8 +93,6 @@ static Status make_chart(const Args *args, Chart *c, Err *err)
     for (int k = 0; k < N_BENCH_KINDS; k++)
         if (c->kinds >> k & 1)
             TRY(run_case(c, k, err));
-    if (!c->bench.quick)
-        TRY(sweep_find_noise(&c->sweep, &c->bench.options, &c->bench.motion, err));
     Output o;
     TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
     sweep_write(&c->sweep, o.stream);

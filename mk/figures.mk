@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise named pages paper chart ablation pictures study web setup-browser report-bench serve-bench
+.PHONY: setup-figures bench promise pages paper chart ablation pictures study web setup-browser report-bench serve-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -15,10 +15,6 @@ promise: $(BENCH) $(PROGRAM) ## how often every accuracy holds what it promises
 	@for s in 1 2 3; do ./$(PROGRAM) optimize configs/kobe.ini --record $(BENCH_RECORD) --max-evals 1000 --set search.seed=$$s --out build/promise/$$s; \
 	  ./$(PROGRAM) export build/promise/$$s --select 60 --csv - | cut -d, -f2-23 | sed "$$([ $$s = 1 ] || echo 1d)" >> build/promise.csv; done
 	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(SCENES),--scenes $(SCENES)) --front build/promise.csv --out docs/measured/promise.csv
-	@scripts/tables promise
-
-named: $(PROGRAM) ## whether the likely errors of what studies name cover the true ones; ARGS="--seeds 1,2" or --short
-	@scripts/named --program ./$(PROGRAM) $(ARGS)
 	@scripts/tables promise
 
 chart: $(BENCH) ## speed against accuracy of every engine
