@@ -13,11 +13,11 @@ $(BENCH): $(BUILD)/bench/main.o $(BENCH_LIB) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(BENCH_LDLIBS) $(LDLIBS)
 
-# The textbook problems as a worker, for tests and scripts; of whichever mode was built last.
-TEXTBOOK := build/textbook
+# The textbook problems as a worker, for tests and scripts.
+TEXTBOOK := $(BUILD)/textbook
 $(TEXTBOOK): $(BUILD)/bench/textbook_worker.o $(BUILD)/bench/textbook.o $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/bench/%.o $(BUILD)/tests/%.o: CPPFLAGS += -I.
+$(BUILD)/bench/%.o $(BUILD)/tests/%.o: CPPFLAGS += -I. -DBUILD_FOLDER='"$(BUILD)"'
 $(BUILD)/bench/engines/%.o: FLAGS = $(FLAGS.sim)

@@ -12,7 +12,7 @@
  *
  * As a simulator  one part, the objectives f (n_obj), each times 1 + noise z, z standard normal from the stream (seed, id
  *                 of the request); one worker, since it takes no time
- * As a worker     build/textbook NAME VARIABLES OBJECTIVES [NOISE [SEED [KINDS]]] speaks JSON lines (docs/external.md)
+ * As a worker     build/release/textbook NAME VARIABLES OBJECTIVES [NOISE [SEED [KINDS]]] speaks JSON lines (docs/external.md)
  * Threads  pure functions
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
  *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4). */

@@ -1,4 +1,4 @@
-/* The textbook problems as an external simulator: the program build/textbook (bench/textbook.h). */
+/* The textbook problems as an external simulator: the program build/release/textbook (bench/textbook.h). */
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -26,6 +26,12 @@
 #define SANITIZED 0
 #endif
 
+/* The textbook problems as an external simulator (bench/textbook.h), of the same mode as the test. */
+#ifndef BUILD_FOLDER
+#define BUILD_FOLDER "build/release"
+#endif
+#define TEXTBOOK_WORKER BUILD_FOLDER "/textbook"
+
 /* What the calls of a test say of their faults; it begins empty. A function may have one of its own. */
 static Err err __attribute__((unused));
 #pragma GCC diagnostic ignored "-Wshadow"

@@ -22,9 +22,9 @@
 /* A worker that answers with DTLZ2 (bench/textbook.h). As options and as a settings file. */
 #define DTLZ2(n_var, n_obj)                                                                                            \
     "--set problem.kind=external --set problem.variables=" #n_var " --set problem.objectives=" #n_obj                  \
-    " --set 'problem.command=build/textbook dtlz2 " #n_var " " #n_obj "' "
+    " --set 'problem.command=" TEXTBOOK_WORKER " dtlz2 " #n_var " " #n_obj "' "
 #define DTLZ2_INI(n_var, n_obj)                                                                                        \
-    "[problem]\nkind = external\ncommand = build/textbook dtlz2 " #n_var " " #n_obj "\nvariables = " #n_var            \
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 " #n_var " " #n_obj "\nvariables = " #n_var       \
     "\nobjectives = " #n_obj "\n"
 
 typedef struct {

@@ -14,11 +14,11 @@
 #include "store/run_read.h"
 #include "store/store.h"
 
-static const char TEXTBOOK[] =
-    "[problem]\nkind = external\ncommand = build/textbook dtlz2 6 3 0.05\nvariables = 6\nobjectives = 3\nnoisy = yes\n"
-    "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\n"
-    "limits = f1<=1.2\n";
-#define EXACT "--set problem.noisy=no --set 'problem.command=build/textbook dtlz2 6 3' "
+static const char TEXTBOOK[] = "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER
+                               " dtlz2 6 3 0.05\nvariables = 6\nobjectives = 3\nnoisy = yes\n"
+                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\n"
+                               "limits = f1<=1.2\n";
+#define EXACT "--set problem.noisy=no --set 'problem.command=" TEXTBOOK_WORKER " dtlz2 6 3' "
 /* A worker that never answers. */
 static const char DEAF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
                            "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n";

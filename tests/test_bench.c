@@ -314,7 +314,7 @@ static void loop_simulations(double error_max, size_t found[4], double volume[2]
     size_t size, n = 0;
     settings_defaults(&s);
     s.problem.kind = PROBLEM_EXTERNAL;
-    snprintf(s.problem.command, sizeof s.problem.command, "build/textbook dtlz2 22 7");
+    snprintf(s.problem.command, sizeof s.problem.command, TEXTBOOK_WORKER " dtlz2 22 7");
     s.search.population = 20;
     const LoopPlan plan = {.settings = &s, .n_seeds = 1, .iterations = 3, .error_max = error_max};
     FILE *out = open_memstream(&text, &size);

@@ -9,8 +9,8 @@
 
 /* DTLZ2 of two objectives and variables of other kinds, whole numbers of 0 to 10. */
 #define MIXED(n_var, kinds)                                                                                            \
-    "[problem]\nkind = external\ncommand = build/textbook dtlz2 " #n_var " 2 0 1 '" kinds "'\nvariables = " #n_var     \
-    "\nobjectives = 2\nupper = 10\nkinds = " kinds "\n"
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 " #n_var " 2 0 1 '" kinds                         \
+    "'\nvariables = " #n_var "\nobjectives = 2\nupper = 10\nkinds = " kinds "\n"
 
 /* Position by tenths; distance 0 where the second number is 5 and both choices stand for 1/2. */
 #define SMALL                                                                                                          \

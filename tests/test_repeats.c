@@ -5,7 +5,7 @@
 
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
 #define PROBLEM(noise, noisy)                                                                                          \
-    "[problem]\nkind = external\ncommand = build/textbook dtlz2 2 2 " noise "\nvariables = 2\nobjectives = 2\n"        \
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 2 2 " noise "\nvariables = 2\nobjectives = 2\n"   \
     "noisy = " noisy "\n[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\nreplicate_share = 0.5\n"                \
     "replicates_max = 3\n"
 static const char NOISY[] = PROBLEM("0.05", "yes"), QUIET[] = PROBLEM("0", "no");

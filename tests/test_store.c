@@ -191,7 +191,8 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     s.search.max_evals = 40;
     Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
     snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
-    refused_with(&other, 0, "problem.command is build/textbook dtlz2 6 3 0.05 there, now no000", "problem.command");
+    refused_with(&other, 0, "problem.command is " TEXTBOOK_WORKER " dtlz2 6 3 0.05 there, now no000",
+                 "problem.command");
     refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);

@@ -12,9 +12,9 @@ typedef struct {
 } Prey;
 
 static const Prey PREYS[] = {
-    {"textbook",
-     "[problem]\nkind = external\ncommand = build/textbook dtlz2 8 3 0.02\nvariables = 8\nobjectives = 3\nnoisy = yes\n"
-     "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
+    {"textbook", "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER
+                 " dtlz2 8 3 0.02\nvariables = 8\nobjectives = 3\nnoisy = yes\n"
+                 "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
     {"tower", SIX_FLOORS_INI "[sim]\nduration_s = 5\n"
                              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
     /* designs see one of four records first; objectives with probabilities */
