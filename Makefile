@@ -215,8 +215,8 @@ WRAPPED.store_faults := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_ope
 WRAPPED.shared       := statfs
 PARTS.fuzz_corpus    := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
 
-# Of what runs sanitized nothing needs the bench.
-bench_of     = $(if $(filter-out $(NAMES.asan),$(1)),$(BENCH_LIB))
+# Of what runs sanitized nothing needs more of the bench than the textbook problems.
+bench_of     = $(if $(filter-out $(NAMES.asan),$(1)),$(BENCH_LIB),$(BUILD)/bench/textbook.o)
 # $(call test_link,NAMES): links these files of tests.
 test_objects = $(BUILD)/tests/main.o $(foreach name,$(1),$(BUILD)/tests/test_$(name).o $(PARTS.$(name)))
 test_link    = $(Q)$(CC) $(LDFLAGS) $(GOLD) $(foreach name,$(1),$(WRAPPED.$(name):%=-Wl,--wrap=%)) -o $@ $(call test_objects,$(1)) \
@@ -247,7 +247,7 @@ else ifeq ($(MODE)$(T),asan)
 JOBS_OF += 'asan short-run scripts/short-run $(PROGRAM)'
 endif
 
-tests: $(PROGRAM) $(TEST_PROGRAM) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
+tests: $(PROGRAM) $(TEST_PROGRAM) $(TEXTBOOK) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
 
 # A file of tests runs in the mode that it belongs to, or in that which the command gives.
 GIVEN := $(filter command environment,$(origin MODE))

@@ -1,24 +1,21 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | schedule [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | problem [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
-#include "bench/distribution.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
+#include "bench/sweep.h"
 #include "bench/throughput.h"
 #include "bench/promise.h"
 #include "bench/paper.h"
 #include "bench/problem.h"
-#include "bench/schedule.h"
 #include "cmd/args.h"
 #include "motion/motion_scale.h"
 #include "store/output.h"
-
-static const double DISTRIBUTION_LIMIT_S = 0.4; /* for one run; there are 64 */
 
 typedef struct {
     SceneOptions options;
@@ -43,7 +40,6 @@ static Status prepare(const Args *args, Bench *b, Err *err)
 typedef struct {
     Bench bench;
     Sweep sweep;
-    DistributionTest distribution;
     SweepPlan plan;
     unsigned kinds; /* bit by benchmark case */
 } Chart;
@@ -85,10 +81,6 @@ static Status run_case(Chart *c, int k, Err *err)
     Status status = bench_case_open(&bench_case, bench_kind(k), &b->options, &b->motion, b->quick, err);
     if (status == STATUS_OK)
         status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
-    const int irregular = strcmp(bench_case.kind->name, "irregular") == 0;
-    if (status == STATUS_OK && !b->quick && irregular)
-        status = distribution_test_run(&c->distribution, &c->sweep, &bench_case, &b->options, DISTRIBUTION_LIMIT_S,
-                                       stderr, err);
     bench_case_close(&bench_case);
     return status;
 }
@@ -101,16 +93,9 @@ static Status make_chart(const Args *args, Chart *c, Err *err)
     for (int k = 0; k < N_BENCH_KINDS; k++)
         if (c->kinds >> k & 1)
             TRY(run_case(c, k, err));
-    if (!c->bench.quick)
-        TRY(sweep_find_noise(&c->sweep, &c->bench.options, &c->bench.motion, err));
     Output o;
     TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
     sweep_write(&c->sweep, o.stream);
-    TRY(output_close(&o, err));
-    if (!(c->distribution.duration > 0) || !args_has(args, "--distribution"))
-        return STATUS_OK;
-    TRY(output_open(&o, args_value(args, "--distribution"), err));
-    distribution_test_write(&c->distribution, o.stream);
     return output_close(&o, err);
 }
 
@@ -126,8 +111,7 @@ static Status run_sweep(const Args *args, Err *err)
 static const ArgOption SWEEP_OPTIONS[] = {
     {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
     {"--engine", "NAME,...", NULL, 0, "all unless given"},
-    {"--quick", NULL, NULL, 0, "half the time, no distribution test"},
-    {"--distribution", "FILE", NULL, 0, "CSV of the distances of distributions after the predictability horizon"},
+    {"--quick", NULL, NULL, 0, "half the time"},
     OPTION_CSV,
     OPTIONS_MOTION,
     OPTION_SET,
@@ -263,8 +247,6 @@ static Status run_factors(const Args *args, Err *err)
     FactorPlan plan = {.settings = &s,
                        .problems = args_value(args, "--problem"),
                        .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside"),
-                       .rounded = args_has(args, "--rounded"),
-                       .against_random = args_has(args, "--random"),
                        .keep = args_value(args, "--keep")};
     const long budgets[] = {300, 500, 1000};
     settings_defaults(&s);
@@ -283,8 +265,6 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
     {"--aside", NULL, NULL, 0, "those kept aside instead"},
     {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
-    {"--rounded", NULL, NULL, 0, "beside a search of reals, of which the problem rounds some"},
-    {"--random", NULL, NULL, 0, "beside random designs (a Latin hypercube), not a plain search"},
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
@@ -322,26 +302,11 @@ static const ArgOption LOOP_OPTIONS[] = {
     OPTION_END,
 };
 
-static Status run_schedule(const Args *args, Err *err)
-{
-    SchedulePlan plan = {.folder = args->operand};
-    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
-    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
-    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
-    return schedule(&plan, stdout, err);
-}
-
-static const ArgOption SCHEDULE_OPTIONS[] = {
-    {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
-    {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
-    {"--chain", "S", NULL, 0, "the longest chain in it"},
-    OPTION_END,
-};
-
 static const ArgOption PROBLEM_OPTIONS[] = {
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
     SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
+    {"--noise", "SHARE", NULL, 0, "standard deviation of an objective that the search sees, as a share of its value"},
     OPTION_CSV,
     OPTION_SET,
     OPTION_END,
@@ -421,18 +386,10 @@ static const Command COMMANDS[] = {
      .example = "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
      .details =
          "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one row\n"
-         "each in their order: variables, then objectives. With problem.noise the noisy objectives of the search\n"
-         "stand before the exact ones.",
+         "each in their order: variables, then objectives. With --noise the noisy objectives of the search stand\n"
+         "before the exact ones.",
      .options = PROBLEM_OPTIONS,
      .run = problem_run,
-     .program = "imtet-bench"},
-    {.name = "schedule",
-     .operand = "RUN",
-     .summary = "a run of one thread replayed on 1 to 64 workers",
-     .example = "imtet-bench schedule results/kobe",
-     .details = "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-     .options = SCHEDULE_OPTIONS,
-     .run = run_schedule,
      .program = "imtet-bench"},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };

@@ -5,15 +5,16 @@
 #include <string.h>
 
 #include "api/search_config.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
+#include "evaluate/schema.h"
+#include "evaluate/tasks.h"
+#include "settings/settings.h"
 #include "store/output.h"
 #include "study/search_loop.h"
-#include "evaluate/adapter.h"
-#include "settings/settings.h"
 
 /* The table under way. */
 typedef struct {
-    const Adapter *adapter;
+    const Problem *problem;
     FILE *f;
     int noisy;
     size_t n_front, n;
@@ -22,25 +23,22 @@ typedef struct {
 
 static void write_row(const Writing *w, const double x[], const double f[])
 {
-    const Schema *schema = adapter_schema(w->adapter);
-    double exact[OBJECTIVES_MAX];
-    textbook_exact(adapter_problem(w->adapter), x, exact);
+    double exact[TEXTBOOK_OBJ_MAX];
+    textbook_exact(w->problem, x, exact);
     print_number(w->f, x[0]);
-    print_cells(w->f, schema->n_var - 1, x + 1);
-    print_cells(w->f, w->noisy ? schema->n_obj : 0, f);
-    print_cells(w->f, schema->n_obj, exact);
+    print_cells(w->f, w->problem->n_var - 1, x + 1);
+    print_cells(w->f, w->noisy ? w->problem->n_obj : 0, f);
+    print_cells(w->f, w->problem->n_obj, exact);
     fputc('\n', w->f);
 }
 
 static void write_header(const Writing *w)
 {
-    const Schema *schema = adapter_schema(w->adapter);
-    fputs(schema->column[0].name, w->f);
-    for (size_t j = 1; j < schema->n_var; j++)
-        fprintf(w->f, ",%s", schema->column[j].name);
+    for (size_t j = 0; j < w->problem->n_var; j++)
+        fprintf(w->f, "%sx%zu", j > 0 ? "," : "", j + 1);
     for (int pass = !w->noisy; pass < 2; pass++)
-        for (size_t k = 0; k < schema->n_obj; k++)
-            fprintf(w->f, ",%s%s", pass ? "" : "seen_", schema_objective(schema, k)->name);
+        for (size_t k = 0; k < w->problem->n_obj; k++)
+            fprintf(w->f, ",%sf%zu", pass ? "" : "seen_", k + 1);
     fputc('\n', w->f);
 }
 
@@ -56,16 +54,16 @@ static int write_new(const SearchView *view, const SearchTime *time, void *user)
     return 0;
 }
 
-static Status search(const Args *args, const Settings *s, const Adapter *adapter, Err *err)
+static Status search(const Args *args, const Settings *s, const Problem *p, Err *err)
 {
     Output o;
     StopReason reason;
     const SearchConfig config = search_config_of(s);
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    Writing w = {.adapter = adapter, .f = o.stream, .noisy = s->problem.noise > 0.0};
+    Writing w = {.problem = p, .f = o.stream, .noisy = s->problem.noisy == NOISY_YES};
     write_header(&w);
-    omp_set_num_threads(adapter_threads(adapter));
-    const Status status = search_run(adapter_problem(adapter), &config, write_new, &w, &reason, err);
+    omp_set_num_threads((int)threads_wanted(s->search.threads));
+    const Status status = search_run(p, &config, write_new, &w, &reason, err);
     if (status != STATUS_OK) {
         output_abandon(&o);
         return status;
@@ -77,25 +75,23 @@ static Status search(const Args *args, const Settings *s, const Adapter *adapter
 
 Status problem_run(const Args *args, Err *err)
 {
-    const char *names[16];
-    int n_names = 0, known = 0;
     Settings s;
-    Adapter *adapter;
-    for (; textbook(n_names); n_names++) {
-        names[n_names] = textbook(n_names)->name;
-        known |= strcmp(args->operand, names[n_names]) == 0;
-    }
-    if (!known)
-        return args_unknown("problem", args->operand, names, n_names, "`imtet-bench problem --help`", err);
+    Problem p;
+    TextbookOptions o = {.name = args->operand};
     if (!args_has(args, "--csv"))
         return misused(err, "--csv FILE is missing: where the table goes");
+    TRY(args_number(args, "--noise", 0, 1, 0, &o.noise, err));
     settings_defaults(&s);
-    TRY(settings_put(&s, "problem.kind", args->operand, err));
     TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_put(&s, "problem.kind", args->operand, err)); /* whatever --set says: the operand is the problem */
+    s.problem.noisy = o.noise > 0 ? NOISY_YES : NOISY_NO;
+    o.n_var = s.problem.variables;
+    o.n_obj = s.problem.objectives;
+    o.kinds = s.problem.kinds;
+    o.seed = (uint32_t)s.search.seed;
     TRY(settings_check(&s, err));
-    TRY(adapter_open(&adapter, &s, err));
-    const Status status = search(args, &s, adapter, err);
-    adapter_close(adapter);
+    TRY(textbook_open(&p, &o, err));
+    p.is_noisy = schema_is_noisy(&s);
+    const Status status = search(args, &s, &p, err);
+    problem_close(&p);
     return status;
 }

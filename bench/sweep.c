@@ -164,7 +164,6 @@ static void write_row(const Sweep *s, const SweepRow *row, FILE *out)
     put(out, ok ? row->error.first_speed : NAN);
     put(out, ok ? r->energy_balance_error : NAN);
     put(out, sweep_floor(s, (int)(row->kind - bench_kind(0))));
-    put(out, s->noise > 0 ? s->noise : NAN);
     fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations,
             outcome_word(measure_outcome(r->outcome)), r->reason);
 }
@@ -174,7 +173,7 @@ void sweep_write(const Sweep *s, FILE *out)
     fprintf(out, "case,engine,tolerance,seconds,error_objectives");
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
         fprintf(out, ",error_%s", BENCH_OBJECTIVE_NAMES[k]);
-    fprintf(out, ",error_state,error_first_s,error_first_speed,residual,floor,noise,impacts,steps,force_evaluations,"
+    fprintf(out, ",error_state,error_first_s,error_first_speed,residual,floor,impacts,steps,force_evaluations,"
                  "outcome,reason\n");
     for (size_t i = 0; i < s->n; i++)
         write_row(s, &s->rows[i], out);

@@ -27,7 +27,6 @@ typedef struct {
     size_t n, n_max;
     SweepRow *rows;
     double agreement[N_BENCH_KINDS]; /* of the two references; 0: the case was not run */
-    double noise; /* largest _sd over mean of an objective, replicates, whole motion, irregular gaps; 0: unknown */
 } Sweep;
 
 typedef struct {
@@ -38,9 +37,6 @@ typedef struct {
 /* Appends the rows of one case; progress: one line per engine. */
 Status sweep_run(Sweep *s, int kind, const BenchCase *bench_case, const SweepPlan *plan, FILE *progress, Err *err);
 void sweep_free(Sweep *s);
-
-/* Sets noise. settings, motion: as prepared for the cases. */
-Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *motion, Err *err);
 
 double sweep_floor(const Sweep *s, int kind);
 

@@ -90,8 +90,6 @@ stranger: $(PROGRAM) ## how many files a new objective, contact law and baseline
 
 laws: $(BENCH) ## rebound of the contact laws, engines under each
 	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv --engines docs/measured/contact-laws-engines.csv
-	@scripts/plot-laws docs/measured/contact-laws.csv docs/contact-laws
-	@scripts/tables contact-laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian

@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures ladder bench promise named pages paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures bench promise pages paper chart ablation pictures study web setup-browser report-bench serve-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -17,39 +17,19 @@ promise: $(BENCH) $(PROGRAM) ## how often every accuracy holds what it promises
 	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(SCENES),--scenes $(SCENES)) --front build/promise.csv --out docs/measured/promise.csv
 	@scripts/tables promise
 
-named: $(PROGRAM) ## whether the likely errors of what studies name cover the true ones; ARGS="--seeds 1,2" or --short
-	@scripts/named --program ./$(PROGRAM) $(ARGS)
-	@scripts/tables promise
-
 chart: $(BENCH) ## speed against accuracy of every engine
-	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv --distribution docs/measured/distribution.csv
+	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv
 	@scripts/tables chart
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
-# CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
-compare: $(PROGRAM) $(BENCH) setup-figures ## the search on textbook problems, other families and the tower
-	@rm -f build/search.md
-	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out build/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
-	@scripts/tables --from build/search.md search search-plain search-families search-aside
-	@cp build/search.svg docs
-
-paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
+paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the numbers and pictures of the paper item by item, with its records where they are at hand; ARGS="--evals N"
 	@scripts/paper --program ./$(PROGRAM) --bench $(BENCH) $(ARGS)
+	@scripts/tables paper
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@rm -f build/constants.md
 	@scripts/ablation --out build/constants.md $(ARGS)
 	@if [ -e build/constants.md ]; then scripts/tables --from build/constants.md constants; fi
-
-fidelity: $(PROGRAM) setup-figures ## what search.fidelity = replicates saves on the tower under three records; ARGS="--seeds 1,2" or --short
-	@scripts/fidelity --program ./$(PROGRAM) $(ARGS)
-
-# SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
-scale-cost: $(PROGRAM) ## what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate
-	@printf '<!-- %s -->\n<!-- end -->\n' measured surrogate > build/scale.md
-	@scripts/scale-cost --program ./$(PROGRAM) --out build/scale.md $(if $(PART),--part $(PART)) $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
-	@if [ -e build/scale.svg ]; then cp build/scale.svg docs; fi
-	@scripts/tables --from build/scale.md $(if $(filter surrogate,$(PART)),,scale scale-commands) $(if $(filter plain,$(PART)),,scale-surrogate)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@mkdir -p $(BUILD)/pictures
@@ -63,10 +43,6 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
 	@d=$$(mktemp -d) && cp -r $(RUN) $$d/kobe && node tests/serve/drive.mjs $(abspath $(PROGRAM)) --pictures $$d docs/pictures; rm -r $$d
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
-
-ladder: $(PROGRAM) ## docs/ladder.md: which effects five scenes need
-	@scripts/ladder $(ARGS)
-	@scripts/tables ladder
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)

@@ -6,8 +6,6 @@
 #include "check.h"
 
 #include <dirent.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef Status (*ReadFn)(const char *path, Err *err);
 

@@ -6,11 +6,16 @@
 
 #include <math.h>
 #include <setjmp.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 /* The sanitized pass looks for faults of memory and arithmetic: where a test repeats the same code for accuracy's sake, it
@@ -21,19 +26,34 @@
 #define SANITIZED 0
 #endif
 
+/* The textbook problems as an external simulator (bench/textbook.h), of the same mode as the test. */
+#ifndef BUILD_FOLDER
+#define BUILD_FOLDER "build/release"
+#endif
+#define TEXTBOOK_WORKER BUILD_FOLDER "/textbook"
+
+/* What the calls of a test say of their faults; it begins empty. A function may have one of its own. */
+static Err err __attribute__((unused));
+#pragma GCC diagnostic ignored "-Wshadow"
+
 /* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
 enum { TESTS_MAX = 128 };
 static struct CMUnitTest all_tests[TESTS_MAX] __attribute__((unused));
 static size_t n_tests __attribute__((unused));
 #define TEST(name)                                                                                                     \
-    static void test_##name(void **state);                                                                             \
+    static void body_##name(void **state);                                                                             \
+    static void test_##name(void **state)                                                                              \
+    {                                                                                                                  \
+        err = (Err){0};                                                                                                \
+        body_##name(state);                                                                                            \
+    }                                                                                                                  \
     __attribute__((constructor(200 + __LINE__))) static void add_##name(void)                                          \
     {                                                                                                                  \
         if (n_tests == TESTS_MAX)                                                                                      \
             abort(); /* too many in one file */                                                                        \
         all_tests[n_tests++] = (struct CMUnitTest){"test_" #name, test_##name, NULL, NULL, NULL};                      \
     }                                                                                                                  \
-    static void test_##name(__attribute__((unused)) void **state)
+    static void body_##name(__attribute__((unused)) void **state)
 
 /* The tests of one file, tests/test_NAME.c. Every file ends with SUITE(set up, tear down); tests/main.c, with which
  * files are linked into one program, runs those that it is asked for. */

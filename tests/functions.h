@@ -4,8 +4,6 @@
 
 #include "check.h"
 
-#include <string.h>
-
 #include "evaluate/queue.h"
 #include "evaluate/tasks.h"
 
@@ -79,7 +77,6 @@ static inline EvaluationTable evaluations_of(const Problem *p, long first_id, si
                                              const unsigned char kind[], const size_t generation[])
 {
     EvaluationTable t = evaluation_table(p->n_var, p->n_obj, p->n_con);
-    Err err = {0};
     for (size_t i = 0; i < n; i++) {
         const Evaluation e = {.id = first_id + (long)i,
                               .generation = generation ? (long)generation[i] : 0,

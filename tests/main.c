@@ -7,8 +7,6 @@
  * status 3: no test has these letters. */
 #include "check.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/resource.h>
 
 static Suite *suites;

@@ -9,7 +9,6 @@
 /* The scene with devices that hardly act, once. */
 static inline SimResult simulate(const SceneOptions *o, SceneKind kind, const Motion *motion, const double x[])
 {
-    Err err = {0};
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -34,7 +33,6 @@ typedef struct {
 
 static inline void tower_open(Tower *t, double t_base, double t_top)
 {
-    Err err = {0};
     const SceneOptions options = settings_scene(&t->settings);
     CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);

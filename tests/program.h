@@ -6,12 +6,7 @@
 #include "check.h"
 
 #include <jansson.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "base/csv.h"
 
@@ -23,6 +18,14 @@
 #define SIX_FLOORS_INI                                                                                                 \
     "[building]\nmodel = /proc/self/cwd/configs/neighbours/tower\n[core]\nwidth_m = 5\n"                               \
     "[design]\ngap_m = 0.001, 0.05\n[motion]\npga_g = 0.3\n"
+
+/* A worker that answers with DTLZ2 (bench/textbook.h). As options and as a settings file. */
+#define DTLZ2(n_var, n_obj)                                                                                            \
+    "--set problem.kind=external --set problem.variables=" #n_var " --set problem.objectives=" #n_obj                  \
+    " --set 'problem.command=" TEXTBOOK_WORKER " dtlz2 " #n_var " " #n_obj "' "
+#define DTLZ2_INI(n_var, n_obj)                                                                                        \
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 " #n_var " " #n_obj "\nvariables = " #n_var       \
+    "\nobjectives = " #n_obj "\n"
 
 typedef struct {
     int code; /* exit status */
@@ -38,7 +41,6 @@ static Place place;
 
 __attribute__((noinline)) static char *text_of(const char *path)
 {
-    Err err = {0};
     char *text;
     size_t length;
     CHECK_OK(file_read(path, FILE_LARGEST, &text, &length, &err), &err);
@@ -211,7 +213,6 @@ static inline void assert_same_files(const char *name, const char *other)
 static inline Table table_of(const char *name)
 {
     Table t;
-    Err err = {0};
     char *path = in_place(name);
     CHECK_OK(table_read(&t, path, 1, &err), &err);
     free(path);

@@ -14,9 +14,11 @@
 #include "store/run_read.h"
 #include "store/store.h"
 
-static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
+static const char TEXTBOOK[] = "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER
+                               " dtlz2 6 3 0.05\nvariables = 6\nobjectives = 3\nnoisy = yes\n"
                                "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\n"
                                "limits = f1<=1.2\n";
+#define EXACT "--set problem.noisy=no --set 'problem.command=" TEXTBOOK_WORKER " dtlz2 6 3' "
 /* A worker that never answers. */
 static const char DEAF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
                            "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n";
@@ -30,7 +32,6 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
 static inline Run run_in(const char *name)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
     return run;
@@ -39,7 +40,6 @@ static inline Run run_in(const char *name)
 static inline Settings settings_of(const char *text, const char *out)
 {
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     CHECK_OK(settings_parse(&s, "here.ini", text, &err), &err);
     snprintf(s.run.out, sizeof s.run.out, "%s/%s", place.folder, out);
@@ -54,7 +54,6 @@ static inline char *json_export(const char *folder)
     static const char OUT[] = "\"run.out\":\"";
     char *text = NULL;
     size_t length;
-    Err err = {0};
     FILE *f = open_memstream(&text, &length);
     Run run;
     CHECK_OK(run_read(&run, folder, &err), &err);

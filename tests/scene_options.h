@@ -2,8 +2,6 @@
 #ifndef IMTET_TESTS_SCENE_OPTIONS_H
 #define IMTET_TESTS_SCENE_OPTIONS_H
 
-#include <stdio.h>
-
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 #include "scene/building.h"

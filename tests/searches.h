@@ -4,9 +4,6 @@
 
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "moga/search.h"
 
 /* As the program has it, but for what every test has of its own: seed, sizes, limits. */

@@ -4,9 +4,8 @@
 #include "searches.h"
 
 #include "base/random.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "moga/constants.h"
-#include "moga/search.h"
 
 enum { VAR = 5, OBJ = 2, ROWS_MAX = 400 };
 
@@ -47,7 +46,6 @@ typedef struct {
 /* All that may be asked now. 1: the search waits for answers; 0: it is over. */
 static int ask_all(Told *a, Search *s, Out *out)
 {
-    Err err = {0};
     for (SearchMove move = SEARCH_ASKS;;) {
         Question q;
         CHECK_OK(search_ask(s, &move, &q, &err), &err);
@@ -65,7 +63,6 @@ static int ask_all(Told *a, Search *s, Out *out)
 
 static void tell(Told *a, Search *s, Out *out, size_t i)
 {
-    Err err = {0};
     Evaluation e;
     const size_t number = out->number[i];
     answer(a->X[number - 1], a->F[number - 1], &e);
@@ -77,7 +74,6 @@ static void tell(Told *a, Search *s, Out *out, size_t i)
 static Search *search_from(Told *a, const SearchStart *start)
 {
     Search *s;
-    Err err = {0};
     CHECK_OK(search_create(&s, &a->problem, &a->config, start, &err), &err);
     return s;
 }
@@ -153,7 +149,6 @@ TEST(a_search_that_is_interrupted_a_hundred_times_asks_the_same)
             tell(&again, s, &out, random_below(&r, MIN_OF(out.n, 10)));
         if (random_below(&r, 3) > 0)
             continue;
-        Err err = {0};
         EvaluationTable rows = evaluation_table(VAR, OBJ, 0);
         const SearchView v = search_look(s);
         for (size_t i = 0; i < v.all->n; i++) {
@@ -188,7 +183,6 @@ TEST(a_search_that_is_interrupted_a_hundred_times_asks_the_same)
 
 TEST(what_was_not_asked_for_or_is_told_already_is_refused)
 {
-    Err err = {0};
     Evaluation e;
     Out out = {0};
     prepare_search(&once, -1, 60);
@@ -233,7 +227,6 @@ TEST(a_killed_run_goes_on_with_every_result_it_had)
 {
     char path[PATH_MAX];
     Run before, after;
-    Err err = {0};
     write_in_place("killed.ini", UNEVEN("400"));
     for (int kill_at = 10; kill_at < 110; kill_at += 90) {
         char name[24];

@@ -34,7 +34,6 @@ TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_st
 
 TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
 {
-    Err err = {0};
     write_study("kinds.ini", "bounded");
     free(output_of("optimize @/kinds.ini --out @/kinds"));
     free(output_of("simulate @/kinds.ini --design @/kinds/front.csv --csv @/again.csv"));

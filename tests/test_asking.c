@@ -2,11 +2,9 @@
  * calls that make no sense. */
 #include "runs.h"
 
-#include <sys/wait.h>
-
 #include "base/linalg.h"
 #include "base/random.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "imtet.h"
 
 enum { ROWS_MAX = 200, VAR_MAX = 6, OBJ_MAX = 3, CON_MAX = 2, ASKED_MAX = 64 };
@@ -52,12 +50,12 @@ static const char *answer_tenth(long id, const double x[], double f[], double g[
     "[problem]\nkind = external\ncommand = sh tests/worker.sh " mode "\nvariables = 3\nobjectives = 2\nupper = 20\n"   \
     "kinds = " kinds "\n"
 #define SEARCH "[search]\ninitial = 16\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
-#define DTLZ2  "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n" SEARCH
+#define SPHERE DTLZ2_INI(6, 3) SEARCH
 #define WISH   "f1 0.2,f2 0.2,f3 0.6"
 
 static const Exercise EXERCISES[] = {
-    {"dtlz2", DTLZ2, "real", "none", 6, 3, 0, 40, 1, answer_dtlz2},
-    {"wished", DTLZ2 "aspire = " WISH "\n", "real", WISH, 6, 3, 0, 40, 1, answer_dtlz2},
+    {"dtlz2", SPHERE, "real", "none", 6, 3, 0, 40, 1, answer_dtlz2},
+    {"wished", SPHERE "aspire = " WISH "\n", "real", WISH, 6, 3, 0, 40, 1, answer_dtlz2},
     {"bounded", WORKER("bounded", "int, int, choice:a|b") SEARCH, "int,int,choice:a|b", "none", 3, 2, 2, 40, 20,
      answer_bounded},
     {"tenth", WORKER("tenth", "real") SEARCH, "real", "none", 3, 2, 0, 40, 20, answer_tenth},
@@ -182,7 +180,6 @@ static void assert_same_designs(imtet_search *s, const Exercise *e, const Run *r
 static void optimize(const Exercise *e, Run *run)
 {
     char name[64], path[PATH_MAX];
-    Err err = {0};
     snprintf(name, sizeof name, "%s.ini", e->name);
     write_in_place(name, e->ini);
     if (access(path_of(e->name, path), F_OK) != 0)
@@ -469,7 +466,6 @@ TEST(a_file_that_is_damaged_is_refused)
 {
     char path[PATH_MAX], *bytes;
     size_t length;
-    Err err = {0};
     imtet_error error;
     imtet_search *s = drive(&EXERCISES[2], 8, NULL);
     must(imtet_search_save(s, path_of("whole.search", path), &error), &error);

@@ -1,18 +1,12 @@
 /* The bench measures what it says: its scenes, its errors, its tables. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "bench/distribution.h"
+#include "bench/sweep.h"
 #include "bench/promise.h"
 #include "bench/search/families.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/search/reference.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 
 typedef struct {
@@ -22,7 +16,6 @@ typedef struct {
 
 static void ground_open(Ground *g)
 {
-    Err err;
     Settings s;
     paper_defaults(&s);
     g->s = settings_scene(&s);
@@ -49,7 +42,6 @@ TEST(scenes_have_as_many_impacts_as_their_names_say)
     ground_open(&g);
     for (int k = 0; k < N_BENCH_KINDS; k++) {
         BenchCase bench_case = {0};
-        Err err;
         static TimedRun o;
         CHECK_OK(bench_case_open(&bench_case, bench_kind(k), &g.s, &g.m, 1, &err), &err);
         CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);
@@ -66,7 +58,6 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     static TimedRun o, changed;
     BenchCase bench_case = {0};
     Ground g;
-    Err err;
     ground_open(&g);
     CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
     CHECK_OK(timed_run(&bench_case, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
@@ -84,23 +75,12 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     motion_free(&g.m);
 }
 
-TEST(the_distance_of_two_samples_is_that_of_their_steps)
-{
-    double a[] = {4, 1, 3, 2}, b[] = {8, 5, 7, 6}, c[] = {2.5, 3.5, 4.5, 5.5}, d[] = {3, 2, 1, 4};
-    assert_close(ks_distance(4, a, 4, b), 1, 1e-15);
-    assert_close(ks_distance(4, a, 4, c), 0.5, 1e-15);
-    assert_close(ks_distance(4, a, 4, d), 0, 1e-15);
-    assert_close(ks_distance(4, a, 2, c), 0.5, 1e-15);
-    assert_close(ks_critical(64), 0.24, 1e-2);
-}
-
 TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
 {
     const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.05};
     Sweep sweep = {0};
     BenchCase bench_case = {0};
     Ground g;
-    Err err;
     char *csv = NULL;
     size_t size;
     ground_open(&g);
@@ -134,7 +114,6 @@ TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
                         MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21, 0.5};
     Ground g;
     PromiseCase c, again;
-    Err err;
     ground_open(&g);
     const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 10};
     for (long k = 0; k < plan.n_scenes * N_GAPS; k++) {
@@ -186,7 +165,6 @@ static void write_soft_floors(BuildingOptions *o, char folder[])
 TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
     Ground g;
-    Err err;
     char *page = NULL, folder[] = "/tmp/bench-XXXXXX";
     size_t size;
     ground_open(&g);
@@ -208,30 +186,6 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     assert_non_null(strstr(page, "\nthree floors,\"true / estimated error\",edcs_pct,1,1,"));
     assert_non_null(strstr(page, "\ncvode,\"fine\",share_points,1,1,"));
     free(page);
-    motion_free(&g.m);
-}
-
-/* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
-TEST(the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings)
-{
-    double spread[2];
-    Ground g;
-    ground_open(&g);
-    g.m.n = (size_t)(22 / g.m.dt_s); /* what is left of a window of 60 s */
-    for (int i = 0; i < 2; i++) {
-        BenchCase bench_case = {0};
-        DistributionTest test = {0};
-        Err err;
-        g.s.sim.gap_tolerance_m = i * 5e-3;
-        CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
-        CHECK_OK(distribution_test_run(&test, &(Sweep){0}, &bench_case, &g.s, 1, stderr, &err), &err);
-        assert_int_equal(test.again.finished, DISTRIBUTION_RUNS);
-        assert_close(test.tolerance_m, g.s.sim.gap_tolerance_m, 0);
-        spread[i] = test.spread[0];
-        bench_case_close(&bench_case);
-    }
-    print_message("spread of j1: %g, %g with errors of 5 mm\n", spread[0], spread[1]);
-    assert_less(2 * spread[0], spread[1]);
     motion_free(&g.m);
 }
 
@@ -263,7 +217,6 @@ static void check_nothing_is_beyond(const Course *reference, const Course *found
 /* Of the families with these names, on whose fronts a point of zero distance is not. */
 static void search_plainly(const char *names)
 {
-    Err err;
     Settings s;
     settings_defaults(&s);
     for (size_t i = 0; i < family_count(); i++) {
@@ -305,7 +258,6 @@ static double sum_of(const Course *c, size_t i)
 /* Of slab3: the least sum of objectives among the designs that succeed, after 200 evaluations and after the first 52. */
 TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 {
-    Err err;
     Settings s;
     settings_defaults(&s);
     s.search.population = 40;
@@ -333,7 +285,6 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 
 TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
 {
-    Err err;
     Course c, back = {0};
     int found;
     char path[] = "/tmp/imtet-course-XXXXXX";
@@ -358,12 +309,12 @@ TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
 /* Of dtlz2: simulations of the first sample, after the last iteration, with the last population, of the search. */
 static void loop_simulations(double error_max, size_t found[4], double volume[2])
 {
-    Err err;
     Settings s;
     char *text;
     size_t size, n = 0;
     settings_defaults(&s);
-    s.problem.kind = PROBLEM_DTLZ2;
+    s.problem.kind = PROBLEM_EXTERNAL;
+    snprintf(s.problem.command, sizeof s.problem.command, TEXTBOOK_WORKER " dtlz2 22 7");
     s.search.population = 20;
     const LoopPlan plan = {.settings = &s, .n_seeds = 1, .iterations = 3, .error_max = error_max};
     FILE *out = open_memstream(&text, &size);

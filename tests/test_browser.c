@@ -15,8 +15,8 @@ TEST(a_browser_shows_reports_follows_a_run_and_asks_what_if)
     static const char *const COMMANDS[] = {
         TOWER JUDGED "--set search.seed=2 --out @/runs/a",
         TOWER JUDGED "--set search.seed=3 --out @/runs/b",
-        "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set problem.objectives=3 "
-        "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/runs/c",
+        "optimize configs/quick.ini " DTLZ2(
+            5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/runs/c",
         TOWER "--set design.step_thickness_m=0.01,0.02,0.03 --max-evals 40 --set sim.replicates=2 "
               "--set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 --set sim.uncertain=restitution=0.05 "
               "--set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set motion.factor=0.5 --out @/runs/d",

@@ -1,10 +1,7 @@
 /* Buildings from files against closed forms: frames, storeys, units, P-delta, damping. */
 #include "program.h"
 
-#include <sys/stat.h>
-
 #include "base/linalg.h"
-#include "scene/building.h"
 #include "scene/frame.h"
 #include "scene_options.h"
 
@@ -38,7 +35,6 @@ __attribute__((format(printf, 3, 4))) static void write_file(const BuildingOptio
 static Building load(const BuildingOptions *o)
 {
     Building b;
-    Err err = {0};
     CHECK_OK(building_load(&b, o, &err), &err);
     return b;
 }
@@ -56,7 +52,6 @@ static void expect_refusal_of(const BuildingOptions *o, const char *wanted)
 static void deflect(const Building *b, int floor, double force, double u[])
 {
     double K[FLOORS_MAX * FLOORS_MAX];
-    Err err = {0};
     memcpy(K, b->K, (size_t)(b->n * b->n) * sizeof *K);
     memset(u, 0, (size_t)b->n * sizeof *u);
     u[floor] = force;
@@ -480,7 +475,6 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
                        "sim.engine=%s --json --contacts @/contacts.csv",
                        i ? "cvode" : "fast");
         Table contacts;
-        Err err = {0};
         char *path = in_place("contacts.csv");
         double highest = 0;
         CHECK_OK(table_read(&contacts, path, 1, &err), &err);
@@ -508,7 +502,6 @@ TEST(the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_
     static double omega[FULL], phi[FULL * FULL];
     BuildingOptions o = scene_defaults().building;
     Table K, M;
-    Err err = {0};
     CHECK_OK(table_read(&K, "configs/sac20/full106/K.csv", 0, &err), &err);
     CHECK_OK(table_read(&M, "configs/sac20/full106/M.csv", 0, &err), &err);
     CHECK_OK(linalg_modes(FULL, K.values, M.values, omega, phi, &err), &err);

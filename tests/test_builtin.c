@@ -1,11 +1,6 @@
 /* Generated motions: what they promise by themselves, and how near they are to the records that they stand in for. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene_options.h"
 #include "sim/sim.h"
@@ -35,7 +30,6 @@ static void building_alone(const Motion *m, const char *model, double J[3])
     Scene *scene;
     SimWorker *worker;
     SimResult r;
-    Err err = {0};
     const double none[FLOORS_MAX + 2] = {0};
     SceneOptions s = paper_scene();
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
@@ -53,7 +47,6 @@ static void building_alone(const Motion *m, const char *model, double J[3])
 static Motion prepared(int k)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, MOTIONS[k].stretch, &err), &err);
     return m;
@@ -63,7 +56,6 @@ static Motion prepared(int k)
 static int prepared_record(int k, Motion *m)
 {
     char path[128];
-    Err err;
     snprintf(path, sizeof path, "../shared/records/%s", MOTIONS[k].record);
     const Status s = motion_load(m, path, UNIT_FROM_FILE, &err);
     if (s == STATUS_MISSING)
@@ -79,7 +71,6 @@ TEST(generated_motions_have_the_stated_peak_and_duration)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
-        Err err;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_G, &err), &err); /* the unit of files does not matter */
         motion_figures(&m, &f);
@@ -97,7 +88,6 @@ TEST(generated_motions_leave_the_ground_at_rest)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
-        Err err;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         motion_figures(&m, &f);
@@ -116,7 +106,6 @@ TEST(a_generated_motion_is_the_same_every_time)
     uint64_t hash[N_MOTIONS];
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m[2];
-        Err err;
         for (int i = 0; i < 2; i++)
             CHECK_OK(motion_load(&m[i], MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         assert_memory_equal(m[0].accel, m[1].accel, m[0].n * sizeof(double));
@@ -131,7 +120,6 @@ TEST(a_generated_motion_is_the_same_every_time)
 TEST(an_unknown_name_is_refused_with_the_known_ones)
 {
     Motion m;
-    Err err;
     assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "builtin:kobe is no built-in motion; did you mean builtin:kobe-like?"));
     motion_free(&m);

@@ -3,11 +3,7 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"
@@ -146,7 +142,6 @@ static Rebound integrate(const Blow *b)
  * of the common centre of gravity is not turned over. */
 static SimResult strike(const Blow *b, Engine engine, Accuracy accuracy)
 {
-    Err err = {0};
     SimModel model;
     SimResult result = {0};
     const double m = b->core > 0 ? 1 / (1 / b->mass + 1 / b->core) : b->mass;
@@ -211,7 +206,6 @@ TEST(steel_and_bumper_of_the_same_damping_rebound_as_either_alone)
 TEST(a_soft_bumper_rebounds_by_its_own_damping_ratio)
 {
     SceneOptions s = paper_scene();
-    Err err = {0};
     s.contact.bumper_stiffness_n_m = 1e4;
     for (double zeta = 0.02; zeta < 0.5; zeta += 0.07) {
         Blow b = {.mass = 1e6, .v = 0.5};
@@ -237,7 +231,6 @@ TEST(an_undamped_soft_bumper_is_a_spring_in_depth_and_force)
 
 static void run_tower(const SceneOptions *o, SimResult *r)
 {
-    Err err = {0};
     Motion motion;
     Scene *scene;
     SimWorker *worker;

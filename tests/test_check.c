@@ -1,10 +1,7 @@
 /* `imtet check`: what it says of a sound building, and which warning each implausible one gets. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "evaluate/tower.h"
-#include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "scene/summary.h"
 #include "scene_options.h"
@@ -383,7 +380,6 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
                         .model = {.n = 1, .phi = &phi, .omega = &omega, .gamma = &gamma, .zeta = &zeta}};
     Motion m;
     SceneSummary f;
-    Err err = {0};
     CHECK_OK(motion_load(&m, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 1, &err), &err);
     CHECK_OK(scene_summarise(&f, &b, &s.core, &s.building, &m, 0.01, 0.01, &err), &err);
@@ -512,7 +508,6 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
     Run run;
     StudySummary summary;
     Problem p;
-    Err err = {0};
     for (int s = 0; s < FLOORS_MAX; s++)
         strcat(storeys, "3.5,1e5,2e8\n");
     char *folder = in_place("tall");

@@ -1,8 +1,6 @@
 /* The program as a person meets it: runs $IMTET in the repository's root and reads what it prints. */
 #include "program.h"
 
-#include <sys/stat.h>
-
 /* A design file of 20 floors: gap_j = gap * j. */
 static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])
 {

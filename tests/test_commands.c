@@ -6,11 +6,11 @@ enum { LINES_MAX = 2000, LETS_MAX = 64 };
 static char *line[LINES_MAX]; /* [0] is line 1 */
 static int n_lines;
 
-/* `let NAME = TEXT`, wherever it stands. */
+/* `let NAME = TEXT`, wherever it stands; the first is ours. */
 static struct {
     const char *name, *text;
-} lets[LETS_MAX];
-static int n_lets;
+} lets[LETS_MAX] = {{"TEXTBOOK_WORKER", TEXTBOOK_WORKER}};
+static int n_lets = 1;
 
 /* Numbers of lines: of the heading of a test, and of that of its group. */
 typedef struct {
@@ -157,7 +157,6 @@ __attribute__((constructor(200))) static void read_table(void)
 {
     char *text;
     size_t length;
-    Err err = {0};
     int group = 0;
     if (file_read("tests/commands.txt", FILE_LARGEST, &text, &length, &err) != STATUS_OK)
         return;

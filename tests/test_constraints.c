@@ -1,8 +1,6 @@
 /* Constraint values that external workers answer: how many there are is learned, and they bound the front. */
 #include "runs.h"
 
-#include <signal.h>
-
 /* Of mode `bounded` the front is x2 = 0, x3 = a, x1 = 6 .. 15 among 882 designs. */
 static void write_bounded(const char *name, const char *mode, const char *search)
 {

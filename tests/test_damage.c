@@ -2,7 +2,6 @@
  * said, nothing is overwritten, and what can go on goes on to the same end. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sqlite3.h>
 
 #include "store/folder.h"

@@ -1,5 +1,4 @@
 /* Designs by name: every command takes the same words, and every word leads to the same numbers. */
-#include <sys/stat.h>
 
 #include "runs.h"
 
@@ -212,7 +211,6 @@ TEST(choose_names_the_extremes_and_writes_them)
 /* Half of the front by a result that is no objective; the ids chosen are those within. */
 TEST(choose_limits_any_result_of_a_run)
 {
-    Err err = {0};
     size_t k, i;
     Run h = run_in("run");
     CHECK_OK(schema_pick_result(&h.schema, "", "drift_ratio", STATUS_USAGE, &k, &err), &err);

@@ -1,7 +1,5 @@
 /* Devices of a design: links and the tuned mass against the baselines, and engines against each other where
  * floors and core collide as well. */
-#include <string.h>
-#include <unistd.h>
 
 #include "check.h"
 #include "scene_options.h"
@@ -37,7 +35,6 @@ static void tower_set(Tower *t, const char *variables, Engine engine, double gap
 static SimResult tower_run(Tower *t, SceneKind kind, LinearDevice device)
 {
     SimResult r;
-    Err err = {0};
     const SceneOptions options = settings_scene(&t->settings);
     CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&t->motion, 0.3, t->settings.motion.record[0] == 'b' ? 1 : 3, &err), &err);
@@ -296,7 +293,6 @@ TEST(kinds_of_the_variables_of_devices)
 {
     DesignOptions o = scene_defaults().design;
     DesignSpace s;
-    Err err = {0};
     char name[TABLE_NAME_MAX];
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
     snprintf(o.variables, sizeof o.variables, "gaps, thickness, links, friction, tuned_mass");

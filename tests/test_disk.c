@@ -1,10 +1,8 @@
 /* Disks that are full, read-only or damaged, other processes at the same run: said, and nothing lost. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include "store/folder.h"
 
@@ -89,7 +87,6 @@ TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
     char disk[PATH_MAX], run_of_disk[PATH_MAX];
     Said s;
     Run saved;
-    Err err = {0};
     assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
     if (mount("none", disk, "tmpfs", 0, "size=300k") != 0)
         skip();
@@ -140,7 +137,6 @@ TEST(a_folder_that_is_read_only_is_named)
 {
     char folder[PATH_MAX], run_there[PATH_MAX];
     Run saved;
-    Err err = {0};
     assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
     if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
         skip();

@@ -4,9 +4,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "bench/engines/engines.h"
 #include "scene_options.h"
 
@@ -28,7 +25,6 @@ enum { N_PROMISES = sizeof PROMISES / sizeof PROMISES[0] };
 static SimResult run(const Promise *p, const SimModel *model, const Motion *m, double duration)
 {
     SimResult r;
-    Err err;
     const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .tolerance = p->tolerance};
     CHECK_OK(bench_engine(p->engine)->run(model, m, &options, &r, &err), &err);
     if (r.outcome != RUN_OK)
@@ -62,7 +58,6 @@ static int misses_under(ContactLaw law, int n, const Promise promises[])
     SceneOptions s = paper_scene();
     Building b;
     SimModel model;
-    Err err;
     double gaps[FLOORS_MAX], accel[21];
     const Motion m = {.accel = accel, .n = 21, .dt_s = 0.05};
     s.core.section = CORE_EFFECTIVE;

@@ -1,11 +1,7 @@
 /* The estimated error of a result: twice the steps, and above the error in most windows. */
 #include "check.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "bench/promise.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/sim.h"
 #include "analysis/estimate.h"
@@ -82,7 +78,6 @@ TEST(the_spread_of_gaps_that_are_one_micrometre_off_is_that_of_replicates_as_bui
     double x[22], error[N_MEASURES], sd[N_MEASURES];
     SimResult result, shown;
     ReplicateSummary r;
-    Err err = {0};
     fill_gaps(x, 0.004, 0.002);
     open_tower(&single, 1, 0);
     open_tower(&scattered, 24, ESTIMATE_GAP_M);
@@ -104,7 +99,6 @@ TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown
     Problem p;
     double x[22], error[2 * N_MEASURES], sd[2 * N_MEASURES];
     SimResult result[2];
-    Err err = {0};
     fill_gaps(x, 5, 0);
     open_tower(&p, 1, 0);
     const SimTask tasks[] = {{.x = x}, {.kind = SCENE_NO_CORE}};
@@ -121,7 +115,6 @@ static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
     Scene *scene;
     SimWorker *worker;
     SimResult r;
-    Err err;
     s.sim.duration_s = c->duration;
     s.core.theory = c->theory;
     CHECK_OK(scene_create(&scene, &s, &c->motion, &err), &err);
@@ -137,7 +130,6 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
     static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
     SceneOptions o = paper_scene(), twice = o, fine = o;
     Motion m;
-    Err err;
     int below = 0, all = 0;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);

@@ -1,9 +1,6 @@
 /* The record of an evaluated design and the table that holds such rows. */
 #include "check.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "evaluate/evaluation.h"
 
 TEST(every_outcome_and_kind_is_found_by_its_word)
@@ -22,7 +19,6 @@ TEST(rows_keep_their_numbers_while_the_table_grows)
     enum { N = 1000 };
     EvaluationTable t = evaluation_table(3, 2, 1);
     Evaluation *e;
-    Err err = {0};
     for (int i = 0; i < N; i++) {
         CHECK_OK(evaluation_table_add(&t, &e, &err), &err);
         assert_true(isnan(e->f[1]) && isnan(e->sd[0]) && isnan(e->extra[0]) && isnan(e->seconds) && e->x[2] == 0.0);
@@ -50,7 +46,6 @@ TEST(an_appended_row_is_a_copy_and_what_it_lacks_is_not_known)
     Evaluation e = {.id = 7, .kind = KIND_REPEAT, .replicates = 3, .violation = 0.25, .x = x, .f = f};
     char room[REASON_MAX];
     e.room = room;
-    Err err = {0};
     evaluation_set_outcome(&e, OUTCOME_TIMEOUT, "no answer, \"late\"");
     CHECK_OK(evaluation_table_append(&t, &e, &err), &err);
     x[0] = f[0] = 0.0;

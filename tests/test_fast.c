@@ -1,16 +1,10 @@
 /* The engine `fast` against closed forms, symmetry, conservation and printed numbers. Limits of gaps, strength and steps
  * are cases of `imtet-bench stability`, agreement with CVODE is in test_window.c. */
-#include "check.h"
 
 #include "bench/stability/bob.h"
 
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "base/csv.h"
 #include "sim/fast/fast.h"
-#include "motion/motion_scale.h"
 #include "one_scene.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */
@@ -31,7 +25,6 @@ typedef struct {
  * `until` >= 0 the run stops there, in units of Hertz's duration after closing. */
 static void bounce(const Ball *ball, double until, Bounce *b)
 {
-    Err err = {0};
     SimModel model;
     FastWork *work;
     b->penetration = contact_hertz_indentation(ball->k, ball->m, ball->v);
@@ -140,7 +133,6 @@ TEST(at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step)
 /* A heavy floor flies freely and holds a million times the energy of the blow. */
 TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 {
-    Err err = {0};
     const Contact contact = {.k = 4.865e10, .v0_floor = 1e-300};
     for (int i = 0; i < 60; i++) {
         SimModel model;
@@ -167,7 +159,6 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 static SimResult tower_run(Tower *t, SceneKind kind)
 {
     SimResult r;
-    Err err = {0};
     CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
     return r;
 }
@@ -297,7 +288,6 @@ TEST(motion_that_is_not_a_number_fails_the_run_and_says_so)
 TEST(a_negative_gap_is_no_design)
 {
     Tower t;
-    Err err = {0};
     SimResult r;
     builtin_tower(&t);
     t.x[4] = -0.001;

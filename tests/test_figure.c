@@ -1,11 +1,6 @@
 /* A number for people has the digits that its error leaves, and never more. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
 #include "base/figure.h"
 #include "cmd/show.h"
 

@@ -1,9 +1,6 @@
 /* Gain and phase of the Butterworth filter against their closed forms. */
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/filter.h"
 
 static double warped(double hz, double dt)
@@ -21,7 +18,6 @@ static double gain(FilterKind kind, double hz, double cutoff, double dt)
 static void check_harmonic(FilterKind kind, double hz, double cutoff, double dt)
 {
     Filter f;
-    Err err = {0};
     CHECK_OK(filter_butterworth(&f, kind, cutoff, dt, &err), &err);
     const size_t half = (size_t)(200 / fmin(hz, cutoff) / dt), n = 2 * half + 1, all = n + filter_padding(&f);
     double *x = calloc(all, sizeof *x), odd = 0;
@@ -60,7 +56,6 @@ TEST(low_and_high_pass_of_an_impulse_add_up_in_area)
     enum { N = 20001 };
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
-        Err err = {0};
         double *x = calloc(N, sizeof *x), area = 0;
         CHECK_OK(filter_butterworth(&f, kind, 1.0, 0.005, &err), &err);
         x[N / 2] = 1;
@@ -79,7 +74,6 @@ TEST(the_padding_takes_up_what_rings_on)
     enum { N = 400 };
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
-        Err err = {0};
         CHECK_OK(filter_butterworth(&f, kind, 2.0, 0.01, &err), &err);
         const size_t pad = filter_padding(&f), all = N + 20 * pad;
         double *x = calloc(all, sizeof *x), *y = calloc(all, sizeof *y);
@@ -98,7 +92,6 @@ TEST(signals_side_by_side_are_filtered_as_each_alone)
 {
     enum { N = 300, WIDTH = 21 };
     Filter f;
-    Err err = {0};
     double *all = malloc(N * WIDTH * sizeof *all), one[N];
     CHECK_OK(filter_butterworth(&f, FILTER_LOW_PASS, 3, 0.01, &err), &err);
     for (int i = 0; i < N * WIDTH; i++)
@@ -121,7 +114,6 @@ TEST(a_cutoff_beyond_half_the_sampling_rate_is_refused)
 {
     static const double BAD[] = {0, -1, 50, 80, NAN, INFINITY};
     Filter f;
-    Err err = {0};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         assert_int_equal(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "50 Hz"));

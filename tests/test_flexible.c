@@ -1,10 +1,7 @@
 /* Core modes that the engine leaves out act as springs: results hardly depend on how many are left out. */
 #include "check.h"
 
-#include <stdlib.h>
-
 #include "bench/promise.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/fast/fast.h"
 
@@ -19,7 +16,6 @@ typedef struct {
 
 static void stage_open(Stage *t, const SceneOptions *o)
 {
-    Err err;
     CHECK_OK(building_load(&t->b, &o->building, &err), &err);
     CHECK_OK(model_create(&t->model, t->b.n, t->b.model.n, &err), &err);
     CHECK_OK(fast_create(&t->work, t->b.n, t->b.model.n, 0, 0, &err), &err);
@@ -35,7 +31,6 @@ static void stage_close(Stage *t)
 static void stage_set(Stage *t, const SceneOptions *options, const PromiseCase *c)
 {
     SceneOptions o = *options;
-    Err err;
     o.core.theory = c->theory;
     CHECK_OK(core_beam_make(&t->core, &o.core, t->b.n, t->b.storey_m, c->x[t->b.n], c->x[t->b.n + 1], &err), &err);
     CHECK_OK(model_set(&t->model, &o, &t->b, &t->core, c->x, &err), &err);
@@ -59,7 +54,6 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
     double error[RESULTS][WINDOWS];
     Motion m;
     Stage t;
-    Err err;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = WINDOWS};
@@ -91,7 +85,6 @@ TEST(so_many_core_modes_are_kept_as_are_asked_for)
     const SceneOptions o = paper_scene();
     Motion m;
     Stage t;
-    Err err;
     PromiseCase c;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);

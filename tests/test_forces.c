@@ -3,11 +3,7 @@
 #include "check.h"
 #include "scene_options.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "bench/stability/bob.h"
-#include "motion/motion_scale.h"
 #include "evaluate/measures.h"
 #include "sim/engine.h"
 #include "sim/fast/fast.h"
@@ -28,7 +24,6 @@ typedef struct {
 
 static void frame_open(Frame *f, CoreSection section, double t_base, double t_top)
 {
-    Err err = {0};
     *f = (Frame){.options = paper_scene()};
     f->options.core.section = section;
     CHECK_OK(building_load(&f->building, &f->options.building, &err), &err);
@@ -209,7 +204,6 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
 {
     static double zero[64 * 64];
     static CoreBeam core;
-    Err err = {0};
     ForceMonitor *m;
     const SceneOptions options = paper_scene();
     double storeys[64], one[64];
@@ -231,7 +225,6 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
 
 static void bounce(Accuracy accuracy, double speed, double r, int side, ContactList *list, SimForces *f)
 {
-    Err err = {0};
     SimModel model;
     SimResult result;
     const double m = 280000, k = 4.865e10, duration = contact_hertz_duration(k, m, speed), dt = 7.3 * duration;
@@ -279,7 +272,6 @@ TEST(an_impact_has_its_closed_force_impulse_duration_and_loss)
 /* Two floors strike a core that is a free mass: what they gave it is its momentum. */
 TEST(impulses_add_up_to_the_change_of_momentum)
 {
-    Err err = {0};
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++) {
         SimModel model;
         SimResult result;
@@ -311,7 +303,6 @@ TEST(impulses_add_up_to_the_change_of_momentum)
 
 static SimResult tower_run_of(const SimOptions *sim, SceneKind kind)
 {
-    Err err = {0};
     Motion motion;
     Scene *scene;
     SimWorker *worker;
@@ -427,7 +418,6 @@ static int by_size(const void *a, const void *b)
 /* What lies between the points of a run and what it leaves out, at standard accuracy. */
 TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
 {
-    Err err = {0};
     Motion motion;
     Scene *scene;
     SimWorker *worker;

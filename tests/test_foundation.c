@@ -3,10 +3,6 @@
 #include "check.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/linalg.h"
 #include "base/units.h"
@@ -21,7 +17,6 @@ enum { N = 20 };
 static Foundation parsed(const char *text)
 {
     Foundation f;
-    Err err = {0};
     CHECK_OK(foundation_parse(text, 1, &f, &err), &err);
     return f;
 }
@@ -35,7 +30,6 @@ static SceneOptions on_ground(const char *foundation)
 
 static void make(CoreBeam *core, const SceneOptions *s)
 {
-    Err err = {0};
     CHECK_OK(make_core_of(core, s, N, 0.03, 0.0216, &err), &err);
 }
 
@@ -43,7 +37,6 @@ static void make(CoreBeam *core, const SceneOptions *s)
 static void make_rigid(CoreBeam *core, const char *foundation)
 {
     SceneOptions s = on_ground(foundation);
-    Err err = {0};
     s.core.youngs_modulus_pa *= 300;
     s.building.heights_m = LIST_OF(4);
     CHECK_OK(make_core_of(core, &s, N, 0.02, 0.02, &err), &err);
@@ -104,7 +97,6 @@ TEST(on_a_stiffer_and_stiffer_ground_the_core_becomes_the_clamped_one)
 TEST(the_factor_is_that_of_the_springs_and_its_root_that_of_the_dashpots)
 {
     Foundation f, twice;
-    Err err = {0};
     f = parsed("soil=C radius=10");
     CHECK_OK(foundation_parse("soil=C radius=10", 2, &twice, &err), &err);
     assert_close(twice.rotation, 2 * f.rotation, 1e-14);
@@ -176,7 +168,6 @@ static void complex_mode(const SceneOptions *s, const Foundation *f, double omeg
 {
     static double K[WHOLE][WHOLE], M[WHOLE][WHOLE], right[WHOLE][WHOLE + 2], A[2 * WHOLE][2 * WHOLE];
     double re[2 * WHOLE], im[2 * WHOLE];
-    Err err = {0};
     assemble_whole(s, f, K, M);
     memset(A, 0, sizeof A);
     memset(right, 0, sizeof right);
@@ -234,7 +225,6 @@ static SimResult simulated(const SceneOptions *o, const char *record, double gap
     SimWorker *worker;
     SimResult r;
     Settings s;
-    Err err = {0};
     SceneOptions options = *o;
     double x[N + 2] = {[N] = 0.03, [N + 1] = 0.0216};
     for (int j = 0; j < N; j++)

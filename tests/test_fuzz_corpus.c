@@ -5,10 +5,6 @@
 
 #include <dirent.h>
 #include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/csv.h"
 #include "fuzz/targets.h"
@@ -19,7 +15,6 @@ static void replay_file(const char *path, void (*target)(const uint8_t *, size_t
 {
     char *text;
     size_t length;
-    Err err = {0};
     CHECK_OK(file_read(path, FILE_LARGEST, &text, &length, &err), &err);
     uint8_t *exact = malloc(length ? length : 1); /* so that reading one byte too far is noticed */
     assert_non_null(exact);

@@ -3,9 +3,6 @@
 #include "runs.h"
 #include "scene_options.h"
 
-#include <sys/stat.h>
-
-#include "motion/motion_scale.h"
 #include "sim/floor_filter.h"
 #include "sim/sim.h"
 
@@ -225,7 +222,6 @@ static void add_sums(const SimSample *s, void *user)
 
 TEST(the_base_shear_is_what_inertia_and_damping_need)
 {
-    Err err = {0};
     Motion motion = {0};
     Scene *scene;
     SimWorker *worker;
@@ -284,7 +280,6 @@ static const double CUTOFF = 25;
 static double filtered_peak(double h, double (*u)(double t, double parameter), double parameter, double ground)
 {
     FloorFilter *f;
-    Err err = {0};
     double peaks[3];
     CHECK_OK(floor_filter_create(&f, 3, CUTOFF, &err), &err);
     floor_filter_start(f, h);
@@ -367,7 +362,6 @@ static void add_sample(const SimSample *s, void *user)
 
 TEST(samples_that_are_left_out_change_no_filtered_peak)
 {
-    Err err = {0};
     Motion motion = {0};
     Scene *scene;
     SimWorker *worker;

@@ -1,16 +1,12 @@
 /* The predictability horizon. */
 #include "check.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "analysis/horizon.h"
 #include "scene_options.h"
 
 static void open_scenario(Scenario *w, double x[22], double gap_m)
 {
     Settings s;
-    Err err = {0};
     paper_defaults(&s);
     snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 16;
@@ -26,7 +22,6 @@ TEST(the_horizon_is_never_reached_without_contact)
 {
     Scenario w;
     Horizon h;
-    Err err = {0};
     double x[22];
     open_scenario(&w, x, 5);
     CHECK_OK(horizon_find(&w, x, 1e-3, &h, &err), &err);
@@ -41,7 +36,6 @@ TEST(larger_changes_part_sooner_and_levels_are_reached_in_order)
 {
     Scenario w;
     Horizon early, late;
-    Err err = {0};
     double x[22];
     open_scenario(&w, x, 0.008);
     CHECK_OK(horizon_find(&w, x, 1e-3, &early, &err), &err);

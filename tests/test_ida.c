@@ -7,7 +7,6 @@ TEST(a_range_of_intensities_ends_at_its_end_in_round_numbers)
 {
     double levels[IDA_LEVELS_MAX];
     size_t n;
-    Err err = {0};
     CHECK_OK(ida_levels("--pga", "0.05:0.05:0.6", levels, &n, &err), &err);
     assert_int_equal(n, 12);
     for (size_t i = 0; i < n; i++) {

@@ -1,9 +1,6 @@
 /* OpenSees models written for the test, read as plane frames: closed forms, a frame there and back, refusals. */
 #include "program.h"
 
-#include <sys/stat.h>
-
-#include "scene/building.h"
 #include "scene/frame.h"
 #include "scene_options.h"
 
@@ -21,7 +18,6 @@ static Building import(const char *model, BuildingUnits units)
 {
     const BuildingOptions o = options_of(model, units);
     Building b;
-    Err err = {0};
     CHECK_OK(building_load(&b, &o, &err), &err);
     return b;
 }
@@ -83,7 +79,6 @@ TEST(the_20_storey_frame_as_a_model_gives_the_same_matrices)
     Frame f;
     Building wanted;
     BuildingOptions o = scene_defaults().building;
-    Err err = {0};
     snprintf(o.model, sizeof o.model, "configs/sac20/frame");
     CHECK_OK(building_load(&wanted, &o, &err), &err);
     CHECK_OK(frame_read(&f, &o, &err), &err);
@@ -151,7 +146,6 @@ TEST(negligible_masses_leave_the_lowest_periods_of_the_full_model)
     snprintf(text, sizeof text, "%s\nmass 3 0.2 1e-10 1e-10\n", PORTAL);
     BuildingOptions o = options_of(text, BUILDING_KIP_IN);
     Building b, full;
-    Err err = {0};
     CHECK_OK(building_load(&b, &o, &err), &err);
     o.modes = 100000;
     CHECK_OK(building_load(&full, &o, &err), &err);

@@ -1,14 +1,10 @@
 /* search.max_hours = auto: what a Slurm job has left, from its environment or from scontrol. */
 #include "program.h"
 
-#include <sys/stat.h>
-#include <time.h>
-
 #include "study/job_limit.h"
 
 TEST(the_environment_says_when_the_job_ends)
 {
-    Err err = {0};
     char end[32];
     double seconds;
     snprintf(end, sizeof end, "%ld", (long)time(NULL) + 3600);
@@ -20,7 +16,6 @@ TEST(the_environment_says_when_the_job_ends)
 
 TEST(else_scontrol_does)
 {
-    Err err = {0};
     double seconds;
     char path[4096], text[512], day[64], *scontrol = in_place("scontrol");
     const time_t end = time(NULL) + 1000;

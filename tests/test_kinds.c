@@ -2,16 +2,19 @@
 #include "runs.h"
 #include "searches.h"
 
-#include <math.h>
-
 #include "analysis/baselines.h"
 #include "evaluate/kinds.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "moga/variation.h"
+
+/* DTLZ2 of two objectives and variables of other kinds, whole numbers of 0 to 10. */
+#define MIXED(n_var, kinds)                                                                                            \
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 " #n_var " 2 0 1 '" kinds                         \
+    "'\nvariables = " #n_var "\nobjectives = 2\nupper = 10\nkinds = " kinds "\n"
 
 /* Position by tenths; distance 0 where the second number is 5 and both choices stand for 1/2. */
 #define SMALL                                                                                                          \
-    "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\nkinds = int, int, choice:a|b|c|d|e, choice:u|v|w\n"       \
+    MIXED(4, "int, int, choice:a|b|c|d|e, choice:u|v|w")                                                               \
     "[search]\ninitial = 40\npopulation = 20\nthreads = 2\nstop_after = 0\n"
 
 TEST(all_eleven_points_of_a_front_are_found_among_1815_designs)
@@ -98,8 +101,7 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 /* With fewer designs than simulations every one is simulated, and the search ends. */
 TEST(a_space_smaller_than_the_budget_is_searched_whole)
 {
-    write_in_place("tiny.ini", "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nkinds = int, choice:a|b\n"
-                               "[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\n");
+    write_in_place("tiny.ini", MIXED(2, "int, choice:a|b") "[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\n");
     free(output_of("optimize @/tiny.ini --out @/tiny"));
     assert_int_equal(finished_in("tiny"), 22);
 }
@@ -221,7 +223,6 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
     static const SceneKind KIND[] = {SCENE_LINKS, SCENE_TMD};
     Settings s = settings_of(DEVICES, "unused");
     Problem p;
-    Err err = {0};
     write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/devices"));
     Run run = run_in("devices");

@@ -2,10 +2,6 @@
  * against the model with all, and effects of which the answer is known beforehand. */
 #include "program.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <sys/stat.h>
-
 #include "analysis/ladder.h"
 #include "settings/settings.h"
 
@@ -26,7 +22,6 @@ static int make_building(void **state)
 static Settings scene_of(const char *const sets[])
 {
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     char *folder = in_place("soft");
     CHECK_OK(settings_put(&s, "building.model", folder, &err), &err);
@@ -51,7 +46,6 @@ static void design_with(double gap, double x[N + 2])
 static Ladder *find(const Settings *s, const double x[], double strong_s, int is_brief)
 {
     Ladder *l = malloc(sizeof *l);
-    Err err = {0};
     CHECK_OK(ladder_find(s, x, strong_s, is_brief, l, &err), &err);
     return l;
 }
@@ -73,7 +67,6 @@ static SimResult simulated_as(SceneKind kind, const Settings *s, const double x[
 {
     Problem p;
     SimResult r;
-    Err err = {0};
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
     problem_close(&p);
@@ -89,7 +82,6 @@ static SimResult simulated(const Settings *s, const double x[])
 static Settings composed(const Settings *s, const Ladder *l, int (*has)(const LadderEffect *e))
 {
     Settings out = *s;
-    Err err = {0};
     for (size_t i = 0; i < l->n; i++)
         CHECK_OK(
             settings_put(&out, l->effect[i].key, has(&l->effect[i]) ? l->effect[i].with : l->effect[i].without, &err),
@@ -110,7 +102,6 @@ static int kept(const LadderEffect *e)
 TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
 {
     double x[N + 2];
-    Err err = {0};
     const Settings s = scene_of((const char *const[]){NULL});
     design_with(0.008, x);
     Ladder *l = found(&s, x, 6);
@@ -278,7 +269,8 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     assert_less(0, number(json_object_get(json_object_get(ladder, "by_the_set"), "rigid"), "j1_m"));
     json_decref(o);
     expect_output(": no fault", "check configs/engineer.ini");
-    expect(65, "--ladder: problem.kind is no tower", "check configs/quick.ini --ladder --set problem.kind=dtlz2");
+    expect(65, "--ladder: problem.kind is no tower",
+           "check configs/quick.ini --ladder --set problem.kind=external --set problem.command=true");
 }
 
 /* Links hold the tower so well that its storeys stay elastic; alone they yield, so that the comparison needs it. */

@@ -250,8 +250,9 @@ TEST(what_makes_no_sense_is_named)
     says(imtet_scene_open("no.ini", NULL, &none, &error), &error, "no.ini");
     assert_null(none);
     says(imtet_scene_open(NULL, (const char *const[]){"motion.pga=1", NULL}, &none, &error), &error, "motion.pga_g?");
-    says(imtet_scene_open(NULL, (const char *const[]){"problem.kind=dtlz2", NULL}, &none, &error), &error,
-         "this needs problem.kind = tower");
+    says(imtet_scene_open(NULL, (const char *const[]){"problem.kind=external", "problem.command=true", NULL}, &none,
+                          &error),
+         &error, "this needs problem.kind = tower");
     says(imtet_scene_simulate(scene, "with_core", DESIGN, 7, &r, &error), &error,
          "x: has 7 numbers; a design of this scene has 8");
     says(imtet_scene_simulate(scene, "with_core", NULL, 8, &r, &error), &error, "x: has 0 numbers");

@@ -5,9 +5,8 @@
 #include "study/study.h"
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
-static const char UNMET[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n"
-                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
-                            "limits = f1<=0.2,f2<=0.2,f3<=0.2\n";
+static const char UNMET[] = DTLZ2_INI(6, 3) "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
+                                            "limits = f1<=0.2,f2<=0.2,f3<=0.2\n";
 
 static double missed(const double f[])
 {
@@ -111,7 +110,7 @@ static double most_behind(const char *name)
 
 TEST(a_search_with_levels_comes_near_them_in_150_evaluations_and_without_they_are_passed_by)
 {
-    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\n");
+    write_in_place("plain.ini", DTLZ2_INI(8, 3));
     free(output_of("optimize @/plain.ini --out @/wished --max-evals 150 --set 'search.aspire=f1 0.2, f2 0.2,f3 0.6'"));
     free(output_of("optimize @/plain.ini --out @/plain --max-evals 150"));
     assert_less(most_behind("wished"), 0.21235 + 0.011);
@@ -121,8 +120,8 @@ TEST(a_search_with_levels_comes_near_them_in_150_evaluations_and_without_they_ar
 
 TEST(levels_leave_limits_as_they_are_and_are_the_same_bytes_at_any_number_of_threads)
 {
-    write_in_place("levels.ini", "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n[search]\nmax_evals = 120\n"
-                                 "aspire = f1 0.5,f2 0.1\nlimits = f1<=0.3\n");
+    write_in_place("levels.ini", DTLZ2_INI(6, 3) "[search]\nmax_evals = 120\n"
+                                                 "aspire = f1 0.5,f2 0.1\nlimits = f1<=0.3\n");
     free(output_of("optimize @/levels.ini --out @/one --threads 1"));
     free(output_of("optimize @/levels.ini --out @/three --threads 3"));
     char *one = read_in_place("one/front.csv"), *three = read_in_place("three/front.csv");
@@ -145,7 +144,6 @@ TEST(a_run_without_a_front_says_why_there_is_none)
 {
     const Settings s = settings_of(UNMET, "begun");
     StudySummary summary;
-    Err err = {0};
     long left = 5;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .progress = see_progress, .user = &left},
                                &summary, NULL, &err),

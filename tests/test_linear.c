@@ -1,7 +1,5 @@
 /* Baselines: floors and core as one, a tuned mass, links. */
 #include <complex.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 #include "check.h"
@@ -23,7 +21,6 @@ typedef struct {
 /* n equal storeys of stiffness k and mass m. */
 static void make_frame(Frame *f, int n, double k, double m, double zeta)
 {
-    Err err = {0};
     memset(f, 0, sizeof *f);
     f->b = (Building){.n = n,
                       .K = f->K,
@@ -51,7 +48,6 @@ static void make_frame(Frame *f, int n, double k, double m, double zeta)
 
 static void make_core(CoreBeam *core, const SceneOptions *o, int n)
 {
-    Err err = {0};
     const double storey[N] = {3, 3, 3};
     CHECK_OK(core_beam_make(core, &o->core, n, storey, 0.02, 0.01, &err), &err);
 }
@@ -71,7 +67,6 @@ static void add_devices(SimModel *m, SceneKind kind, double mass, LinearDevice d
 static SimResult run_system(SceneKind kind, const Frame *f, const CoreBeam *core, LinearDevice device,
                             const Motion *motion)
 {
-    Err err = {0};
     Joined both = {.building = f->b};
     const SceneOptions o = paper_scene();
     const EngineOptions fine = {.duration = (double)(motion->n - 1) * motion->dt_s, .accuracy = ACCURACY_FINE};
@@ -226,7 +221,6 @@ static void modal_damping(int n, int first, int size, const double M[], const do
 
 static void invert(int n, const double A[], double out[])
 {
-    Err err = {0};
     double copy[4 * N * N];
     memcpy(copy, A, (size_t)(n * n) * sizeof *A);
     memset(out, 0, (size_t)(n * n) * sizeof *out);
@@ -343,7 +337,6 @@ TEST(friction_takes_four_times_its_force_over_the_stiffness_from_every_cycle)
     Frame f;
     SimModel m;
     SimResult r;
-    Err err = {0};
     make_frame(&f, 1, w * w, 1, 0);
     CHECK_OK(model_create(&m, 1, 1, &err), &err);
     CHECK_OK(model_set(&m, &o, &f.b, NULL, NULL, &err), &err);
@@ -398,7 +391,6 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
 TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
 {
     enum { NN = N * N };
-    Err err = {0};
     SceneOptions o = paper_scene();
     double accel[SHAKES], J[3], M[NN], phi[NN], omega[N];
     Frame f;
@@ -435,7 +427,6 @@ static void run_alone(const Problem *p, size_t r, SceneKind kind, const double x
                       SimResult *result)
 {
     SimWorker *w;
-    Err err = {0};
     CHECK_OK(sim_worker_create(&w, tower_record(tower_of(p), r)->scene, &err), &err);
     if (device)
         sim_worker_device(w, device);
@@ -447,7 +438,6 @@ static void run_alone(const Problem *p, size_t r, SceneKind kind, const double x
 static void open_tower(Problem *p, int floors, const char *records, Robust robust, long threads, double yield_drift)
 {
     Settings s;
-    Err err = {0};
     char text[200];
     paper_defaults(&s);
     s.sim.duration_s = 25;
@@ -475,7 +465,6 @@ static void rigid_design(int floors, double x[22])
 TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads)
 {
     Problem p;
-    Err err = {0};
     double x[22];
     Baseline *both[4]; /* worst, mean, worst on two and seven threads */
     rigid_design(6, x);
@@ -512,7 +501,6 @@ static double goal(const Baseline *b, const Baseline *no_core)
 static void find_devices(const char *records, double yield_drift)
 {
     Problem p;
-    Err err = {0};
     double x[22];
     Baseline b[N_SCENES];
     rigid_design(6, x);

@@ -1,12 +1,6 @@
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
-
-#include "check.h"
 #include "moga/archive.h"
 #include "moga/credit.h"
 #include "moga/directions.h"
-#include "base/dominance.h"
 #include "moga/normalisation.h"
 #include "base/hypervolume.h"
 #include "moga/infill.h"
@@ -133,7 +127,6 @@ TEST(the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume)
     double F[N * M], lower[M] = {0}, reference[M];
     for (size_t k = 0; k < M; k++)
         reference[k] = 1.1;
-    Err err = {0};
     for (uint32_t seed = 0; seed < 10; seed++) {
         Hypervolume *estimate;
         sphere_points(seed, N, M, F);
@@ -157,7 +150,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         const size_t m = cases[c].m;
         Directions d;
-        Err err = {0};
         CHECK_OK(directions_create(&d, m, cases[c].outer, cases[c].inner, &err), &err);
         assert_int_equal(d.n, cases[c].n);
         for (size_t i = 0; i < d.n; i++) {
@@ -177,7 +169,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
 static size_t n_directions(size_t n_obj, size_t outer, size_t inner)
 {
     Directions d;
-    Err err = {0};
     CHECK_OK(directions_create(&d, n_obj, outer, inner, &err), &err);
     directions_free(&d);
     return d.n;
@@ -280,7 +271,6 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
     size_t outer, inner;
     Directions d;
     Selection *s;
-    Err err = {0};
     directions_choose(M, KEEP, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
@@ -320,7 +310,6 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     size_t chosen[N];
     Directions d;
     Selection *s;
-    Err err = {0};
     CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
@@ -345,7 +334,6 @@ TEST(thousands_of_designs_are_selected_in_seconds)
     size_t *selected = calloc(N, sizeof *selected), outer, inner;
     Directions d;
     Selection *s;
-    Err err = {0};
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     assert_true(F && selected);
     for (size_t i = 0; i < N; i++) {
@@ -407,7 +395,6 @@ static NdTree *filled_tree(size_t m, const double F[], size_t n, const unsigned 
 {
     size_t rows[400], n_in = 0;
     NdTree *t;
-    Err err = {0};
     for (size_t i = 0; i < n; i++)
         if (in[i])
             rows[n_in++] = i;
@@ -425,7 +412,6 @@ TEST(the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time)
         unsigned char in[N] = {0}, wanted[N] = {0};
         NdTree *t;
         NdChange change;
-        Err err = {0};
         make_stream(seed, N, m, F);
         CHECK_OK(nd_tree_create(&t, m, &err), &err);
         for (size_t i = 0; i < N; i++) {
@@ -451,7 +437,6 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
     enum { N = 80, M = 3 };
     double F[N * M], G[N], X[N];
     unsigned char ok[N];
-    Err err = {0};
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive a;
         CHECK_OK(pareto_archive_init(&a, 3, 1, M, 1, &err), &err);
@@ -489,7 +474,6 @@ TEST(an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was)
     unsigned char ok[N];
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive whole, again;
-        Err err = {0};
         Random r = random_stream(seed, RANDOM_TEST, 9, 0);
         make_stream(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -529,7 +513,6 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     unsigned char allowed[] = {1, 1, 1, 1, 1};
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, NULL, &err), &err);
     infill_measure(q, 3, rows, front);
@@ -562,7 +545,6 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
         unsigned char allowed[N], asked[N];
         Directions d;
         Infill *lazy, *anew;
-        Err err = {0};
         Random r = random_stream(seed, RANDOM_TEST, 1, 0);
         coarse_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -602,7 +584,6 @@ TEST(spread_directions_have_the_axes_and_keep_apart)
 {
     for (size_t m = 2; m <= 7; m++) {
         Directions d;
-        Err err = {0};
         const size_t n = 40;
         CHECK_OK(directions_spread(&d, m, n, &err), &err);
         double least = INFINITY;
@@ -634,7 +615,6 @@ TEST(the_lengths_of_rays_measure_the_hypervolume)
     const double front[] = {0, 0.5, 1, 1, 0, 0.5, 0.5, 1, 0}; /* 0..1 in every objective */
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_spread(&d, 3, 300, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_HYPERVOLUME, 2, &d, NULL, &err), &err);
     infill_measure(q, 3, (const size_t[]){0, 1, 2}, front);
@@ -663,7 +643,6 @@ TEST(the_slope_of_pbi_equals_differences)
     }
     Directions d;
     Infill *q;
-    Err err = {0};
     CHECK_OK(directions_spread(&d, M, 12, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, NULL, &err), &err);
     infill_measure(q, ROWS, rows, F);

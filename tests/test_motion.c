@@ -1,11 +1,6 @@
 /* Readers of ground motions, their scaling, response spectra and intensity figures. */
 #include "check.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-#include <string.h>
-
 #include "motion/motion_scale.h"
 #include "motion/motion_read.h"
 #include "motion/spectrum.h"
@@ -25,7 +20,6 @@ static void must_read(const char *text, MotionUnit unit, const char *format)
 {
     static const double want[] = {1, 2, -3, 0};
     Motion m;
-    Err err;
     CHECK_OK(parse(&m, text, unit, &err), &err);
     assert_int_equal(m.n, 4);
     assert_close(m.dt_s, 0.02, 0);
@@ -69,7 +63,6 @@ TEST(both_forms_of_a_peer_header_are_read)
 TEST(a_setting_may_not_contradict_the_file)
 {
     Motion m;
-    Err err;
     assert_int_equal(parse(&m, "time_s,accel_m_s2\n0,1\n1,2\n", UNIT_G, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "motion.unit is g, but the file says m_s2"));
     assert_null(m.accel);
@@ -93,7 +86,6 @@ TEST(times_printed_with_few_digits_are_uniform)
             p += sprintf(p, ",%d\n", i % 3);
         }
         Motion m;
-        Err err;
         CHECK_OK(parse(&m, text, UNIT_FROM_FILE, &err), &err);
         assert_int_equal(m.n, n);
         assert_close(m.dt_s, CASES[c].dt, 1e-5);
@@ -197,7 +189,6 @@ TEST(a_comment_heads_columns_where_it_begins_with_times_or_periods)
 TEST(a_file_that_is_not_there_is_missing)
 {
     Motion m;
-    Err err;
     assert_int_equal(motion_load(&m, "tests/bad/motion/nowhere.csv", UNIT_FROM_FILE, &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "nowhere.csv"));
     assert_int_equal(motion_load(&m, "tests/bad/motion", UNIT_FROM_FILE, &err), STATUS_MISSING);
@@ -218,7 +209,6 @@ TEST(the_benchmark_records_are_read)
     for (size_t i = 0; i < sizeof RECORDS / sizeof *RECORDS; i++) {
         char path[128];
         Motion m;
-        Err err;
         snprintf(path, sizeof path, "../shared/records/%s", RECORDS[i].file);
         const Status s = motion_load(&m, path, UNIT_FROM_FILE, &err);
         if (s == STATUS_MISSING)
@@ -241,7 +231,6 @@ TEST(the_benchmark_records_are_read)
 static void says(double pga_g, double stretch, const char *wanted)
 {
     Motion m;
-    Err err = {0};
     char text[MOTION_PEAK_TEXT_MAX];
     CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4.905\n1,2\n", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, pga_g, stretch, &err), &err);
@@ -261,7 +250,6 @@ TEST(the_peak_of_a_motion_is_shown_with_its_scaling)
 TEST(prepare_scales_the_peak_and_stretches_time)
 {
     Motion m;
-    Err err;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4\n1,2\n", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0, 2, &err), &err);
     assert_close(m.accel[1], -4, 0);
@@ -278,7 +266,6 @@ TEST(prepare_scales_the_peak_and_stretches_time)
 TEST(a_motion_of_zeros_is_none)
 {
     Motion m;
-    Err err;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,0\n0.5,0\n1,0\n", UNIT_FROM_FILE, &err), &err);
     for (int scaled = 0; scaled < 2; scaled++) {
         assert_int_equal(motion_prepare(&m, 0.3 * scaled, 1, &err), STATUS_BAD_DATA);

@@ -6,10 +6,6 @@
 #include <archive_entry.h>
 #include <ctype.h>
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "base/csv.h"
 #include "motion/formats/record.h"
@@ -88,7 +84,6 @@ TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
     for (int i = 0; i < N_SPECIMENS; i++) {
         char path[128];
         Motion m;
-        Err err;
         specimen_path(SPECIMENS[i].file, path);
         CHECK_OK(motion_read(&m, path, &(MotionHow){.channel = SPECIMENS[i].channel}, &err), &err);
         const double want = 0.01 * PEAK_GAL[SPECIMENS[i].component];
@@ -135,7 +130,6 @@ TEST(binary_files_and_archives_are_read_to_their_samples)
     for (int i = 0; i < N_BINARY; i++) {
         char path[128];
         Motion m;
-        Err err;
         specimen_path(BINARY[i].file, path);
         CHECK_OK(motion_read(&m, path, &BINARY[i].how, &err), &err);
         const double want = 0.01 * PEAK_GAL[BINARY[i].component];
@@ -159,7 +153,6 @@ static Text read_specimen(const char *file)
 {
     char path[128];
     Text t;
-    Err err;
     specimen_path(file, path);
     CHECK_OK(file_read(path, FILE_LARGEST, &t.text, &t.length, &err), &err);
     return t;
@@ -188,6 +181,32 @@ static Text changed(Text t, const char *from, const char *to, int all)
     return out;
 }
 
+/* Refused with these words; the text is released. */
+static void refuse(const char *name, Text t, const MotionHow *how, const char *says)
+{
+    Motion m;
+    Err err = {0};
+    assert_int_equal(motion_parse(&m, name, t.text, t.length, how, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, says))
+        fail_msg("'%s' should be in '%s'", says, err.text);
+    free(t.text);
+}
+
+/* Read; the text is released. */
+static Motion accept_text(const char *name, Text t, const MotionHow *how)
+{
+    Motion m;
+    CHECK_OK(motion_parse(&m, name, t.text, t.length, how, &err), &err);
+    free(t.text);
+    return m;
+}
+
+/* A text of the test's own, which is read. */
+static Motion there(const char *text, const MotionHow *how)
+{
+    return accept_text("there", (Text){strdup(text), strlen(text)}, how);
+}
+
 TEST(line_ends_and_blanks_at_line_ends_do_not_matter)
 {
     static const char *const ends[] = {"\n", "\r\n", "   \r\n", "\t\n", "\r"};
@@ -199,13 +218,9 @@ TEST(line_ends_and_blanks_at_line_ends_do_not_matter)
             t = changed(t, "\n", ends[k], 1);
             t.text[t.length++] = 0x1a; /* the end mark of DOS */
             Motion m;
-            Err err;
-            CHECK_OK(motion_parse(&m, SPECIMENS[i].file, t.text, t.length,
-                                  &(MotionHow){.channel = SPECIMENS[i].channel}, &err),
-                     &err);
+            m = accept_text(SPECIMENS[i].file, t, &(MotionHow){.channel = SPECIMENS[i].channel});
             assert_int_equal(m.n, N_SAMPLES);
             motion_free(&m);
-            free(t.text);
         }
 }
 
@@ -387,11 +402,7 @@ TEST(a_file_of_too_many_channels_is_refused)
     static const char *const FILES[] = {"one.cosmos.v1", "three.csmip.v1", "three.v1a"};
     for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
         Text t = repeated(read_specimen(FILES[i]), 129);
-        Motion m;
-        Err err = {0};
-        assert_int_equal(motion_parse(&m, FILES[i], t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, "more than 128 channels"));
-        free(t.text);
+        refuse(FILES[i], t, &FIRST, "more than 128 channels");
     }
     char row[400] = "";
     for (int i = 0; i < 130; i++)
@@ -417,7 +428,6 @@ TEST(words_without_numbers_are_no_known_format_and_their_first_line_is_quoted)
 
 TEST(a_file_of_nothing_but_a_byte_order_mark_is_refused)
 {
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "mark", "\xef\xbb\xbf", 3, &FIRST, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "mark: holds 0 samples"));
 }
@@ -438,7 +448,6 @@ static void refused(const char *file, const MotionHow *how, const char *says)
 TEST(counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name)
 {
     Motion m;
-    Err err = {0};
     refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.unit (--unit) to counts=VALUE");
     refused("little.sac", &(MotionHow){0}, "set motion.unit (--unit) to counts=VALUE");
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
@@ -461,14 +470,8 @@ TEST(a_sac_header_of_velocities_or_of_fewer_samples_is_refused)
                  {9, 30, "holds 43 samples, not the 30 that its header announces"}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Text t = read_specimen("little.sac");
-        Err err = {0};
         memcpy(t.text + (size_t)4 * (size_t)(70 + CASES[i].place), (char[4]){CASES[i].value}, 4);
-        assert_int_equal(
-            motion_parse(&(Motion){0}, "little.sac", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err),
-            STATUS_BAD_DATA);
-        if (!strstr(err.text, CASES[i].says))
-            fail_msg("%s", err.text);
-        free(t.text);
+        refuse("little.sac", t, &(MotionHow){.unit = UNIT_M_S2}, CASES[i].says);
     }
 }
 
@@ -500,7 +503,6 @@ TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_fo
     Text one = read_specimen("one.knet");
     Text broken = members(2, (const char *const[]){"a.NS", "b.NS"}, &one, one.length - 60);
     Text twins = members(2, (const char *const[]){"x/a.NS", "y/a.NS"}, &one, one.length);
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "two.tar", broken.text, broken.length, &(MotionHow){0}, &err),
                      STATUS_BAD_DATA);
     if (!strstr(err.text, "two.tar: a member of this archive is damaged: b.NS:"))
@@ -524,7 +526,6 @@ TEST(of_many_channels_of_an_archive_the_first_are_listed_and_how_many_there_are)
         list[k] = names[k];
     }
     Text one = read_specimen("one.knet"), all = members(N, list, &one, one.length);
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "a.tar", all.text, all.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "holds 26 channels: 1 'N-S"));
     assert_non_null(strstr(err.text, "3 'N-S"));
@@ -545,9 +546,7 @@ TEST(a_channel_must_be_chosen_where_there_are_several)
 TEST(a_column_of_velocities_is_not_taken_for_an_acceleration)
 {
     static const char text[] = "time_s,accel_m_s2,velocity\n0.00,1.0,0.0\n0.02,2.0,0.1\n";
-    Motion m;
-    Err err;
-    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){0}, &err), &err);
+    Motion m = there(text, &(MotionHow){0});
     assert_string_equal(m.channel, "accel_m_s2");
     assert_close(m.accel[1], 2, 0);
     motion_free(&m);
@@ -558,9 +557,7 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
     refused("irregular.csv", &(MotionHow){0}, "breaks the uniform step");
     refused("irregular.csv", &(MotionHow){.dt_s = 1e-9}, "would make");
     static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
-    Motion m;
-    Err err;
-    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){.dt_s = 0.05}, &err), &err);
+    Motion m = there(text, &(MotionHow){.dt_s = 0.05});
     assert_int_equal(m.n, 21);
     assert_string_equal(m.processed, "resampled every 0.05 s by straight lines");
     for (size_t i = 0; i < m.n; i++) {
@@ -574,7 +571,6 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
 TEST(an_equal_step_is_left_alone_by_a_request_to_resample)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.dt_s = 0.5}, &err), &err);
     assert_close(m.dt_s, DT, 0);
     assert_string_equal(m.processed, "");
@@ -585,15 +581,14 @@ TEST(the_step_of_a_bare_column_can_be_given_and_of_no_other)
 {
     static const char text[] = "1\n2\n-3\n0\n";
     Motion m;
-    Err err;
     const MotionHow how = {.unit = UNIT_M_S2, .dt_s = 0.02};
-    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &how, &err), &err);
+    m = there(text, &how);
     assert_int_equal(m.n, 4);
     assert_close(m.dt_s, 0.02, 0);
     assert_string_equal(m.warning, "");
     motion_free(&m);
     static const char timed[] = "t,a_g\n0,1\n0.01,2\n";
-    CHECK_OK(motion_parse(&m, "timed", timed, strlen(timed), &(MotionHow){.dt_s = 0.02}, &err), &err);
+    m = there(timed, &(MotionHow){.dt_s = 0.02});
     assert_close(m.dt_s, 0.01, 0);
     assert_string_equal(m.warning, "motion.dt_s = 0.02 is not used: the file says 0.01 s");
     motion_free(&m);
@@ -697,7 +692,6 @@ TEST(a_mutated_binary_file_or_archive_is_read_or_refused)
 TEST(the_offset_of_a_recorder_is_subtracted_and_said)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_read(&m, "tests/motion/one.knet", &(MotionHow){0}, &err), &err);
     double sum = 0;
     for (size_t i = 0; i < m.n; i++)
@@ -720,7 +714,6 @@ static Status read_with_peak(const char *stated, Motion *m, Err *err)
 TEST(a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5)
 {
     Motion m;
-    Err err;
     CHECK_OK(read_with_peak("124.400", &m, &err), &err); /* 0.8 % */
     assert_string_equal(m.warning, "");
     motion_free(&m);
@@ -843,7 +836,6 @@ TEST(the_location_tells_the_channels_of_a_building_apart)
 {
     Text t = {NULL, 0};
     Motion m;
-    Err err = {0};
     FILE *f = open_memstream(&t.text, &t.length);
     assert_non_null(f);
     for (int k = 1; k <= 12; k++) {
@@ -862,16 +854,14 @@ TEST(the_location_tells_the_channels_of_a_building_apart)
     assert_int_equal(motion_parse(&m, "building", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, "2 '90 Deg, Ground floor'") || !strstr(err.text, "12 '90 Deg, Roof'"))
         fail_msg("%s", err.text);
-    CHECK_OK(motion_parse(&m, "building", t.text, t.length, &(MotionHow){.channel = "90 Deg, Roof"}, &err), &err);
+    m = accept_text("building", t, &(MotionHow){.channel = "90 Deg, Roof"});
     assert_string_equal(m.channel, "90 Deg, Roof");
     motion_free(&m);
-    free(t.text);
 }
 
 TEST(quoted_cells_are_read)
 {
     Motion m;
-    Err err = {0};
     assert_int_equal(parse_text(&m, "\"time [s]\",\"acc [m/s^2]\"\n\"0.00\",\"0.1\"\n\"0.01\",\"-1.25\"\n", &err),
                      STATUS_OK);
     assert_int_equal(m.n, 2);
@@ -885,7 +875,6 @@ TEST(quoted_cells_are_read)
 TEST(units_in_other_words_are_taken_or_named)
 {
     Motion m;
-    Err err = {0};
     assert_int_equal(parse_text(&m, "A\nB\nUNITS OF CM/SEC**2\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
     assert_close(m.accel[1], 0.02, 1e-15);
     motion_free(&m);
@@ -895,10 +884,9 @@ TEST(units_in_other_words_are_taken_or_named)
     for (int i = 0; i < 2; i++) {
         Text t = i ? changed(read_specimen("one.csn"), "m/seg/seg", "cm/seg/seg", 0)
                    : changed(read_specimen("isesd.cor"), " m/s*s,", "cm/s*s,", 0);
-        CHECK_OK(motion_parse(&m, "in cm", t.text, t.length, &(MotionHow){0}, &err), &err);
+        m = accept_text("in cm", t, &(MotionHow){0});
         assert_close(m.accel[PEAK_AT], 1e-4 * PEAK_GAL[0], 1e-8);
         motion_free(&m);
-        free(t.text);
     }
     assert_int_equal(parse_text(&m, "time_s,accel [mg]\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "unit 'mg' of its acceleration is not known"));
@@ -910,12 +898,8 @@ TEST(a_sample_of_a_binary_file_that_is_no_number_is_refused)
     static const unsigned char NOT_A_NUMBER[] = {0x7f, 0xc0, 0, 0};
     Text t = read_specimen("three.mseed");
     memcpy(t.text + 64 + 4 * 40, NOT_A_NUMBER, 4);
-    Motion m;
-    Err err = {0};
     const MotionHow how = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5};
-    assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "a.mseed: sample 41 of the channel is not a finite number"));
-    free(t.text);
+    refuse("a.mseed", t, &how, "a.mseed: sample 41 of the channel is not a finite number");
 }
 
 TEST(a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused)
@@ -923,12 +907,8 @@ TEST(a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refus
     for (int second = 0; second < 2; second++) {
         Text t = read_specimen("three.mseed");
         t.text[30 + (second ? 512 : 0)] = 0x7f; /* the number of samples, first byte */
-        Motion m;
-        Err err = {0};
         const MotionHow how = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5};
-        assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, second ? "no usable record at byte 512" : "no usable record at byte 0"));
-        free(t.text);
+        refuse("a.mseed", t, &how, second ? "no usable record at byte 512" : "no usable record at byte 0");
     }
 }
 
@@ -1015,9 +995,7 @@ TEST(decimal_commas_are_read_whatever_parts_the_columns)
         "acceleration (in m/s2)\n3 0,01\n3,1\n0,5\n-1,0\n",
     };
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Motion m;
-        Err err = {0};
-        CHECK_OK(parse_text(&m, TEXTS[i], &err), &err);
+        Motion m = there(TEXTS[i], &(MotionHow){0});
         if (m.n != 3 || fabs(m.dt_s - 0.01) > 1e-15 || m.accel[0] != 3.1 || m.accel[1] != 0.5 || m.accel[2] != -1)
             fail_msg("%s: %zu samples every %g s: %g %g", TEXTS[i], m.n, m.dt_s, m.accel[0], m.accel[1]);
         motion_free(&m);
@@ -1066,10 +1044,9 @@ TEST(a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere)
                                              {"acc_x1000_m_s2", "does not say the unit"}};
     char text[200];
     Motion m;
-    Err err = {0};
     for (size_t i = 0; i < sizeof IN_G / sizeof IN_G[0]; i++) {
         snprintf(text, sizeof text, "# dt=0.01 s\n%s\n1\n2\n-3\n", IN_G[i]);
-        CHECK_OK(parse_text(&m, text, &err), &err);
+        m = there(text, &(MotionHow){0});
         assert_close(m.accel[2], -3 * 9.81, 1e-12);
         motion_free(&m);
     }
@@ -1096,15 +1073,11 @@ TEST(a_long_line_and_many_records_take_no_square_of_their_length)
         for (int i = 0; i < COLUMNS; i++, p += 2)
             memcpy(p, with_names ? "a," : "0 ", 2);
         memcpy(p, with_names ? "a\n1,2,\n" : "0\n1 2\n", 7);
-        Err err = {0};
         assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
     }
     free(row);
     Text t = repeated(read_specimen("three.mseed"), 4096);
-    Err err = {0};
-    assert_int_equal(motion_parse(&(Motion){0}, "six.mseed", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "more than 128 channels"));
-    free(t.text);
+    refuse("six.mseed", t, &FIRST, "more than 128 channels");
     t = repeated((Text){strdup("\n"), 1}, 1 << 20);
     memcpy(t.text, "Origin Time", strlen("Origin Time"));
     assert_int_equal(motion_parse(&(Motion){0}, "blank", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
@@ -1127,18 +1100,16 @@ TEST(steps_are_read_in_their_unit_and_contradictions_are_refused)
                                         "dt=0.005 s; sampling rate: 200 Hz"};
     char text[200];
     Motion m;
-    Err err = {0};
     for (size_t i = 0; i < sizeof STEPS / sizeof STEPS[0]; i++) {
         snprintf(text, sizeof text, "# %s\n# units: cm/s2\n1\n2\n-3\n", STEPS[i]);
-        CHECK_OK(parse_text(&m, text, &err), &err);
+        m = there(text, &(MotionHow){0});
         assert_close(m.dt_s, 0.005, 1e-15);
         motion_free(&m);
     }
     Text t = changed(read_specimen("equals.at2"), "SEC", "MSEC", 0);
-    CHECK_OK(motion_parse(&m, "at2", t.text, t.length, &(MotionHow){0}, &err), &err);
+    m = accept_text("at2", t, &(MotionHow){0});
     assert_close(m.dt_s, 1e-5, 1e-15);
     motion_free(&m);
-    free(t.text);
     expect_refusal("# dt = 0.005 min; units: cm/s2\n1\n2\n",
                    "there:1: the step in '# dt = 0.005 min; units: cm/s2' is not in seconds");
     expect_refusal("# units: m/s2\n# dt=0.01\n# dt=0.02\n1\n2\n",
@@ -1160,24 +1131,21 @@ TEST(numbers_of_samples_are_no_seconds)
                                         "%si,a_m_s2\n1,1\n2,2\n3,-3\n", "%sNo.;a [m/s2]\n0;1\n1;2\n2;-3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
         Motion m;
-        Err err = {0};
         char text[100];
         snprintf(text, sizeof text, TEXTS[i], "");
         expect_refusal(text,
                        "are these samples? Give their step (--set motion.dt_s=0.01); if they are seconds, name the "
                        "column time_s");
-        CHECK_OK(motion_parse(&m, "there", text, strlen(text), &(MotionHow){.dt_s = 0.02}, &err), &err);
+        m = there(text, &(MotionHow){.dt_s = 0.02});
         assert_close(m.dt_s, 0.02, 0);
         assert_close(m.accel[2], -3, 0);
         motion_free(&m);
         snprintf(text, sizeof text, TEXTS[i], "# dt = 0.02\n");
-        CHECK_OK(parse_text(&m, text, &err), &err);
+        m = there(text, &(MotionHow){0});
         assert_close(m.dt_s, 0.02, 0);
         motion_free(&m);
     }
-    Motion m;
-    Err err = {0};
-    CHECK_OK(parse_text(&m, "time_s,a_m_s2\n0,1\n1,2\n2,-3\n", &err), &err);
+    Motion m = there("time_s,a_m_s2\n0,1\n1,2\n2,-3\n", &(MotionHow){0});
     assert_close(m.dt_s, 1, 0);
     motion_free(&m);
 }
@@ -1188,9 +1156,7 @@ TEST(the_column_of_times_is_found_by_its_name)
                                         "acc (g) t [s]\n0.1 0\n0.2 0.01\n-.3 0.02\n",
                                         "NS_g;Time (sec);EW_g\n.1;0;1\n.2;.01;2\n-.3;.02;3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Motion m;
-        Err err = {0};
-        CHECK_OK(motion_parse(&m, "there", TEXTS[i], strlen(TEXTS[i]), &FIRST, &err), &err);
+        Motion m = there(TEXTS[i], &FIRST);
         assert_close(m.dt_s, 0.01, 1e-15);
         assert_close(m.accel[2], -.3 * 9.81, 1e-12);
         motion_free(&m);
@@ -1207,23 +1173,16 @@ TEST(kiknet_numbers_are_directions_and_what_is_no_direction_is_refused)
         char direction[32];
         snprintf(direction, sizeof direction, "Dir.              %d", k + 1);
         Text t = changed(read_specimen("one.kiknet"), "Dir.              5", direction, 0);
-        Motion m;
-        Err err = {0};
-        CHECK_OK(motion_parse(&m, "one.kiknet", t.text, t.length, &(MotionHow){0}, &err), &err);
+        Motion m = accept_text("one.kiknet", t, &(MotionHow){0});
         assert_string_equal(m.channel, NAMES[k]);
         motion_free(&m);
-        free(t.text);
     }
     for (int k = 0; k < 2; k++) {
-        Err err = {0};
         Text t =
             changed(read_specimen("one.kiknet"), "Dir.              5", k ? "Dir.              SW" : "Dir.      7", 0);
-        assert_int_equal(motion_parse(&(Motion){0}, "one.kiknet", t.text, t.length, &(MotionHow){0}, &err),
-                         STATUS_BAD_DATA);
-        if (!strstr(err.text, k ? "one.kiknet:13: the direction 'SW' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)"
-                                : "the direction '7' is none"))
-            fail_msg("%s", err.text);
-        free(t.text);
+        refuse("one.kiknet", t, &(MotionHow){0},
+               k ? "one.kiknet:13: the direction 'SW' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)"
+                 : "the direction '7' is none");
     }
     refused("old.v1a", &(MotionHow){0}, "holds 3 channels: 1 (no name), 2 (no name), 3 (no name); choose one");
 }
@@ -1231,7 +1190,6 @@ TEST(kiknet_numbers_are_directions_and_what_is_no_direction_is_refused)
 TEST(five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel)
 {
     Motion m;
-    Err err = {0};
     Text t = rows_of("", 20, 5);
     assert_int_equal(motion_parse(&m, "opensees.txt", t.text, t.length, &(MotionHow){.unit = UNIT_G}, &err),
                      STATUS_BAD_DATA);
@@ -1242,21 +1200,15 @@ TEST(five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel)
 
 TEST(the_body_of_a_file_of_three_components_is_asked_about_and_not_joined)
 {
-    Motion m;
-    Err err = {0};
     for (int width = 2; width <= 4; width++) {
         Text t = rows_of("# units: m/s2, dt=0.01\n", 40, width);
-        assert_int_equal(motion_parse(&m, "body", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, "columns without names"));
-        free(t.text);
+        refuse("body", t, &(MotionHow){0}, "columns without names");
     }
 }
 
 TEST(a_step_in_the_first_line_above_words_is_found)
 {
-    Motion m;
-    Err err = {0};
-    CHECK_OK(parse_text(&m, "Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &err), &err);
+    Motion m = there("Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &(MotionHow){0});
     assert_close(m.dt_s, 0.005, 1e-15);
     assert_int_equal(m.n, 4);
     assert_close(m.accel[2], -0.02 * 9.81, 1e-12);
@@ -1337,7 +1289,6 @@ TEST(a_spectrum_is_no_motion_with_any_option)
 TEST(unequal_steps_without_the_name_of_times_are_not_resampled)
 {
     Motion m;
-    Err err = {0};
     static const char text[] = "# units: g\n0.01 1\n0.02 2\n0.05 3\n0.1 2\n0.2 1\n";
     assert_int_equal(motion_parse(&m, "there", text, strlen(text), &(MotionHow){.dt_s = 0.01}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "name the column of its times time_s and set motion.dt_s"));
@@ -1369,28 +1320,20 @@ TEST(a_record_behind_a_record_is_a_channel_in_every_format)
             fail_msg("%s: %s", SPECIMENS[i].file, err.text);
         if (!is_plain) { /* the last channel is that of K-NET */
             const char last[] = {strstr(err.text, "holds ")[6], 0};
-            CHECK_OK(motion_parse(&m, "two", t.text, t.length, &(MotionHow){.channel = last}, &err), &err);
+            m = accept_text("two", t, &(MotionHow){.channel = last});
             assert_string_equal(m.format, "knet");
             assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-4);
             motion_free(&m);
         }
-        free(t.text);
     }
 }
 
 TEST(numbers_below_other_words_are_not_dropped_in_silence)
 {
-    Motion m;
-    Err err = {0};
     Text t = joined(read_specimen("equals.at2"), (Text){strdup("Some words\n 1.0 2.0\n"), 20});
-    assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-    if (!strstr(err.text, "more numbers, below words, than the header announces"))
-        fail_msg("%s", err.text);
-    free(t.text);
+    refuse("there", t, &FIRST, "more numbers, below words, than the header announces");
     t = joined(read_specimen("one_column.txt"), read_specimen("one_column.txt"));
-    assert_int_equal(motion_parse(&m, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "below the first sample; is it a second record?"));
-    free(t.text);
+    refuse("there", t, &FIRST, "below the first sample; is it a second record?");
 }
 
 TEST(rows_that_are_missing_or_swapped_are_refused_where_they_carry_times)
@@ -1398,10 +1341,7 @@ TEST(rows_that_are_missing_or_swapped_are_refused_where_they_carry_times)
     static const char *const EDITS[][2] = {{"     0.150   ", "     0.160   "}, {"     0.150   ", "     0.140   "}};
     for (size_t i = 0; i < sizeof EDITS / sizeof EDITS[0]; i++) {
         Text t = changed(read_specimen("cwb.dat"), EDITS[i][0], EDITS[i][1], 0);
-        Err err = {0};
-        assert_int_equal(motion_parse(&(Motion){0}, "there", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, "does not come after"));
-        free(t.text);
+        refuse("there", t, &FIRST, "does not come after");
     }
     Text t = read_specimen("cwb.dat");
     Err err = {0};
@@ -1430,20 +1370,15 @@ TEST(a_stated_foreign_quantity_is_not_overruled_by_an_option)
         expect(header, &(MotionHow){0}, "does not say the unit");
         expect(header, &(MotionHow){.unit = UNIT_G}, NULL);
     }
-    Err err = {0};
     Text t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, M/S", 1);
-    assert_int_equal(
-        motion_parse(&(Motion){0}, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2, .channel = "1"}, &err),
-        STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "the unit 'M/S' of its acceleration is not known"));
-    free(t.text);
+    refuse("there", t, &(MotionHow){.unit = UNIT_M_S2, .channel = "1"},
+           "the unit 'M/S' of its acceleration is not known");
     const MotionHow gain = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 100};
     Motion m;
     t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, ADC", 1);
-    CHECK_OK(motion_parse(&m, "there", t.text, t.length, &gain, &err), &err);
+    m = accept_text("there", t, &gain);
     assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-6);
     motion_free(&m);
-    free(t.text);
 }
 
 TEST(two_units_in_one_file_are_refused)
@@ -1469,23 +1404,19 @@ TEST(what_other_programs_write_is_read)
     };
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Motion m;
-        Err err = {0};
         Text t = changed(read_specimen(CASES[i].file), CASES[i].from, CASES[i].to, 0);
-        CHECK_OK(motion_parse(&m, "there", t.text, t.length, &(MotionHow){.channel = CASES[i].channel}, &err), &err);
+        m = accept_text("there", t, &(MotionHow){.channel = CASES[i].channel});
         assert_int_equal(m.n, N_SAMPLES);
         assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0] * CASES[i].factor, 1e-9);
         assert_non_null(strstr(m.warning, CASES[i].warning));
         motion_free(&m);
-        free(t.text);
     }
     static const char *const TABLES[] = {
         ",time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n", "i,time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n",
         "npts=3 dt=0.01 units=m/s2\n1\n2\n-3\n", "npts= 3 dt= 0.01 units= m/s2\n1 2\n-3\n",
         "npts=3, dt=0.01, units=m/s2\n1 2 -3\n"};
     for (size_t i = 0; i < sizeof TABLES / sizeof TABLES[0]; i++) {
-        Motion m;
-        Err err = {0};
-        CHECK_OK(parse_text(&m, TABLES[i], &err), &err);
+        Motion m = there(TABLES[i], &(MotionHow){0});
         assert_true(m.n == 3 && m.accel[0] == 1 && m.accel[1] == 2 && m.accel[2] == -3);
         assert_close(m.dt_s, 0.01, 1e-15);
         motion_free(&m);
@@ -1498,7 +1429,6 @@ TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
     for (int width = 5; width <= 8; width += 3)
         for (int with_word = 0; with_word < 2; with_word++) {
             Motion m;
-            Err err = {0};
             Text t = rows_of("", 20, width);
             t.length -= 30; /* two numbers */
             memcpy(t.text + t.length, with_word ? "\nend\n" : "\n", with_word ? 6 : 2);
@@ -1509,10 +1439,8 @@ TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
             for (size_t k = 0; k + 1 < m.n; k++)
                 assert_close(m.accel[k], sin((double)k), 1e-10);
             motion_free(&m);
-            assert_int_equal(motion_parse(&m, "rows", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err),
-                             STATUS_BAD_DATA);
-            assert_non_null(strstr(err.text, "and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)"));
-            free(t.text);
+            refuse("rows", t, &(MotionHow){.unit = UNIT_M_S2},
+                   "and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)");
         }
 }
 
@@ -1522,7 +1450,6 @@ TEST(a_record_that_its_agency_corrected_is_not_called_uncorrected)
     static const char *const RAW[] = {"three.csmip.v1", "three.v1a", "one.cosmos.v1", "one.csmnc", "equals.at2"};
     for (int i = 0; i < 10; i++) {
         Motion m;
-        Err err = {0};
         char path[128];
         specimen_path(i < 5 ? CORRECTED[i] : RAW[i - 5], path);
         CHECK_OK(motion_read(&m, path, &FIRST, &err), &err);

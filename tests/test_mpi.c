@@ -4,7 +4,6 @@
 
 #include <fcntl.h>
 #include <omp.h>
-#include <signal.h>
 #include <spawn.h>
 
 #include "mpi/message.h"
@@ -574,8 +573,8 @@ TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
 {
     long pid[16];
     program();
-    write_in_place("small.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n[search]\ninitial = 12\n"
-                                "population = 12\nmax_evals = 24\nsurrogate = off\nthreads = 1\n");
+    write_in_place("small.ini", DTLZ2_INI(4, 2) "[search]\ninitial = 12\n"
+                                                "population = 12\nmax_evals = 24\nsurrogate = off\nthreads = 1\n");
     free(output_of("optimize @/small.ini --out @/small"));
     write_in_place("said", "");
     const pid_t mpirun = launch(3, "serve @/small");

@@ -1,5 +1,4 @@
 /* The designs that a study names: simulated until their error is known (study/named.h). */
-#include <signal.h>
 
 #include "runs.h"
 #include "study/study.h"
@@ -150,7 +149,6 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
 /* Three designs of two objectives: the second was on the front until the first came, which was better by its error. */
 TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_back)
 {
-    Err err = {0};
     Evaluation *e;
     const double F[3][2] = {{1.0, 1.0}, {1.5, 1.5}, {3.0, 0.5}};
     Run run = {.schema = {.n_var = 1, .n_obj = 2}, .table = evaluation_table(1, 2, 0)};
@@ -229,7 +227,6 @@ TEST(what_an_interrupted_study_names_is_known_too)
                                 "[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\nthreads = 2\n";
     const Settings s = settings_of(SHORT, "run-cut");
     StudySummary summary;
-    Err err = {0};
     int left = 40;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);

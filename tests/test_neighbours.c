@@ -1,10 +1,4 @@
 /* Two buildings that pound: closed forms of two single masses, floors by number, what is refused. */
-#include "check.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "base/units.h"
 #include "program.h"
@@ -75,7 +69,6 @@ TEST(two_single_masses_exchange_the_momentum_of_one_impact)
 TEST(joined_and_alone_the_masses_have_their_closed_forms)
 {
     Scene *scene;
-    Err err = {0};
     double building[FLOORS_MAX], core[FLOORS_MAX], joined[FLOORS_MAX], mass, gap = 0.1;
     write_building("one", "4,2e5,2e6\n");
     write_building("other", "4.2,3e5,1e6\n"); /* 0.2 m higher: within the thickness of a slab */
@@ -94,7 +87,6 @@ TEST(three_floors_meet_three_floors_and_none_above_a_lower_neighbour)
 {
     const double x[] = {0.004, 0.009, 0.012};
     Motion motion;
-    Err err = {0};
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     write_building("three", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n");
     write_building("stiff", "4,2.2e5,9e8\n3.5,2.1e5,7e8\n3.5,1.6e5,5e8\n");
@@ -126,7 +118,6 @@ TEST(a_neighbour_out_of_reach_is_not_felt)
 {
     const double far[] = {5, 5, 5};
     Motion motion;
-    Err err = {0};
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     const SceneOptions o = pair_of("three", "stiff", ENGINE_FAST);
     const SimResult apart = simulate(&o, SCENE_IMPACT, &motion, far), alone = simulate(&o, SCENE_NO_CORE, &motion, far);

@@ -1,8 +1,4 @@
 /* Answers that scatter: what is learnt of the spread, who dominates whom then, what is simulated again and reported. */
-#include "check.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 #include "moga/archive.h"
 #include "base/dominance.h"
@@ -111,7 +107,6 @@ TEST(a_constant_deviation_and_a_share_of_the_value_are_told_apart)
 static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
 {
     Random r = random_stream(seed, RANDOM_TEST, 2, 0);
-    Err err = {0};
     CHECK_OK(pareto_archive_init(a, 4, 1, M, 1, &err), &err);
     for (size_t i = 0; i < 120; i++) {
         const double x = i < 60 ? (double)i : (double)(3 * random_below(&r, 20)), g = x < 50.0 ? -1.0 : 1.0;
@@ -180,7 +175,6 @@ TEST(the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come)
 TEST(a_design_that_was_lucky_once_falls_out)
 {
     Archive a;
-    Err err = {0};
     const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
     CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
@@ -194,7 +188,6 @@ TEST(a_design_that_was_lucky_once_falls_out)
 TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
 {
     Archive a;
-    Err err = {0};
     const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
     CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
@@ -312,7 +305,6 @@ static void forget(Seen *s)
 
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
-    Err err = {0};
     StopReason reason;
     memset(seen, 0, sizeof *seen);
     settle(w);

@@ -221,7 +221,6 @@ TEST(gaps_on_their_bounds_are_counted_floor_by_floor)
     enum { THREE = 3, DESIGNS = 4 };
     Settings s;
     Run run = {.settings = &s, .n_front = 3, .front = (size_t[]){0, 1, 3}};
-    Err err = {0};
     Evaluation *e;
     settings_defaults(&s); /* gaps of 1 to 500 mm */
     CHECK_OK(schema_of(&run.schema, &s, THREE, &err), &err);

@@ -1,6 +1,3 @@
-#include <math.h>
-#include <string.h>
-
 #include "functions.h"
 #include "study/polish.h"
 #include "study/refine.h"
@@ -70,7 +67,6 @@ TEST(an_objective_is_lowered_to_what_the_bound_on_the_other_allows)
 {
     Toy w = {0};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, KEPT, 200, &r, &err), &err);
     assert_at_most(r.f[1], 1.0);
     assert_close(r.f[0], 1.0, 1e-3);
@@ -83,7 +79,6 @@ TEST(without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_found)
     const double both[OBJ] = {2, 1};
     Toy w = {0};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, FREE, 100, &r, &err), &err);
     assert_less(r.f[0], 1e-6);
     CHECK_OK(polish(&w, both, FREE, 100, &r, &err), &err);
@@ -98,7 +93,6 @@ TEST(on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_again_and_again
     for (int again = 0; again < 2; again++) {
         Toy w = {.jag = 0.1};
         Polished r;
-        Err err = {0};
         CHECK_OK(polish(&w, FIRST, bound, 120, &r, &err), &err);
         assert_at_most(r.f[1], 1.2);
         assert_less(r.f[0], 0.6 * AT_START);
@@ -114,7 +108,6 @@ TEST(no_more_simulations_are_made_than_allowed)
         for (size_t evals = 0; evals < 40; evals += 13) {
             Toy w = {0};
             Polished r;
-            Err err = {0};
             CHECK_OK(polish(&w, FIRST, keeps ? KEPT : FREE, evals, &r, &err), &err);
             assert_at_most(w.n, evals);
             assert_at_most(r.f[0], AT_START + 1e-12);
@@ -126,7 +119,6 @@ TEST(what_is_left_to_gain_is_not_followed_below_what_is_worth_it)
 {
     Toy w = {.gain_min = 1e-3};
     Polished r;
-    Err err = {0};
     CHECK_OK(polish(&w, FIRST, KEPT, 5000, &r, &err), &err);
     assert_close(r.f[0], 1.0, 5e-3);
     assert_less(w.n, 200);
@@ -138,7 +130,6 @@ TEST(failed_simulations_are_a_finite_wall_and_never_the_answer)
         for (int keeps = 0; keeps < 2; keeps++) {
             Toy w = {.fails = fails};
             Polished r;
-            Err err = {0};
             CHECK_OK(polish(&w, FIRST, keeps ? KEPT : FREE, 300, &r, &err), &err);
             assert_less(0, r.n_failed);
             assert_at_most(w.n, 300);
@@ -152,7 +143,6 @@ TEST(a_program_fault_ends_it_with_its_message)
 {
     Toy w = {.breaks = 1};
     Polished r;
-    Err err = {0};
     assert_int_equal(polish(&w, FIRST, KEPT, 300, &r, &err), STATUS_IO);
     assert_non_null(strstr(err.text, "disk"));
 }

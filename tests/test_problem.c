@@ -1,18 +1,12 @@
 #include <jansson.h>
 #include <poll.h>
-#include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "base/random.h"
 #include "check.h"
 #include "evaluate/external.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "evaluate/schema.h"
 #include "evaluate/adapter.h"
 #include "settings/settings.h"
@@ -154,7 +148,6 @@ static ProblemOptions command_of(const char *command, double timeout_s, long n_v
 /* Two batches: workers live on between them. */
 static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
 {
-    Err err = {0};
     Problem p;
     Queue *q;
     Finished done;
@@ -313,7 +306,6 @@ TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
     ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
     for (size_t i = 0; i < N; i++)
         assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
-    Err err = {0};
     Problem p;
     ProblemOptions options = command_of("sh 'tests", 1, 3);
     assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
@@ -402,7 +394,6 @@ TEST(workers_end_with_a_program_whose_helper_was_killed_before)
 
 TEST(a_command_that_does_not_exist_ends_the_search_by_name)
 {
-    Err err = {0};
     Problem p;
     Queue *q;
     double x[3] = {0}, f[2];
@@ -430,7 +421,6 @@ static Settings external_settings(void)
                                       "problem.objective_names=profit, cost",
                                       "search.limits=profit>=-0.5,cost <= 2"};
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++)
         CHECK_OK(settings_set(&s, SET[i], &err), &err);
@@ -458,7 +448,6 @@ static Status hear(const Evaluation *e, void *user, Err *err)
 TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
 {
     const Settings s = external_settings();
-    Err err = {0};
     Adapter *adapter;
     CHECK_OK(adapter_open(&adapter, &s, &err), &err);
     const Problem *p = adapter_problem(adapter);
@@ -514,20 +503,15 @@ TEST(lists_that_do_not_fit_are_refused_by_name)
 TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
 {
     enum { DRAWS = 2000 };
-    Settings s;
-    Err err = {0};
-    settings_defaults(&s);
-    CHECK_OK(settings_set(&s, "problem.kind=dtlz2", &err), &err);
-    CHECK_OK(settings_set(&s, "problem.noise=0.03", &err), &err);
+    static const TextbookOptions NOISY = {"dtlz2", VAR, OBJ, 0.03, 1, "real"};
     double first[OBJ], x[VAR], exact[OBJ], sum = 0, square = 0;
     for (size_t d = 0; d < VAR; d++)
         x[d] = 0.4;
     for (int again = 0; again < 2; again++) {
-        Adapter *adapter;
-        CHECK_OK(adapter_open(&adapter, &s, &err), &err);
-        const Problem *p = adapter_problem(adapter);
+        Problem p;
         Queue *q;
-        CHECK_OK(queue_open(&q, p, &err), &err);
+        CHECK_OK(textbook_open(&p, &NOISY, &err), &err);
+        CHECK_OK(queue_open(&q, &p, &err), &err);
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;
@@ -536,12 +520,12 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
                 memcpy(first, f, sizeof f);
             else if (i == 0)
                 assert_memory_equal(first, f, sizeof f);
-            textbook_exact(p, x, exact);
+            textbook_exact(&p, x, exact);
             sum += (f[0] / exact[0] - 1) / (2 * DRAWS);
             square += (f[0] / exact[0] - 1) * (f[0] / exact[0] - 1) / (2 * DRAWS);
         }
         queue_close(q);
-        adapter_close(adapter);
+        problem_close(&p);
     }
     assert_less(fabs(sum), 0.003);
     assert_close(sqrt(square), 0.03, 0.06);

@@ -55,7 +55,6 @@ static double (*const DRIFTING[])(double t) = {noise, constant, ramp, parabola};
 TEST(a_base_line_of_its_degree_leaves_no_trace)
 {
     for (int degree = 0; degree <= 2; degree++) {
-        Err err = {0};
         MotionOptions o = options();
         Motion a = motion_of(1501, 0.01, noise), b = motion_of(1501, 0.01, DRIFTING[degree + 1]);
         o.baseline = (MotionBaseline)(BASELINE_MEAN + degree);
@@ -77,7 +76,6 @@ TEST(a_base_line_of_its_degree_leaves_no_trace)
 
 TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 {
-    Err err = {0};
     Motion m = motion_of(200, 0.01, parabola);
     const MotionOptions o = options();
     CHECK_OK(motion_process(&m, &o, &err), &err);
@@ -91,7 +89,6 @@ TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 
 TEST(too_few_samples_for_a_base_line_are_refused)
 {
-    Err err = {0};
     MotionOptions o = options();
     o.baseline = BASELINE_QUADRATIC;
     Motion m = motion_of(3, 0.01, noise);
@@ -111,7 +108,6 @@ static double offset_quake(double t)
 TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
 {
     for (double hz = 0.05; hz < 0.3; hz *= 2) {
-        Err err = {0};
         MotionFigures before, after;
         MotionOptions o = options();
         o.highpass_hz = hz;
@@ -146,7 +142,6 @@ static double slow_tone(double t)
 
 TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 {
-    Err err = {0};
     MotionOptions o = options();
     o.lowpass_hz = 8;
     Motion m = motion_of(6001, 0.005, two_tones);
@@ -159,7 +154,6 @@ TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 
 TEST(a_cutoff_that_the_record_cannot_have_is_refused_by_its_key)
 {
-    Err err = {0};
     MotionOptions o = options();
     Motion m = motion_of(100, 0.01, noise);
     o.lowpass_hz = 50;
@@ -183,7 +177,6 @@ static double psa_at(const Motion *m, double T)
 
 static Motion scaled(const MotionOptions *o)
 {
-    Err err = {0};
     Motion m = motion_of(3001, 0.01, offset_quake);
     CHECK_OK(motion_scale(&m, o, &err), &err);
     return m;
@@ -218,7 +211,6 @@ TEST(a_spectral_value_is_reached_at_its_period_after_stretching)
 static CodeSpectrum target_of(const char *text)
 {
     CodeSpectrum c;
-    Err err = {0};
     CHECK_OK(target_parse(text, &c, &err), &err);
     return c;
 }
@@ -255,7 +247,6 @@ TEST(the_scale_to_a_code_spectrum_makes_the_mean_square_least)
         Motion m = scaled(&o);
         const double least = target_misfit(&m, &target);
         for (int side = 0; side < 2; side++) {
-            Err err = {0};
             MotionOptions other = options();
             other.factor = m.scale * (side ? 1.05 : 0.95);
             Motion off = motion_of(3001, 0.01, offset_quake);
@@ -310,7 +301,6 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
                                       "motion.unit=g=2",
                                       "motion.unit=feet"};
     for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++) {
-        Err err = {0};
         Settings s;
         settings_defaults(&s);
         CHECK_OK(settings_set(&s, SET[i], &err), &err);

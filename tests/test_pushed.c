@@ -1,10 +1,4 @@
 /* Forces on floors over time: closed forms of a single mass, a ground motion told as forces, files that are wrong. */
-#include "check.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "base/units.h"
 #include "bench/stability/bob.h"
@@ -35,7 +29,6 @@ static SimResult push(Engine engine, ForceFn force, double duration, double gap)
     const Motion motion = {.accel = accel, .n = SAMPLES, .dt_s = STEP, .force = f, .n_force = 1};
     SimModel model;
     SimResult r;
-    Err err = {0};
     for (int i = 0; i < SAMPLES; i++)
         f[i] = FORCE * force(i * STEP);
     bobs_model(&model, 1, &(Bob){.mass = MASS, .omega = OMEGA, .gap = gap}, 0,
@@ -122,7 +115,6 @@ static SceneOptions three_storeys(Engine engine)
 TEST(a_ground_motion_told_as_forces_gives_the_same_displacements_and_energy)
 {
     Motion motion, told;
-    Err err = {0};
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     told = motion;
     told.n_force = 3;
@@ -162,7 +154,6 @@ TEST(a_ground_motion_told_as_forces_gives_the_same_displacements_and_energy)
 static void blast_on_tower(Motion *m, const char *record)
 {
     MotionOptions o = {.stretch = 1, .factor = 1, .unit = "from_file", .channel = "auto"};
-    Err err = {0};
     write_in_place("blast.csv", "time_s,floor_05_n,floor_06_n,floor_07_n\n0,3e7,4e7,2e7\n0.1,0,0,0\n12,0,0,0\n");
     snprintf(o.record, sizeof o.record, "%s", record);
     snprintf(o.forces, sizeof o.forces, "%s", at("blast.csv"));
@@ -231,7 +222,6 @@ TEST(histories_of_a_pushed_building_show_the_accelerations_that_the_peaks_are_of
     free(output_of("simulate configs/quick.ini --set motion.record=none --set motion.forces=@/f.csv --design none "
                    "--history @/h.csv --every 0.01 --csv @/r.csv"));
     Table h, r;
-    Err err = {0};
     CHECK_OK(table_read(&h, at("h.csv"), TABLE_HEADED, &err), &err);
     CHECK_OK(table_read(&r, at("r.csv"), TABLE_WORDS, &err), &err);
     double most = 0, wanted;

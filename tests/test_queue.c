@@ -2,10 +2,7 @@
  * number. */
 #include "check.h"
 
-#include <signal.h>
 #include <stdatomic.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "base/random.h"
 #include "evaluate/isolated.h"
@@ -86,7 +83,6 @@ static Bench bench;
 static Queue *open_queue(size_t workers)
 {
     Queue *q;
-    Err err = {0};
     bench.problem.n_var = VAR;
     bench.problem.n_obj = OBJ;
     bench.problem.n_con = 1;
@@ -108,7 +104,6 @@ static void forget(void)
 
 static void ask(Queue *q, int n)
 {
-    Err err = {0};
     for (int i = 0; i < n; i++)
         CHECK_OK(queue_ask(q,
                            &(Asked){.id = i == 0 ? 101 : 0,
@@ -131,7 +126,6 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 {
     for (size_t workers = 1; workers <= WORKERS; workers++) {
         Finished done;
-        Err err = {0};
         forget();
         bench.rests = 1;
         bench.problem.observer = (Observer){.done = note_done, .user = &bench};
@@ -161,7 +155,6 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 TEST(numbers_are_those_that_a_run_keeps)
 {
     Finished done;
-    Err err = {0};
     double x[VAR] = {-0.0, 2.0};
     forget();
     Queue *q = open_queue(1);
@@ -177,7 +170,6 @@ TEST(numbers_are_those_that_a_run_keeps)
 TEST(a_single_design_keeps_as_many_workers_busy_as_it_has_parts)
 {
     Finished done;
-    Err err = {0};
     forget();
     bench.rests = 1;
     Queue *q = open_queue(PARTS);
@@ -222,7 +214,6 @@ TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
 {
     for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
         Finished done;
-        Err err = {0};
         Status status = STATUS_OK;
         forget();
         bench.rests = 1;
@@ -249,7 +240,6 @@ static Status refuse_third(const Evaluation *e, void *user, Err *err)
 TEST(a_fault_of_the_observer_ends_everything)
 {
     Finished done;
-    Err err = {0};
     Status status = STATUS_OK;
     forget();
     bench.problem.observer = (Observer){.done = refuse_third, .user = &bench};
@@ -266,7 +256,6 @@ TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 {
     Finished done;
     Task task[3 * PARTS];
-    Err err = {0};
     forget();
     Queue *q = open_queue(1);
     ask(q, 3);
@@ -291,7 +280,6 @@ TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 TEST(designs_without_end_need_no_more_memory_than_those_pending)
 {
     Finished done;
-    Err err = {0};
     forget();
     Queue *q = open_queue(3);
     ask(q, 20);
@@ -334,7 +322,6 @@ static void note_lost(const Task *t, const char *reason)
 TEST(a_simulation_that_crashes_ends_its_own_task_alone)
 {
     Isolated q = {.doer = {.simulator = &(Simulator){.simulate = double_or_die}, .n_var = 1}, .lost = note_lost};
-    Err err = {0};
     CHECK_OK(isolated_open(&q, WORKERS, &err), &err);
     for (int i = 0; i < DESIGNS; i++) {
         const double x = (double)((i * 7) % 11 - 3);

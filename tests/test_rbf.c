@@ -1,6 +1,3 @@
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/random.h"
 #include "check.h"
 #include "rbf/model.h"
@@ -31,7 +28,6 @@ static void scatter(uint32_t seed, size_t n, double X[], double F[])
 
 static Rbf *fitted(size_t n, const double X[], const double F[], int tune)
 {
-    Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
     CHECK_OK((tune ? rbf_tune : rbf_fit)(m, n, X, F, NULL, &err), &err);
@@ -100,7 +96,6 @@ TEST(closed_form_leave_one_out_errors_equal_refits)
     scatter(3, FEW, X, F);
     for (size_t i = 0; i < FEW * OUT; i++)
         V[i] = 1.0 / (double)(1 + i % 5);
-    Err err = {0};
     Rbf *all, *without;
     CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
     CHECK_OK(rbf_create(&without, N, D, OUT, &err), &err);
@@ -152,7 +147,6 @@ TEST(a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them)
         memcpy(F + i * OUT, mean, sizeof mean);
     }
     assert_same_number(n, 50);
-    Err err = {0};
     Rbf *means, *all;
     CHECK_OK(rbf_create(&means, N, D, OUT, &err), &err);
     CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
@@ -186,7 +180,6 @@ TEST(tuning_finds_the_nugget_of_answers_of_different_variance)
         F[i * OUT] += deviation * sqrt(V[i * OUT]) * random_normal(&r);
     }
     for (int told = 0; told < 2; told++) {
-        Err err = {0};
         Rbf *m;
         CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
         CHECK_OK(rbf_tune(m, MANY, X, F, told ? V : NULL, &err), &err);
@@ -249,7 +242,6 @@ TEST(a_value_that_is_not_finite_is_refused)
     double X[N * D], F[N * OUT];
     scatter(1, N, X, F);
     F[17 * OUT] = NAN;
-    Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
     assert_int_equal(rbf_fit(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
@@ -280,7 +272,6 @@ TEST(a_centre_that_alone_moves_a_variable_is_fitted_all_the_same)
 TEST(the_mean_stands_for_an_output_that_cannot_be_fitted)
 {
     double X[N * D], F[N * OUT], f[OUT], mean = 0.0;
-    Err err = {0};
     scatter(1, N, X, F);
     Rbf *m = fitted(N, X, F, 1);
     m->output[0].shape.theta[1] = NAN;
@@ -304,7 +295,6 @@ TEST(the_slope_of_the_surface_equals_differences_for_every_form)
     enum { FORMS = RBF_N_KERNELS * RBF_N_TAILS };
     for (int form = 0; form < FORMS; form++) {
         Rbf *m = fitted(N, X, F, 1);
-        Err err = {0};
         for (size_t k = 0; k < OUT; k++)
             m->output[k].form = (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6};
         CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);
@@ -343,7 +333,6 @@ TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_ther
         }
         F[2 * i + 1] = sin(4.0 * F[2 * i + 1]);
     }
-    Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, DESIGNS, MANY, 2, &err), &err);
     CHECK_OK(rbf_tune(m, DESIGNS, X, F, NULL, &err), &err);

@@ -3,9 +3,6 @@
 
 #include "bench/stability/bob.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "sim/engine.h"
 #include "sim/joined.h"
@@ -22,7 +19,6 @@ typedef struct {
 /* Gap_j = gap j, the Guyan frame, the paper's Table 1 core. */
 static void stage_set(Stage *stage, double gap)
 {
-    Err err;
     memset(stage, 0, sizeof *stage);
     stage->s = paper_scene();
     stage->s.core.section = CORE_EFFECTIVE;
@@ -36,7 +32,6 @@ static void stage_set(Stage *stage, double gap)
 
 static void stage_without_core(Stage *stage)
 {
-    Err err;
     stage_set(stage, 0);
     CHECK_OK(model_set(&stage->model, &stage->s, &stage->b, NULL, NULL, &err), &err);
 }
@@ -60,7 +55,6 @@ static Motion sines(double accel[SINES_N], double scale)
 static SimResult run_cvode(const Stage *stage, const Motion *m, double duration, Accuracy accuracy)
 {
     SimResult r;
-    Err err;
     CHECK_OK(engine_cvode(&stage->model, m, &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
              &err);
     return r;
@@ -69,7 +63,6 @@ static SimResult run_cvode(const Stage *stage, const Motion *m, double duration,
 static SimResult run_tied(const Stage *stage, const Motion *m, double duration, Accuracy accuracy)
 {
     SimResult r;
-    Err err;
     Joined both;
     SimModel model;
     CHECK_OK(joined_make(&both, &stage->b, &stage->core, &err), &err);
@@ -97,7 +90,6 @@ static SimResult single_impact(double a, double duration)
 {
     SimModel model;
     SimResult r;
-    Err err;
     double pulse[] = {0, -1, 0};
     const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
     bobs_model(&model, 1, &(Bob){.mass = MASS, .gap = 1.5}, CORE_MASS,
@@ -188,7 +180,6 @@ typedef struct {
 static void pair_set(Pair *pair, const Stage *stage)
 {
     static double K[N * N], M[N * N];
-    Err err;
     memset(pair, 0, sizeof *pair);
     for (int i = 0; i < N * N; i++) {
         K[i] = stage->b.K[i] + stage->core.K[i];
@@ -285,7 +276,6 @@ TEST(the_books_of_the_tied_pair_close)
 TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
 {
     Stage stage;
-    Err err;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
     static const double DURATION[] = {1.234, 3, 4.321};

@@ -4,9 +4,11 @@
 #include "study/study.h"
 
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
-static const char NOISY[] =
-    "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nnoise = 0.05\n[search]\ninitial = 8\n"
-    "population = 8\nmax_evals = 60\nreplicate_share = 0.5\nreplicates_max = 3\n";
+#define PROBLEM(noise, noisy)                                                                                          \
+    "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 2 2 " noise "\nvariables = 2\nobjectives = 2\n"   \
+    "noisy = " noisy "\n[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\nreplicate_share = 0.5\n"                \
+    "replicates_max = 3\n"
+static const char NOISY[] = PROBLEM("0.05", "yes"), QUIET[] = PROBLEM("0", "no");
 enum { SIMULATIONS = 60, REPEATS = 12 };
 
 /* Lets `left` questions pass, then stops. */
@@ -22,7 +24,6 @@ static void study(const char *text, const char *out, long piece)
     const Settings s = settings_of(text, out);
     Status status;
     StudySummary summary;
-    Err err = {0};
     do {
         long left = piece;
         const StudyOptions options = {.stop = piece > 0 ? stop_after : NULL, .user = &left};
@@ -90,9 +91,7 @@ TEST(the_exports_and_status_tell_of_repeats)
 
 TEST(without_noise_nothing_is_repeated_and_the_tables_are_as_ever)
 {
-    char text[sizeof NOISY + 32];
-    snprintf(text, sizeof text, "%s[problem]\nnoisy = no\n", NOISY);
-    study(text, "quiet", 0);
+    study(QUIET, "quiet", 0);
     Run h = run_in("quiet");
     char *front = read_in_place("quiet/front.csv");
     assert_true(!h.schema.has_spread && h.n_repeats == 0);

@@ -1,20 +1,16 @@
-#include <stdio.h>
 /* One rule for replicates: a study, `imtet simulate --replicates` and the summary of a tower agree to the last digit. */
-#include <string.h>
 
 #include "runs.h"
 #include "scene_options.h"
 #include "base/stat.h"
 #include "sim/as_built.h"
 #include "evaluate/adapter.h"
-#include "settings/settings.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };
 
 static Settings short_scene(const char *records, long replicates, const char *tolerance)
 {
     Settings s;
-    Err err = {0};
     char text[120];
     paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
@@ -46,7 +42,6 @@ static void run_designs(const Settings *settings, long threads, Replicated *out)
     double X[DESIGNS * N_VAR];
     Settings s = *settings;
     Problem p;
-    Err err = {0};
     designs(X);
     s.search.threads = threads;
     memset(out, 0, sizeof *out);
@@ -115,7 +110,6 @@ TEST(without_contact_there_is_no_spread)
     Problem p;
     SimResult shown;
     ReplicateSummary sum;
-    Err err = {0};
     for (int j = 0; j < N_VAR; j++)
         x[j] = j < 20 ? 4.0 * (j + 1) : 0.01;
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
@@ -136,7 +130,6 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     Queue *q;
     Finished done;
     SimResult alone;
-    Err err = {0};
     designs(X);
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     CHECK_OK(queue_open(&q, &p, &err), &err);
@@ -164,7 +157,6 @@ TEST(a_design_asked_for_again_gets_further_replicates)
 static void run_as_built(const Problem *p, const AsBuilt *built, const double x[], SimResult *r)
 {
     SimWorker *w;
-    Err err = {0};
     CHECK_OK(sim_worker_create(&w, tower_record(tower_of(p), 0)->scene, &err), &err);
     CHECK_OK(sim_worker_as_built(w, built, &err), &err);
     CHECK_OK(sim_run(w, SCENE_IMPACT, x, r, &err), &err);
@@ -175,7 +167,6 @@ static SimResult run_scene(const Settings *s, const AsBuilt *built)
 {
     double X[DESIGNS * N_VAR];
     Problem p;
-    Err err = {0};
     SimResult r;
     designs(X);
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
@@ -231,7 +222,6 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 TEST(a_stiffer_building_vibrates_faster_by_the_root_of_it)
 {
     Building b, out;
-    Err err = {0};
     double *store = NULL;
     AsBuilt stiff = AS_DESIGNED;
     stiff.building_stiffness = 1.21;
@@ -304,7 +294,6 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
         Settings single = s;
         double x[N_VAR];
         Problem p;
-        Err err = {0};
         SimResult r;
         const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.sim.uncertain);
         memcpy(x, X, sizeof x);

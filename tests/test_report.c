@@ -2,8 +2,6 @@
  * browser: test_browser.c. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "base/linalg.h"
 #include "base/random.h"
 #include "base/stat.h"
@@ -13,7 +11,6 @@
 #include "report/report.h"
 #include "report/report_json.h"
 #include "scene_options.h"
-#include "settings/settings.h"
 #include "report/words.h"
 #include "settings/options.h"
 
@@ -23,7 +20,6 @@ static Report report;
 
 static int set_up(void **state)
 {
-    Err err = {0};
     char path[PATH_MAX];
     const char *records[] = {"builtin:sylmar-like"};
     linalg_pin(); /* as the program does: other threads, other last digits, other impacts */
@@ -36,8 +32,8 @@ static int set_up(void **state)
            "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --set "
            "'search.limits=core_stress_pa<=1e10' --out @/tower");
     expect(0, "",
-           "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
-           "problem.objectives=3 --max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
+           "optimize configs/quick.ini " DTLZ2(
+               5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
     write_in_place("own.csv", MOTION);
     write_in_place("twin.csv", MOTION);
     expect(0, "twin.csv has the content of ", "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2");
@@ -91,7 +87,6 @@ TEST(the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_
 /* 200 designs of three variables in the unit cube and f = a x1 + b x2 + c x1 x2. */
 static Importance importance_of_plane(double a, double b, double c)
 {
-    Err err = {0};
     Importance m;
     Random r = random_stream(3, RANDOM_TEST, 0, 0);
     Run run = {.schema = {.n_var = 3, .n_obj = 1}, .table = evaluation_table(3, 1, 0)};
@@ -126,7 +121,6 @@ TEST(importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in)
 TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
 {
     Scenario w;
-    Err err = {0};
     History h;
     const SceneOptions options = settings_scene(tower.settings);
     CHECK_OK(scenario_of(&w, &options, &tower.settings->motion, &err), &err);
@@ -229,7 +223,6 @@ static json_t *run_of(const char *run)
 TEST(growth_is_the_hypervolume_that_status_tells)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
     json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
@@ -283,7 +276,6 @@ TEST(an_objective_of_several_simulations_says_of_which)
                  {"a.csv", "0.9", "quantile 0.9 of 2 records x 8 replicates", 8}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Settings s;
-        Err err = {0};
         char text[RULE_WORDS_MAX];
         settings_defaults(&s);
         CHECK_OK(settings_put(&s, "motion.records", CASES[i].records, &err), &err);
@@ -306,7 +298,6 @@ TEST(notes_that_are_damaged_or_of_other_designs_are_named_by_the_report)
 
 TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 {
-    Err err = {0};
     OtherRecords *r = calloc(1, sizeof *r);
     Settings s;
     settings_defaults(&s);
@@ -334,7 +325,6 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 {
     static const char OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
-    Err err = {0};
     OtherRecords *r = calloc(1, sizeof *r);
     char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
     MotionOptions study = tower.settings->motion;
@@ -361,7 +351,6 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
 {
     static const char *const RECORDS[] = {"builtin:kobe-like", "builtin:sylmar-like", "builtin:elcentro-like"};
-    Err err = {0};
     Settings s = *tower.settings;
     Detail several, alone;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
@@ -412,7 +401,6 @@ static double extreme(const Run *run, size_t n, const size_t rows[], size_t colu
 TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 {
     Run run;
-    Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&run, path_of("dtlz", path), &err), &err);
     const size_t n_columns = run.schema.n_obj + run.schema.n_var, most = 2 * n_columns + 4;
@@ -520,9 +508,9 @@ TEST(a_run_of_another_problem_has_no_tower_in_its_report)
 TEST(names_cannot_break_out_of_the_page)
 {
     expect(0, "",
-           "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
-           "problem.objectives=4 --set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
-           "--set search.population=8 --set search.initial=20 --out @/names");
+           "optimize configs/quick.ini " DTLZ2(
+               5, 4) "--set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
+                     "--set search.population=8 --set search.initial=20 --out @/names");
     expect(0, "", "report @/names");
     json_t *run = run_of("names");
     const json_t *objectives = json_object_get(json_object_get(run, "schema"), "objectives");

@@ -1,15 +1,11 @@
 /* A search that goes on from any generation's end makes the same bytes as one that never stopped. */
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "base/linalg.h"
 #include <omp.h>
 
 #include "base/pack.h"
-#include "check.h"
 #include "study/search_loop.h"
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 #include "functions.h"
 #include "searches.h"
 
@@ -99,7 +95,6 @@ static void forget(Seen *s)
 
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
-    Err err = {0};
     memset(seen, 0, sizeof *seen);
     CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
 }

@@ -1,8 +1,6 @@
 /* Objectives over a suite of records, fragility curves and yearly rates, by closed forms and known samples. */
 #include "runs.h"
 
-#include <sys/stat.h>
-
 #include "analysis/evaluations.h"
 #include "base/random.h"
 #include "base/stat.h"
@@ -18,7 +16,6 @@ enum { RECORDS = 40 };
 static void fill(Measured parts[RECORDS])
 {
     MeasureOrder order;
-    Err err = {0};
     CHECK_OK(measures_order(&order, "j1_m,p(drift_ratio>0.0305)", "none", 0, &err), &err);
     for (size_t i = 0; i < RECORDS; i++) {
         SimResult r = {.drift_ratio_max = 0.001 * (double)(1 + (i * 7) % RECORDS), .j1_m = 2};
@@ -469,7 +466,6 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     const json_t *hz = json_object_get(b, "building_hz");
     const double T = 1 / json_number_value(json_array_get(hz, 0));
     Motion m;
-    Err err = {0};
     CHECK_OK(motion_load(&m, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     double at = 0;
     spectrum_psa(&m, 0.05, 1, &T, &at);
@@ -612,7 +608,6 @@ TEST(the_records_that_show_the_factors_of_the_designs_are_seen_first)
 {
     static World w;
     size_t order[WORLD_RECORDS], found = 0;
-    Err err = {0};
     assert_int_equal(race_first(9), 1);
     assert_int_equal(race_first(15), 3);
     assert_int_equal(race_first(WORLD_RECORDS), 4);
@@ -685,7 +680,6 @@ TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
 {
     free(output_of("spectrum builtin:kobe-like --pga 0.3 --history @/event.json"));
     Motion m, again;
-    Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(motion_load(&again, path_of("event.json", path), UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);

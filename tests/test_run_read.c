@@ -74,15 +74,14 @@ TEST(what_is_wrong_in_one_cell_is_named)
 
 TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 {
-    free(output_of("optimize @/textbook.ini --set problem.noise=0 --out @/sound --new"));
+    free(output_of("optimize @/textbook.ini " EXACT "--out @/sound --new"));
     change("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
     expect(74, "evaluation 20 is missing; --new --set search.start=",
-           "optimize @/textbook.ini --set problem.noise=0 --out @/sound-2 --max-evals 50");
+           "optimize @/textbook.ini " EXACT "--out @/sound-2 --max-evals 50");
 }
 
 TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 {
-    Err err = {0};
     FILE *full = fopen("/dev/full", "we");
     assert_non_null(full);
     setvbuf(full, NULL, _IONBF, 0);
@@ -143,7 +142,6 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
         designs[i] = (Evaluation){
             .outcome = i == 2 ? OUTCOME_ERROR : OUTCOME_OK, .x = x, .f = f[i], .violation = i == 3 ? 0.5 : 0.0};
     Run sound, h;
-    Err err = {0};
     char folder[PATH_MAX];
     sound = run_in("sound");
     CHECK_OK(add_to_run(changed("SELECT 1", folder), 6, designs, NULL, &err), &err);
@@ -184,10 +182,9 @@ static int is_dominated(const Run *a, size_t i, const Run *b)
 TEST(several_runs_are_one_front_on_which_a_design_stands_once)
 {
     Run a, b, both;
-    Err err = {0};
     size_t n = 0;
     char path[2][PATH_MAX];
-    write_in_place("plain.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n");
+    write_in_place("plain.ini", DTLZ2_INI(4, 2));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/first"));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --seed 2 --set search.start=@/first"));
     const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
@@ -231,7 +228,6 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 {
     char path[PATH_MAX], name[PATH_MAX + 64];
     Run run;
-    Err err = {0};
     assert_int_equal(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "nothing: there is no such file or folder"));
     memset(name, 'a', sizeof name);
@@ -248,8 +244,8 @@ TEST(every_number_has_a_column_of_its_name)
     sqlite3 *db;
     sqlite3_stmt *row;
     Said s;
-    write_in_place("names.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\nobjective_names = a b,it's\n"
-                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
+    write_in_place("names.ini", DTLZ2_INI(3, 2) "objective_names = a b,it's\n"
+                                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
     write_in_place("many.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 1990\n"
                                "objectives = 2\n[search]\ninitial = 4\npopulation = 4\nmax_evals = 4\n");
     free(output_of("optimize @/names.ini --out @/names"));
@@ -274,7 +270,6 @@ TEST(a_lock_names_its_holder_and_who_cannot_have_one_is_told_why)
     char path[PATH_MAX], lock[PATH_MAX];
     Folder first, second;
     LockHolder holder;
-    Err err = {0};
     CHECK_OK(folder_take(&first, path_of("held", path), 0, &err), &err);
     folder_note(&first, 7);
     assert_true(folder_is_held(path, &holder) && holder.pid == getpid());

@@ -3,7 +3,6 @@
 
 #include <dirent.h>
 #include <fcntl.h>
-#include <sys/stat.h>
 
 #include "base/visible.h"
 #include "store/output.h"
@@ -30,7 +29,6 @@ TEST(a_settings_file_writes_below_results_only)
     static const char *const BAD[] = {"../../etc/x", "/etc/x",          "results/../../x", "results/..", "resultsx/a",
                                       "elsewhere",   "results/out/new", "results/out",     "~/results",  "./../result"};
     char before[4096];
-    Err err = {0};
     go_to_a_place_of_its_own(before, sizeof before);
     for (size_t i = 0; i < sizeof GOOD / sizeof GOOD[0]; i++)
         CHECK_OK(output_place_check(GOOD[i], "some/where/my.ini", &err), &err);
@@ -45,7 +43,6 @@ TEST(a_settings_file_writes_below_results_only)
 TEST(a_run_may_go_on_where_its_own_settings_lie)
 {
     char own[128], file[160];
-    Err err = {0};
     snprintf(own, sizeof own, "%s/kept", place.folder);
     snprintf(file, sizeof file, "%s/settings.ini", own);
     assert_int_equal(mkdir(own, 0777), 0);
@@ -139,7 +136,6 @@ static int count_files(const char *folder)
 TEST(a_file_half_written_has_no_name)
 {
     Output o;
-    Err err = {0};
     char *folder = in_place("half"), *path = in_place("half/out.csv");
     assert_int_equal(mkdir(folder, 0777), 0);
     const int fd = open(folder, O_TMPFILE | O_WRONLY, 0600);

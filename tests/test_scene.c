@@ -1,13 +1,8 @@
 /* The scene against printed numbers and closed forms: buildings, core beam, modes, contact laws, modal flow. */
 #include "check.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include "scene/core_beam.h"
-#include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
 #include "sim/flow.h"
@@ -17,7 +12,6 @@
 static void make_core(CoreBeam *core, CoreSection section, double t_base, double t_top)
 {
     SceneOptions s = paper_scene();
-    Err err = {0};
     s.core.section = section;
     CHECK_OK(make_core_of(core, &s, 20, t_base, t_top, &err), &err);
 }
@@ -36,7 +30,6 @@ static void scene_hz(const char *model, CoreSection section, double building[], 
 {
     SceneOptions s = paper_scene();
     Scene *scene;
-    Err err = {0};
     double x[22] = {[20] = 0.012, [21] = 0.0064};
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
     s.core.section = section;
@@ -69,7 +62,6 @@ TEST(an_effective_core_may_be_given_storey_by_storey)
 {
     CoreBeam linear, listed;
     SceneOptions s = paper_scene();
-    Err err = {0};
     s.core.section = CORE_EFFECTIVE;
     CHECK_OK(make_core_of(&linear, &s, 20, 1, 1, &err), &err);
     s.core.areas_m2 = list_of(s.core.areas_m2.at[0], s.core.areas_m2.at[1]);
@@ -112,7 +104,6 @@ TEST(a_uniform_core_is_a_textbook_cantilever)
 {
     CoreBeam core;
     SceneOptions s = paper_scene();
-    Err err = {0};
     s.core.section = CORE_PLATE;
     s.building.heights_m = LIST_OF(4);
     CHECK_OK(make_core_of(&core, &s, 20, 0.5, 0.5, &err), &err);
@@ -162,7 +153,6 @@ TEST(a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form)
     enum { N = 7 };
     SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
     CoreBeam core;
-    Err err = {0};
     CHECK_OK(make_core_of(&core, &s, N, 0.02, 0.02, &err), &err);
     const Tube a = tube(&s.core, 0.02);
     for (int node = 0; node < N; node++) {
@@ -179,7 +169,6 @@ TEST(a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form)
 TEST(a_slender_core_vibrates_alike_by_both_theories)
 {
     CoreBeam with, without;
-    Err err = {0};
     const double sides[] = {1.6, 0.4};
     double before = 1;
     for (int i = 0; i < 2; i++) {
@@ -234,7 +223,6 @@ static void chain_frequencies(const Beam *beam, int n, double omega[])
 {
     enum { SIZE = 2 * ELEMENTS_MAX };
     static double K[SIZE * SIZE], M[SIZE * SIZE], phi[SIZE * SIZE];
-    Err err = {0};
     double k[4][4], m[4][4];
     const int size = 2 * n;
     memset(K, 0, sizeof K);
@@ -275,7 +263,6 @@ TEST(condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent)
     SceneOptions s = uniform_storeys(11.3, CORE_TIMOSHENKO);
     const Tube a = tube(&s.core, 0.01);
     CoreBeam core;
-    Err err = {0};
     double b[BEAM_MODES];
     s.building.heights_m = LIST_OF(L / 64);
     clamped_free_roots(sqrt(a.I / a.A) / L, sqrt(a.EI / a.kGA) / L, BEAM_MODES, b);
@@ -289,7 +276,6 @@ TEST(condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent)
 static double shear_effect_on_first_mode(CoreSection section, int n)
 {
     CoreBeam with, without;
-    Err err = {0};
     SceneOptions s = scene_defaults();
     s.core.section = section;
     CHECK_OK(make_core_of(&with, &s, n, 0.012, 0.0064, &err), &err);
@@ -313,7 +299,6 @@ TEST(an_effective_section_shears_by_the_area_that_is_given)
 {
     SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
     CoreBeam box, effective;
-    Err err = {0};
     const Tube a = tube(&s.core, 0.02);
     CHECK_OK(make_core_of(&box, &s, 8, 0.02, 0.02, &err), &err);
     s.core.section = CORE_EFFECTIVE;
@@ -331,7 +316,6 @@ TEST(an_effective_section_shears_by_the_area_that_is_given)
 TEST(mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness)
 {
     Building b;
-    Err err = {0};
     CHECK_OK(load_model(&b, "guyan", &err), &err);
     for (int i = 0; i < b.n; i++)
         for (int j = 0; j < b.n; j++) {
@@ -350,7 +334,6 @@ TEST(mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness)
 TEST(participation_factors_add_up_to_the_whole_mass)
 {
     Building b;
-    Err err = {0};
     CHECK_OK(load_model(&b, "appendix", &err), &err);
     double from_modes = 0, from_matrix = 0;
     for (int i = 0; i < b.n; i++)
@@ -390,7 +373,6 @@ TEST(walls_that_do_not_fit_are_refused)
 {
     CoreBeam core;
     SceneOptions s = paper_scene();
-    Err err = {0};
     s.core.width_m = 0.05;
     assert_int_equal(make_core_of(&core, &s, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
     assert_int_equal(make_core_of(&core, &s, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
@@ -400,7 +382,6 @@ TEST(contact_stiffness_and_damping_are_those_of_the_paper)
 {
     SceneOptions s = paper_scene();
     Contact c;
-    Err err = {0};
     CHECK_OK(contact_make(&c, &s.contact, &err), &err);
     assert_close(c.k, 4.8650e10, 2e-5);
     assert_close(c.a, 0.45, 1e-12);

@@ -1,12 +1,9 @@
 /* Screening: which designs are evaluated by the cheap level alone, and what becomes of them. */
 #include <float.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/linalg.h"
 
 #include "base/hash.h"
-#include "check.h"
 #include "moga/constants.h"
 #include "base/dominance.h"
 #include "moga/levels.h"
@@ -168,7 +165,6 @@ static void run(World *w, Seen *s, const SearchStart *start)
 {
     const SearchConfig config = config_of();
     StopReason reason;
-    Err err = {0};
     s->world = w;
     CHECK_OK(search_resume(&w->problem, &config, start, observe, s, &reason, &err), &err);
     assert_int_equal(reason, STOP_EVALUATIONS);
@@ -352,7 +348,6 @@ static double share_left(const World *w, int is_biased, double (*unseen)(const d
     const double *at[PAIRS];
     double left = 0.0, all = 0.0, y;
     Levels *levels;
-    Err err = {0};
     for (size_t i = 0; i < 2 * PAIRS; i++) {
         for (size_t d = 0; d < VAR; d++)
             x[i][d] = 0.5 + 0.5 * noise_of((const double[VAR]){(double)i}, d, 7);

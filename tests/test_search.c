@@ -1,11 +1,7 @@
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/linalg.h"
 #include <omp.h>
 
 #include "base/random.h"
-#include "check.h"
 #include "functions.h"
 #include "searches.h"
 #include "base/dominance.h"
@@ -122,7 +118,6 @@ static int observe(const SearchView *v, const SearchTime *time, void *user)
 
 static StopReason run(World *w, const SearchConfig *c, Seen *seen)
 {
-    Err err = {0};
     StopReason reason = STOP_NONE;
     CHECK_OK(search_run(&w->problem, c, observe, seen, &reason, &err), &err);
     assert_int_equal(seen->n, w->n_rows);
@@ -137,7 +132,6 @@ static double volume(size_t n, size_t m, const double F[])
     for (size_t k = 0; k < m; k++)
         reference[k] = 1.5;
     Hypervolume *h;
-    Err err = {0};
     CHECK_OK(hypervolume_create(&h, m, lower, reference, 1, &err), &err);
     for (size_t i = 0; i < n; i++)
         hypervolume_add(h, F + i * m);
@@ -201,7 +195,6 @@ static Status sums(size_t n, const double X[], const size_t draws[], double F[],
 TEST(answers_that_no_surrogate_fits_do_not_end_the_search)
 {
     StopReason reason = STOP_NONE;
-    Err err = {0};
     for (uint32_t seed = 1; seed <= 3; seed++) {
         world(&here, 5, 2);
         here.problem = function_problem(&here.function, 5, 2, 0, here.lower, here.upper, sums, &here);
@@ -391,7 +384,6 @@ TEST(every_way_to_stop_is_named)
 /* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
 static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double h[2])
 {
-    Err err = {0};
     unsigned char all[ROWS_MAX];
     memset(all, 1, sizeof all);
     CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->F, NULL, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
@@ -444,7 +436,6 @@ TEST(the_gain_of_a_power_law_is_foretold_exactly)
 /* Box of one front: h grows with every corner that is cut off, and is the exact area in the end. */
 TEST(shares_are_areas_in_a_box_about_the_front)
 {
-    Err err = {0};
     const double F[] = {9, 9, 2, 2, 0, 10, 10, 0, 5, 5};
     const unsigned char counts[] = {1, 1, 1, 1, 0}, front[] = {0, 1, 1, 1, 0};
     double h[3];
@@ -521,7 +512,6 @@ static void draw_design(Random *r, double x[8])
 /* CHANCE_DESIGNS of them at random. */
 static void fill_archive(Archive *a, Random *r)
 {
-    Err err = {0};
     CHECK_OK(pareto_archive_init(a, CHANCE_DESIGNS, 8, 2, 1, &err), &err);
     for (size_t i = 0; i < CHANCE_DESIGNS; i++) {
         double x[8];
@@ -540,7 +530,6 @@ TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
     Population p;
     Directions vectors;
     Infill *near;
-    Err err = {0};
     world_with_limits(&here, 8, 2, 1);
     Random r = random_stream(3, RANDOM_TEST, 2, 0);
     double x[8], likely = 0.0, likely_good = 0.0, unlikely = 0.0, unlikely_good = 0.0;
@@ -595,7 +584,6 @@ TEST(an_archive_beyond_the_surface_s_size_is_thinned)
 
 TEST(settings_that_make_no_sense_are_refused_by_name)
 {
-    Err err = {0};
     StopReason reason;
     world(&here, 6, 2);
     SearchConfig c = config(40, 50);

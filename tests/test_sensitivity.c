@@ -1,6 +1,4 @@
 /* Slopes of results: closed forms where there are some. */
-#include <stdlib.h>
-#include <string.h>
 
 #include "check.h"
 #include "scene_options.h"
@@ -33,7 +31,6 @@ static const Sensitivity *named(const Sensitivity *list, size_t n, const char *n
 TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], base = 0, top = 0;
@@ -54,7 +51,6 @@ TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], j1[2];
@@ -63,7 +59,7 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     for (int j = 0; j < FLOORS; j++)
         assert_true(list[j].slope[MEASURE_J1] == 0 && list[j].error[MEASURE_J1] == 0);
     /* Of a softer contact fewer core modes are kept: sums of other lengths round differently. */
-    assert_at_most(fabs(named(list, n, "contact.radius_m")->slope[MEASURE_J3]), 1e-12);
+    assert_at_most(fabs(named(list, n, "contact.radius_m")->slope[MEASURE_J2]), 1e-12);
     const Sensitivity *damping = named(list, n, "building.damping");
     for (int side = 0; side < 2; side++) {
         Settings other = s;
@@ -77,6 +73,7 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     }
     assert_less(damping->slope[MEASURE_J1], 0);
     assert_close(damping->slope[MEASURE_J1], (j1[1] - j1[0]) / damping->step, 1e-6);
+    assert_true(isnan(damping->slope[MEASURE_J3]) && list[0].slope[MEASURE_J3] == 0); /* of what changes J3 none */
     assert_less(damping->error[MEASURE_J1], 0.01 * fabs(damping->slope[MEASURE_J1]));
     free(list);
 }
@@ -84,7 +81,6 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
 TEST(the_ground_is_a_parameter_where_there_is_one)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR], rotation[2];
@@ -116,7 +112,6 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
 TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *list;
     size_t n;
     double x[N_VAR];
@@ -139,7 +134,6 @@ TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
     Settings s;
-    Err err = {0};
     Sensitivity *one, *two;
     size_t n, same;
     double x[N_VAR], j1[2];

@@ -4,7 +4,6 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
-#include <signal.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -79,7 +78,6 @@ static Served serve_here(const char *folder)
 {
     const Served before = server;
     char path[PATH_MAX];
-    Err err = {0};
     const ServeOptions options = {.folder = path_of(folder, path)};
     CHECK_OK(serve_open(&server.own, &options, &err), &err);
     take_address(serve_url(server.own));
@@ -806,7 +804,6 @@ TEST(a_run_that_is_not_asked_for_any_more_is_released)
     Watch *w;
     View first, again, kept;
     const RecordPaths moved = {0};
-    Err err = {0};
     CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
@@ -917,8 +914,7 @@ static int begin(void **state)
     if (prepare(state) != 0)
         return -1;
     static const char *const RUNS[] = {
-        "--out @/runs/a", "--out @/runs/b --set search.seed=2",
-        "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2",
+        "--out @/runs/a", "--out @/runs/b --set search.seed=2", "--out @/runs/c " DTLZ2(4, 2),
         "--out @/runs/d --set design.step_thickness_m=0.01,0.02,0.03 --set search.max_evals=24 --set sim.duration_s=12 "
         "--set search.initial=16 --set "
         "search.population=8 --set sim.replicates=2 --set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 "

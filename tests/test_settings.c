@@ -2,12 +2,7 @@
 #include "bad_inputs.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "evaluate/textbook.h"
 #include "settings/settings.h"
 
 enum { KEYS_MAX = 200 };
@@ -67,7 +62,6 @@ static Status read_text(Settings *s, const char *text, Err *err)
 
 static void set(Settings *s, const char *key, const char *value)
 {
-    Err err = {0};
     char assignment[OPTION_TEXT_MAX + 80];
     snprintf(assignment, sizeof assignment, "%s=%s", key, value);
     CHECK_OK(settings_set(s, assignment, &err), &err);
@@ -75,7 +69,6 @@ static void set(Settings *s, const char *key, const char *value)
 
 TEST(every_default_is_in_its_range_and_the_rules_hold)
 {
-    Err err = {0};
     Settings s, again;
     static Pairs p;
     settings_defaults(&s);
@@ -97,25 +90,6 @@ TEST(keys_are_unique)
     for (int i = 0; i < p.n; i++)
         for (int j = 0; j < i; j++)
             assert_string_not_equal(p.key[i], p.key[j]);
-}
-
-/* The words of a choice and the enumeration come from one list; those of problem.kind are the textbook's names too. */
-TEST(the_words_of_problem_kind_are_the_names_of_the_textbook_problems)
-{
-    int kind = 0;
-    while (strcmp(settings_key(kind), "problem.kind") != 0)
-        kind++;
-    char words[200] = "tower|external";
-    size_t n = 0;
-    for (; textbook(n); n++) {
-        Settings s;
-        settings_defaults(&s);
-        set(&s, "problem.kind", textbook(n)->name);
-        assert_int_equal(s.problem.kind, PROBLEM_TEXTBOOK + n);
-        strcat(strcat(words, "|"), textbook(n)->name);
-    }
-    assert_int_equal(PROBLEM_TEXTBOOK + n, PROBLEM_KIND_COUNT);
-    assert_string_equal(settings_words(kind), words);
 }
 
 typedef struct {
@@ -203,7 +177,6 @@ static void change_everything(Settings *s)
 
 TEST(saved_settings_load_to_the_same_values)
 {
-    Err err = {0};
     Settings s, back;
     change_everything(&s);
     for (int described = 0; described < 2; described++) {
@@ -222,7 +195,6 @@ TEST(saved_settings_load_to_the_same_values)
 /* A path may be longer than the lines that the INI library takes. */
 TEST(a_long_path_survives_saving)
 {
-    Err err = {0};
     Settings s, back;
     char path[OPTION_TEXT_MAX];
     memset(path, 'x', sizeof path);
@@ -238,7 +210,6 @@ TEST(a_long_path_survives_saving)
 
 TEST(what_is_not_written_keeps_its_default)
 {
-    Err err = {0};
     Settings s, defaults;
     settings_defaults(&defaults);
     CHECK_OK(read_text(&s, "\xEF\xBB\xBF; a comment\r\n\r\n  [motion]\r\n\tpga_g = 0.25 ; of gravity\r\n", &err), &err);
@@ -306,7 +277,6 @@ TEST(a_price_is_a_number_that_is_given_once)
 TEST(the_rules_between_settings_hold_without_a_file)
 {
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     s.problem.kind = PROBLEM_EXTERNAL;
     s.motion.highpass_hz = 2;
@@ -323,7 +293,6 @@ TEST(the_rules_between_settings_hold_without_a_file)
 TEST(a_building_that_is_built_in_is_a_name_and_no_path)
 {
     Settings s;
-    Err err = {0};
     CHECK_OK(read_text(&s, "[building]\nmodel = appendix\n[motion]\nrecord = builtin:sylmar-like\n", &err), &err);
     assert_string_equal(s.building.model, "appendix");
     assert_string_equal(s.motion.record, "builtin:sylmar-like");
@@ -344,7 +313,6 @@ TEST(an_assignment_has_a_key_and_an_equals_sign)
 TEST(a_path_that_becomes_too_long_beside_its_file_stays_what_it_is)
 {
     Settings s;
-    Err err = {0};
     char text[600] = "[motion]\nrecord = ";
     memset(text + 18, 'r', 508);
     strcpy(text + 526, "\n[building]\nmodel = /no/such/folder\n");
@@ -368,7 +336,6 @@ TEST(a_text_that_a_file_would_change_is_refused)
 
 TEST(all_faults_of_a_file_are_listed_with_their_lines)
 {
-    Err err = {0};
     Settings s;
     char path[] = "/tmp/imtet-settings-XXXXXX", *text = NULL;
     size_t length = 0;
@@ -392,7 +359,6 @@ TEST(all_faults_of_a_file_are_listed_with_their_lines)
 
 TEST(a_path_in_a_file_is_meant_from_its_folder)
 {
-    Err err = {0};
     Settings s;
     char folder[] = "/tmp/imtet-folder-XXXXXX", ini[64], record[64], wanted[128];
     assert_non_null(mkdtemp(folder));
@@ -465,7 +431,6 @@ TEST(paths_from_a_folder_lead_to_the_same_files)
 TEST(columns_count_characters_and_not_the_mark_of_utf_8)
 {
     Settings s;
-    Err err = {0};
     assert_int_equal(read_text(&s, "\xEF\xBB\xBF[\n[core]\n  width_m =\twide\n", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, ":1:1: neither"));
     assert_int_equal(read_text(&s, "[core]\n  width_m =\twide\n", &err), STATUS_BAD_DATA);
@@ -492,7 +457,6 @@ TEST(every_bad_file_is_refused_with_file_line_and_key)
 
 TEST(a_missing_file_is_told_from_a_bad_one)
 {
-    Err err = {0};
     assert_int_equal(read_file("tests/bad/config/not_there.ini", &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "not_there.ini"));
     assert_int_equal(read_file("tests", &err), STATUS_MISSING);
@@ -504,7 +468,6 @@ TEST(a_missing_file_is_told_from_a_bad_one)
 /* Whatever has no end is given up after 1 MiB. */
 TEST(what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file)
 {
-    Err err = {0};
     assert_int_equal(read_file("/dev/zero", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "/dev/zero: larger than 1 MiB"));
     char path[] = "/tmp/imtet-settings-XXXXXX";
@@ -526,7 +489,6 @@ TEST(what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file)
 TEST(a_first_study_touches_fifteen_settings)
 {
     Settings s, again;
-    Err err = {0};
     int n = 0;
     settings_defaults(&s);
     char *text = written(&s, SETTINGS_BASIC);
@@ -546,7 +508,6 @@ TEST(a_first_study_touches_fifteen_settings)
 TEST(a_file_that_is_toml_as_well_is_read)
 {
     Settings toml, ini;
-    Err err = {0};
     CHECK_OK(read_text(&toml,
                        "# a study\n[building]\nrayleigh_modes = [1, 3]\np_delta = \"on\"\n[motion]\npga_g = 0.3\n"
                        "records = [\"builtin:sylmar-like\", 'builtin:elcentro-like']\n[problem]\n"
@@ -567,7 +528,6 @@ TEST(a_file_that_is_toml_as_well_is_read)
 TEST(notes_switches_and_arrays_over_several_lines_are_read_as_in_toml)
 {
     Settings toml, ini;
-    Err err = {0};
     CHECK_OK(
         read_text(&toml,
                   "[building] # the frame\nheights_m = [ # from the bottom: ], \"\n  5.5,\n  4.0, # all others\n]\n"
@@ -609,7 +569,6 @@ TEST(fidelity_needs_replicates_that_average_no_noise)
 TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_numbers_are_written_in_full)
 {
     Settings s;
-    Err err = {0};
     settings_defaults(&s);
     CHECK_OK(settings_parse(&s, "run.sqlite", "[search]\nasynchronous = on\nseed = 7\n", &err), &err);
     assert_int_equal(s.search.seed, 7);

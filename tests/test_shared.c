@@ -2,7 +2,6 @@
  * statfs says NFS in this process alone (--wrap=statfs); studies run in children of it. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sys/vfs.h>
 
 #include "study/study.h"
@@ -83,7 +82,6 @@ TEST(every_such_file_system_gets_a_rollback_journal_and_no_other_does)
     path_of("one.sqlite", path);
     for (size_t i = 0; i < sizeof KINDS / sizeof KINDS[0]; i++) {
         Database *d;
-        Err err = {0};
         unlink(path);
         file_system = KINDS[i];
         CHECK_OK(database_create(&d, path, &err), &err);

@@ -1,8 +1,6 @@
 /* A design simplified: what each step of the path promises, on a short study of the tower. */
 #include "runs.h"
 
-#include <math.h>
-
 #include "study/simplify.h"
 
 #define STEP 0.01
@@ -42,7 +40,6 @@ static SimplifyConfig config_of(double slack)
 static Simplified simplified(const SimplifyConfig *c)
 {
     Simplified s;
-    Err err = {0};
     CHECK_OK(simplify_design(&study, row, c, &s, &err), &err);
     return s;
 }

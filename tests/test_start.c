@@ -1,8 +1,7 @@
 /* Where a search begins: with designs that somebody has, none of them twice. */
 #include "runs.h"
 
-static const char BEGIN[] = "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n"
-                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 30\nthreads = 1\n";
+static const char BEGIN[] = DTLZ2_INI(4, 2) "[search]\ninitial = 12\npopulation = 12\nmax_evals = 30\nthreads = 1\n";
 
 /* In another order of columns, one outside the box, one given twice. */
 static const char GIVEN[] = "x2,x1,comment,x4,x3\n0.2,0.1,7,0.4,0.3\n-3,0.5,7,0.5,9\n0.2,0.1,8,0.4,0.3\n1,1,7,1,1\n";

@@ -1,7 +1,6 @@
 /* A run that is interrupted, refused, watched: what it stores and how it goes on. */
 #include "runs.h"
 
-#include <signal.h>
 #include <sqlite3.h>
 
 #include "base/linalg.h"
@@ -103,7 +102,6 @@ TEST(a_run_stopped_while_it_polishes_and_one_that_polishes_side_by_side_end_with
 static void grant_and_die(Settings *s, long max_evals)
 {
     RunStore *store;
-    Err err = {0};
     CHECK_OK(store_open(&store, s->run.out, 0, &err), &err);
     Settings granted = *store_run(store)->settings;
     granted.search.max_evals = s->search.max_evals = max_evals;
@@ -114,7 +112,6 @@ static void grant_and_die(Settings *s, long max_evals)
 TEST(more_simulations_go_on_the_same_whenever_they_are_granted)
 {
     StudySummary summary;
-    Err err = {0};
     int left = 17;
     const StudyOptions stopped = {.stop = stop_after, .user = &left};
     Settings late = settings_of(TEXTBOOK, "late"), early = settings_of(TEXTBOOK, "early");
@@ -160,9 +157,8 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     char path[PATH_MAX], command[3 * PATH_MAX];
     sqlite3 *db;
     StudySummary summary;
-    Err err = {0};
-    int left = 20;
-    const Settings s = settings_of(TEXTBOOK, "version");
+    int left = 15;
+    const Settings s = settings_of(TOWER, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
     Run stopped = run_in("version");
@@ -195,10 +191,10 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
     s.search.max_evals = 40;
     Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
     snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
-    refused_with(&other, 0, "problem.command is none there, now no000", "problem.command");
+    refused_with(&other, 0, "problem.command is " TEXTBOOK_WORKER " dtlz2 6 3 0.05 there, now no000",
+                 "problem.command");
     refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
-    Err err = {0};
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err); /* they are the run's now */
 }
@@ -225,7 +221,6 @@ static void wait_for(const char *out, size_t n)
     const double begun = now_s();
     for (size_t found = 0; found < n; rest(0.02)) {
         Run saved = {0};
-        Err err = {0};
         if (now_s() > begun + 60)
             fail_msg("%s: %zu evaluations after a minute, wanted %zu", out, found, n);
         if (run_is_there(path_of(out, folder))) {
@@ -356,7 +351,6 @@ TEST(a_second_signal_ends_at_once)
 TEST(hours_are_obeyed_within_a_batch)
 {
     StudySummary summary = {0};
-    Err err = {0};
     Settings s = settings_of(STEADY, "hours");
     s.search.threads = 1;
     for (double limit_s = 0.2; limit_s < 1.6 && summary.n_simulated == 0; limit_s *= 1.5) {
@@ -400,7 +394,6 @@ TEST(polished_designs_join_the_front_but_not_the_search)
 {
     char path[PATH_MAX], id[24];
     long first;
-    Err err = {0};
     StudySummary summary;
     int left = 20;
     Settings s = settings_of(TEXTBOOK, "polished");
@@ -517,7 +510,6 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
     const double lower[3] = {0, -1, 2}, reference[3] = {1, 1, 6};
     const double F[] = {0.2, 0, 3, 0.5, -0.5, 2.5, 0.1, 0.9, 5, 2, 2, 7};
     Hypervolume *h;
-    Err err = {0};
     CHECK_OK(hypervolume_create(&h, 3, lower, reference, 1, &err), &err);
     double before = 0;
     for (size_t i = 0; i < 4; i++) {
@@ -535,8 +527,8 @@ TEST(the_share_that_is_covered_is_the_hypervolume_of_the_box)
 TEST(an_export_of_thousands_has_every_design_in_its_order)
 {
     enum { DESIGNS = 4200 };
-    write_in_place("large.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nsurrogate = off\n"
-                                "stop_after = 0\nmax_evals = 4200\n");
+    write_in_place("large.ini", DTLZ2_INI(3, 2) "[search]\nsurrogate = off\n"
+                                                "stop_after = 0\nmax_evals = 4200\n");
     free(output_of("optimize @/large.ini --out @/large"));
     char *all = all_of("large");
     long n = 0;

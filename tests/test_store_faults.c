@@ -5,9 +5,7 @@
 #include "runs.h"
 
 #include <execinfo.h>
-#include <signal.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <sqlite3.h>
 
@@ -206,7 +204,7 @@ TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
 
 /* -- the store alone ----------------------------------------------------------------------------------------------- */
 
-static const char PLAIN[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nmax_evals = 8\n";
+static const char PLAIN[] = DTLZ2_INI(3, 2) "[search]\nmax_evals = 8\n";
 
 /* Six designs in three generations: all fail; 4 is the front, the first objective the same for all; 6 beats it. */
 enum { N_GENERATIONS = 3, N_DESIGNS = 6, N_POLISHED = 3 };

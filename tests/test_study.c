@@ -2,7 +2,6 @@
 #include "program.h"
 
 #include <dirent.h>
-#include <sys/stat.h>
 
 #define SMALL_STUDY_OF(max_evals)                                                                                      \
     "optimize configs/quick.ini " SIX_FLOORS "--set sim.duration_s=4 --set search.initial=28 "                         \
@@ -231,8 +230,7 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
 /* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
 TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
 {
-    write_in_place("sphere.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\n"
-                                 "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
+    write_in_place("sphere.ini", DTLZ2_INI(4, 3) "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
     free(output_of("optimize @/sphere.ini --out @/earlier"));
     free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
     free(output_of("export @/later --all --csv @/all.csv"));
@@ -242,7 +240,6 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     char *all, *line;
     size_t length;
     Table front, three;
-    Err err = {0};
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
     CHECK_OK(table_read(&three, three_path, 1, &err), &err);
     CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
@@ -270,10 +267,10 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     free(three_path);
 }
 
-TEST(a_textbook_problem_is_the_same_at_any_number_of_threads)
+TEST(a_worker_gives_the_same_run_at_any_number_of_threads)
 {
-    static const char STUDY[] = "optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=22 --set "
-                                "problem.objectives=7 --set search.initial=50 --max-evals 90 --threads %d --out @/%d";
+    static const char STUDY[] =
+        "optimize configs/quick.ini " DTLZ2(22, 7) "--set search.initial=50 --max-evals 90 --threads %d --out @/%d";
     free(output_of(STUDY, 1, 1));
     free(output_of(STUDY, 3, 3));
     char *one = output_of("export @/1 --all --csv -"), *three = output_of("export @/3 --all --csv -");

@@ -1,8 +1,6 @@
 /* Suites of records: what builtin:suite promises, and how folders, lists and sources are read. */
 #include "program.h"
 
-#include <sys/stat.h>
-
 #include "motion/motion_scale.h"
 #include "motion/spectrum.h"
 #include "motion/suite.h"
@@ -20,7 +18,6 @@ static Motion motion[SUITE_MOTIONS]; /* made once for all tests */
 
 static int make_suite(void **state)
 {
-    Err err = {0};
     char source[OPTION_TEXT_MAX];
     for (int i = 0; i < SUITE_MOTIONS; i++) {
         snprintf(source, sizeof source, "builtin:suite-%02d", i + 1);
@@ -40,7 +37,6 @@ TEST(the_mean_spectrum_of_the_suite_is_within_a_tenth_of_the_code_spectrum_and_i
 {
     double T[PERIODS], psa[PERIODS], mean[PERIODS] = {0}, log_sum[PERIODS] = {0}, log_squares[PERIODS] = {0};
     CodeSpectrum code;
-    Err err = {0};
     CHECK_OK(target_parse("asce7 sds=1 sd1=0.6", &code, &err), &err);
     for (int k = 0; k < PERIODS; k++)
         T[k] = period(k);
@@ -95,7 +91,6 @@ static Seen seen_of(const char *record, const char *records)
 {
     static MotionOptions o;
     Seen s = {0};
-    Err err = {0};
     snprintf(o.record, sizeof o.record, "%s", record);
     snprintf(o.records, sizeof o.records, "%s", records);
     CHECK_OK(suite_of_study(&o, see, &s, &err), &err);
@@ -135,7 +130,6 @@ TEST(a_factor_and_a_component_belong_to_their_record_alone)
 {
     MotionOptions o = {.factor = 2, .stretch = 1, .unit = "from_file", .channel = "auto"};
     Motion plain = {0}, scaled = {0};
-    Err err = {0};
     char path[128];
     write_in_place("two.csv", "# dt = 0.02, units: m/s2\nns,ew\n0,0\n1,3\n-2,5\n0,0\n");
     snprintf(path, sizeof path, "%s/two.csv", place.folder);

@@ -1,11 +1,6 @@
 /* Tables of numbers, and the design files built on them. */
 #include "bad_inputs.h"
 
-#include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "scene/design.h"
 #include "base/csv.h"
 
@@ -27,7 +22,6 @@ static void expect_refusal(const char *text, int has_header, const char *wanted)
 
 TEST(numbers_come_out_as_they_were_written)
 {
-    Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "a,b,c\n1,-2.5,3e-7\n0.1,1e300,-0\n", 1, &err), &err);
     const double want[] = {1, -2.5, 3e-7, 0.1, 1e300, -0.0};
@@ -39,7 +33,6 @@ TEST(numbers_come_out_as_they_were_written)
 
 TEST(comments_blank_lines_and_foreign_line_ends_are_skipped)
 {
-    Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end", 0, &err), &err);
     const double want[] = {1, 2, 3, 4};
@@ -51,7 +44,6 @@ TEST(comments_blank_lines_and_foreign_line_ends_are_skipped)
 
 TEST(a_column_is_found_by_its_name)
 {
-    Err err = {0};
     Table t;
     CHECK_OK(parse(&t, " time_s , accel_m_s2\n0,1\n", 1, &err), &err);
     assert_int_equal(table_column(&t, "accel_m_s2"), 1);
@@ -62,7 +54,6 @@ TEST(a_column_is_found_by_its_name)
 
 TEST(a_last_line_without_an_end_counts)
 {
-    Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "1\n2\n3", 0, &err), &err);
     assert_int_equal(t.n_rows, 3);
@@ -100,7 +91,6 @@ TEST(a_missing_last_number_is_not_taken_from_the_next_line)
 
 TEST(a_missing_file_is_told_from_a_bad_one)
 {
-    Err err = {0};
     Table t;
     assert_int_equal(table_read(&t, "tests/bad/not_there.csv", 0, &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "tests/bad/not_there.csv"));
@@ -124,7 +114,6 @@ TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
     };
     const double want[] = {1.5, -2.25, 3e-7, 0.1, 4, 5};
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Err err = {0};
         Table t;
         CHECK_OK(parse(&t, FORMS[i], 0, &err), &err);
         assert_int_equal(t.n_rows, 2);
@@ -143,7 +132,6 @@ TEST(a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes)
         "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n",
     };
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Err err = {0};
         Table t;
         CHECK_OK(parse(&t, FORMS[i], 1, &err), &err);
         assert_int_equal(table_column(&t, "gap_01_m"), 0);
@@ -181,7 +169,6 @@ TEST(an_invisible_character_is_named_in_a_message)
                    0,
                    "'Stra\xc3\x9f"
                    "e'");
-    Err err = {0};
     (fail)(&err, STATUS_BAD_DATA, "'%s'", "\xef\xbb\xbf\t\r\n\x7f\xf0\x9f\x99\x82\xc0\x80\xed\x9f\xbf");
     assert_string_equal(err.text, "'<U+FEFF>\\t\\r\\n\\x7F\xf0\x9f\x99\x82\\xC0\\x80\xed\x9f\xbf'");
 }
@@ -204,14 +191,12 @@ static void write_file(const char *path, const char *text)
 static const DesignSpace *paper_space(int n_floors)
 {
     static DesignSpace space;
-    Err err;
     CHECK_OK(design_space_make(&space, &(DesignOptions){0}, CORE_BOX, n_floors, &err), &err);
     return &space;
 }
 
 TEST(a_design_file_gives_its_rows_and_their_lines)
 {
-    Err err = {0};
     Designs d;
     char path[] = "/tmp/imtet-design-XXXXXX";
     const int fd = mkstemp(path);
@@ -254,7 +239,6 @@ TEST(a_named_pipe_is_refused_before_it_is_waited_for)
 {
     char folder[] = "/tmp/imtet-pipe-XXXXXX", path[64], *text;
     size_t length;
-    Err err = {0};
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/pipe", folder);
     assert_int_equal(mkfifo(path, 0600), 0);

@@ -1,11 +1,7 @@
 /* The end of a run: what is left of a motion is known beforehand, and contacts end where it can change nothing. */
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "bench/case.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 #include "sim/sim.h"
@@ -14,7 +10,6 @@
 static Motion kobe_like(void)
 {
     Motion m;
-    Err err;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     return m;
@@ -22,7 +17,6 @@ static Motion kobe_like(void)
 
 static SimResult run_with(const SceneOptions *o, const Motion *m, SceneKind kind, const double x[])
 {
-    Err err;
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -39,7 +33,6 @@ TEST(what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest)
     const SceneOptions o = paper_scene();
     Motion m = kobe_like();
     Building b;
-    Err err;
     double *input = malloc(m.n * sizeof *input);
     CHECK_OK(building_load(&b, &o.building, &err), &err);
     CHECK_OK(tail_input(&b.model, &m, input, &err), &err);
@@ -93,7 +86,6 @@ static SimResult run_engine(const SimModel *model, const Motion *m, const double
     const EngineOptions options = {
         .duration = (double)(m->n - 1) * m->dt_s, .accuracy = ACCURACY_STANDARD, .tail_input = input};
     SimResult r;
-    Err err;
     CHECK_OK(engine_fast(model, m, &options, &r, &err), &err);
     return r;
 }
@@ -105,7 +97,6 @@ TEST(a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole)
     Building b;
     CoreBeam core;
     SimModel model;
-    Err err;
     double x[FLOORS_MAX], *input = malloc(m.n * sizeof *input);
     CHECK_OK(building_load(&b, &o.building, &err), &err);
     CHECK_OK(model_create(&model, b.n, b.model.n, &err), &err);

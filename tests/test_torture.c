@@ -3,7 +3,6 @@
 #include "program.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 
 #include "store/run_read.h"
@@ -13,7 +12,8 @@ typedef struct {
 } Prey;
 
 static const Prey PREYS[] = {
-    {"textbook", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\nnoise = 0.02\n"
+    {"textbook", "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER
+                 " dtlz2 8 3 0.02\nvariables = 8\nobjectives = 3\nnoisy = yes\n"
                  "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
     {"tower", SIX_FLOORS_INI "[sim]\nduration_s = 5\n"
                              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},

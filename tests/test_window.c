@@ -3,7 +3,6 @@
 
 #include "bench/timed_run.h"
 #include "motion/motion_read.h"
-#include "motion/motion_scale.h"
 #include "scene_options.h"
 #include "sim/engine.h"
 
@@ -38,7 +37,6 @@ static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 1e-2,
 
 static void open_window(const Window *w, SceneOptions *s, Motion *m, BenchCase *bench_case)
 {
-    Err err;
     *s = paper_scene();
     if (w->building == SIX)
         six_floors(&s->building, &s->core);
@@ -59,7 +57,6 @@ static void open_window(const Window *w, SceneOptions *s, Motion *m, BenchCase *
 static SimResult run(const BenchCase *c, Engine engine, Accuracy accuracy)
 {
     SimResult r;
-    Err err = {0};
     const EngineOptions options = {.duration = c->duration, .accuracy = accuracy};
     CHECK_OK(engine_entry(engine)->run(&c->model, &c->motion, &options, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);

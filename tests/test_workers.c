@@ -1,8 +1,6 @@
 /* External workers and limits of the system, as the program meets them: what its files and its exit status say. */
 #include "runs.h"
 
-#include <signal.h>
-
 static void write_external(const char *name, const char *command, const char *search)
 {
     char text[512];

@@ -1,10 +1,4 @@
 /* Storeys that yield: closed forms, reference numbers, energies, and every engine against the other. */
-#include "check.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #include "one_scene.h"
 #include "sim/engine.h"
@@ -17,7 +11,6 @@ static const double MASS = 2e5, FREQUENCY = 2 * M_PI, SHARE = 0.9, YIELD = 0.02;
 static SimModel one_storey(StoreyLaw law)
 {
     SimModel m;
-    Err err;
     CHECK_OK(model_create(&m, 1, 1, &err), &err);
     m.nb = m.m = 1;
     m.m_pad = 8;
@@ -43,7 +36,6 @@ enum { N_ENGINES = sizeof ENGINES / sizeof ENGINES[0] };
 static SimResult run(Engine engine, const SimModel *model, const Motion *motion, double duration)
 {
     SimResult r;
-    Err err = {0};
     const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE};
     CHECK_OK(engine_entry(engine)->run(model, motion, &options, &r, &err), &err);
     if (r.outcome != RUN_OK)
@@ -218,7 +210,6 @@ TEST(the_largest_acceleration_is_known_where_a_storey_begins_to_yield)
 static SimResult tower_run(const Tower *t, SceneKind kind)
 {
     SimResult r;
-    Err err = {0};
     CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
     if (r.outcome != RUN_OK)
         print_error("%s\n", r.reason);
@@ -281,7 +272,6 @@ TEST(storeys_have_the_stiffness_of_the_first_mode)
 {
     Building b;
     SceneOptions s = scene_defaults();
-    Err err;
     s.building.yield_drift = 0.006;
     CHECK_OK(building_load(&b, &s.building, &err), &err);
     assert_true(b.yields && !b.hardening_raised);
@@ -370,7 +360,6 @@ static SimResult run_few(Engine engine, SceneKind kind, double yield_drift, doub
 {
     Tower t;
     SimResult r;
-    Err err = {0};
     builtin_tower(&t, engine, yield_drift);
     six_floors(&t.settings.building, &t.settings.core);
     t.settings.motion.stretch = 1;
@@ -443,7 +432,6 @@ TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
 TEST(links_that_do_nothing_leave_the_yielding_building_alone)
 {
     Tower t;
-    Err err = {0};
     SimResult links;
     builtin_tower(&t, ENGINE_FAST, 0.004);
     const SimResult bare = builtin_run(&t, SCENE_NO_CORE);

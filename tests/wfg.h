@@ -7,9 +7,6 @@
 
 #include "check.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/dominance.h"
 
 /* Rows in descending order of the last objective. */

@@ -69,14 +69,9 @@ static Status make_course(const FactorPlan *plan, const Problem *p, Which which,
                           Err *err)
 {
     Settings s = *plan->settings;
-    Problem other = *p;
-    if (which == PLAIN && plan->rounded)
-        other.kind = NULL;
     s.search.seed = seed;
     TRY(course_create(c, n, p->n_obj, err));
-    if (which == PLAIN && plan->against_random)
-        s.search.initial = (long)n;
-    return search_course(&s, &other, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
+    return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
 }
 
 /* From the folder where it is there. The plain search has as many evaluations as the largest factor takes. */
@@ -89,11 +84,8 @@ static Status get_course(const FactorPlan *plan, const Problem *p, const Family 
     int found = 0;
     if (!plan->keep)
         return make_course(plan, p, which, seed, n, c, err);
-    snprintf(path, sizeof path, "%s/%s-%s%s-%zu-%ld.course", plan->keep, a->name,
-             which == OURS          ? "imtet"
-             : plan->against_random ? "random"
-                                    : "plain",
-             which == PLAIN && plan->rounded ? "-rounded" : "", n, seed);
+    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, which == OURS ? "imtet" : "plain", n,
+             seed);
     TRY(course_load(c, path, n, p->n_obj, &found, err));
     if (found)
         return STATUS_OK;

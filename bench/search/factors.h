@@ -22,8 +22,6 @@ typedef struct {
     const Settings *settings; /* of all searches, but for surrogate, seed and limits */
     const char *problems;     /* comma list; NULL: those not kept aside */
     int aside;                /* Family.is_aside of those that are run */
-    int rounded;              /* the other search knows no kinds: reals, of which the problem rounds some */
-    int against_random;       /* samples of a Latin hypercube in the place of the plain search */
     long n_seeds, first_seed;
     long budgets[4];  /* evaluations, ascending; 0: none further */
     const char *keep; /* folder of the courses, which are not run again; NULL: none */

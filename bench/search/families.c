@@ -5,11 +5,10 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "bench/search/mixed.h"
 
 typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
-typedef enum { FAIL_NEVER, FAIL_SLAB, FAIL_BALL, FAIL_CHECKER } Failing;
+typedef enum { NEVER, SLAB, BALL, CHECKER } Failing;
 
 typedef struct {
     Family family;
@@ -22,84 +21,41 @@ typedef struct {
 } Recipe;
 
 static const Recipe RECIPES[] = {
-    {{"ripples2", "Rastrigin, two objectives", 10, 2, 0, 0}, RASTRIGIN, CONVEX, FAIL_NEVER, 4, 0.3, 0, 0},
-    {{"ripples5", "Rastrigin, rotated, five objectives", 15, 5, 0, 0}, RASTRIGIN, CONCAVE, FAIL_NEVER, 3, 0.2, 1, 0},
-    {{"ackley3", "Ackley, shifted, three objectives", 12, 3, 0, 0}, ACKLEY, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"valley3", "Rosenbrock, rotated", 12, 3, 0, 0}, ROSENBROCK, CONCAVE, FAIL_NEVER, 0, 0, 1, 0},
-    {{"curve6", "degenerate: the front is a curve", 14, 6, 0, 0}, SPHERE, CURVE, FAIL_NEVER, 0, 0, 1, 0},
-    {{"pieces4", "disconnected", 12, 4, 0, 0}, SPHERE, PIECES, FAIL_NEVER, 0, 0, 1, 0},
-    {{"scales40", "objectives of 1e-3 to 1e6, 40 variables", 40, 3, 0, 0}, SPHERE, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
-    {{"quadratics10", "ten quadratics, rotated", 16, 10, 0, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
-    {{"limits4", "quadratics under two limits", 10, 4, 2, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
-    {{"slab3", "a third of the box fails, the best of it", 10, 3, 0, 0}, SPHERE, CONCAVE, FAIL_SLAB, 0, 0, 1, 0},
-    {{"ball4", "fails about the minima of the quadratics", 8, 4, 0, 0}, SPHERE, QUADRATICS, FAIL_BALL, 0, 0, 1, 0},
-    {{"ripples3", "Rastrigin, rotated, aside", 12, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 5, 0.25, 1, 0},
-    {{"valley6", "Rosenbrock in six objectives, aside", 20, 6, 0, 1}, ROSENBROCK, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
-    {{"limits7", "Ackley under a limit, aside", 14, 7, 1, 1}, ACKLEY, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"checker3", "a third of the box fails, in squares, aside", 8, 3, 0, 1},
-     SPHERE,
-     QUADRATICS,
-     FAIL_CHECKER,
-     0,
-     0,
-     0,
-     0},
-    {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, FAIL_SLAB, 0, 0, 1, 0},
-    {{"combs2", "Rastrigin, steep, ten waves, two objectives", 10, 2, 0, 0},
-     RASTRIGIN,
-     CONVEX,
-     FAIL_NEVER,
-     10,
-     1,
-     0,
-     0},
-    {{"combs7", "Rastrigin, steep, six waves, seven objectives", 16, 7, 0, 0},
-     RASTRIGIN,
-     CONCAVE,
-     FAIL_NEVER,
-     6,
-     1,
-     0,
-     0},
-    {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 8, 1.5, 0, 0},
-    {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, FAIL_NEVER, 0, 0, 0, 0},
-    {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
-    {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3},
-     SPHERE,
-     CONCAVE,
-     FAIL_NEVER,
-     0,
-     0,
-     0,
-     0},
-    {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3},
-     ROSENBROCK,
-     CONVEX,
-     FAIL_NEVER,
-     0,
-     0,
-     0,
-     0},
-    {{"beam2", "welded beam of four materials", 6, 2, 4, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"reducer2", "speed reducer with whole teeth", 7, 2, 11, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
-    {{"vessel2", "pressure vessel of plates", 4, 2, 2, 3}, SPHERE, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"ripples2", "Rastrigin, two objectives", 10, 2, 0, 0}, RASTRIGIN, CONVEX, NEVER, 4, 0.3, 0, 0},
+    {{"ripples5", "Rastrigin, rotated, five objectives", 15, 5, 0, 0}, RASTRIGIN, CONCAVE, NEVER, 3, 0.2, 1, 0},
+    {{"ackley3", "Ackley, shifted, three objectives", 12, 3, 0, 0}, ACKLEY, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"valley3", "Rosenbrock, rotated", 12, 3, 0, 0}, ROSENBROCK, CONCAVE, NEVER, 0, 0, 1, 0},
+    {{"curve6", "degenerate: the front is a curve", 14, 6, 0, 0}, SPHERE, CURVE, NEVER, 0, 0, 1, 0},
+    {{"pieces4", "disconnected", 12, 4, 0, 0}, SPHERE, PIECES, NEVER, 0, 0, 1, 0},
+    {{"scales40", "objectives of 1e-3 to 1e6, 40 variables", 40, 3, 0, 0}, SPHERE, CONVEX, NEVER, 0, 0, 1, 1},
+    {{"quadratics10", "ten quadratics, rotated", 16, 10, 0, 0}, SPHERE, QUADRATICS, NEVER, 0, 0, 1, 0},
+    {{"limits4", "quadratics under two limits", 10, 4, 2, 0}, SPHERE, QUADRATICS, NEVER, 0, 0, 1, 0},
+    {{"slab3", "a third of the box fails, the best of it", 10, 3, 0, 0}, SPHERE, CONCAVE, SLAB, 0, 0, 1, 0},
+    {{"ball4", "fails about the minima of the quadratics", 8, 4, 0, 0}, SPHERE, QUADRATICS, BALL, 0, 0, 1, 0},
+    {{"ripples3", "Rastrigin, rotated, aside", 12, 3, 0, 1}, RASTRIGIN, LINEAR, NEVER, 5, 0.25, 1, 0},
+    {{"valley6", "Rosenbrock in six objectives, aside", 20, 6, 0, 1}, ROSENBROCK, CONVEX, NEVER, 0, 0, 1, 1},
+    {{"limits7", "Ackley under a limit, aside", 14, 7, 1, 1}, ACKLEY, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"checker3", "a third of the box fails, in squares, aside", 8, 3, 0, 1}, SPHERE, QUADRATICS, CHECKER, 0, 0, 0, 0},
+    {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, SLAB, 0, 0, 1, 0},
+    {{"combs2", "Rastrigin, steep, ten waves", 10, 2, 0, 0}, RASTRIGIN, CONVEX, NEVER, 10, 1, 0, 0},
+    {{"combs7", "Rastrigin, steep, six waves", 16, 7, 0, 0}, RASTRIGIN, CONCAVE, NEVER, 6, 1, 0, 0},
+    {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, NEVER, 8, 1.5, 0, 0},
+    {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, NEVER, 0, 0, 0, 0},
+    {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, NEVER, 0, 0, 0, 0},
+    {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"mixed7", "a sphere, 10 reals, 6 whole numbers, 6 choices", 22, 7, 0, 3}, SPHERE, CONCAVE, NEVER, 0, 0, 0, 0},
+    {{"mixed3", "Rosenbrock, 6 reals, 4 whole numbers, 4 choices", 14, 3, 0, 3}, ROSENBROCK, CONVEX, NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
 
-/* Which of the last variables are whole numbers and choices, or what stands in the place of all parts. */
+/* How many of the last variables are whole numbers and choices. */
 typedef struct {
     const char *name;
     size_t n_whole, n_choice;
-    const Mixed *mixed;
 } Mix;
 
-static const Mix MIXES[] = {{"mixed7", 6, 6, NULL},
-                            {"mixed3", 4, 4, NULL},
-                            {"beam2", 0, 0, &MIXED_BEAM},
-                            {"reducer2", 0, 0, &MIXED_REDUCER},
-                            {"vessel2", 0, 0, &MIXED_VESSEL}};
+static const Mix MIXES[] = {{"mixed7", 6, 6}, {"mixed3", 4, 4}};
 enum { N_MIXES = sizeof MIXES / sizeof *MIXES };
 
 /* A recipe with its constants. */
@@ -239,15 +195,15 @@ static int fails(const Made *m, const double x[])
     const size_t n = m->recipe.family.n_var;
     double side = 0.0;
     switch (m->recipe.failing) {
-    case FAIL_NEVER:
+    case NEVER:
         return 0;
-    case FAIL_SLAB: /* x[2] near the distance's zero, and its side */
+    case SLAB: /* x[2] near the distance's zero, and its side */
         return x[2] > m->shift[2] - 0.08 && x[2] < m->shift[2] + 0.25;
-    case FAIL_BALL:
+    case BALL:
         for (size_t i = 0; i < n; i++)
             side += x[i] / (double)n;
         return square_off(n, x, m->shift) < 0.03 * (double)n || side < 0.42;
-    case FAIL_CHECKER:
+    case CHECKER:
         return ((int)(4.0 * x[0]) + (int)(4.0 * x[1])) % 3 == 0;
     }
     return 0;
@@ -271,10 +227,6 @@ static void evaluate(const Made *m, const double x_real[], double f[], double g[
     double design[FAMILY_VAR_MAX], x[FAMILY_VAR_MAX], y[FAMILY_VAR_MAX];
     for (size_t j = 0; j < a->n_var; j++)
         design[j] = m->kind[j] == VARIABLE_WHOLE || m->kind[j] == VARIABLE_CHOICE ? round(x_real[j]) : x_real[j];
-    if (m->mix && m->mix->mixed) {
-        m->mix->mixed->evaluate(design, f, g);
-        return;
-    }
     to_unit(m, design, x);
     if (m->recipe.front == QUADRATICS) {
         quadratics(m, x, f);
@@ -308,7 +260,7 @@ size_t family_place(const Problem *p, const double w[], double share, double x[]
         x[j] = m->kind[j] == VARIABLE_WHOLE    ? round(TENTHS * m->shift[j])
                : m->kind[j] == VARIABLE_CHOICE ? 4.0
                                                : m->shift[j];
-    if (m->recipe.front == QUADRATICS || (m->mix && m->mix->mixed))
+    if (m->recipe.front == QUADRATICS)
         return 0;
     if (m->recipe.front != CURVE)
         return place_on_simplex(p->n_obj, w, x);
@@ -399,12 +351,6 @@ static void set_kinds(Made *m)
         m->kind[j] = is_whole ? VARIABLE_WHOLE : VARIABLE_CHOICE;
         m->upper[j] = is_whole ? TENTHS : 4.0;
         m->shift[j] = is_whole ? round(TENTHS * m->shift[j]) / TENTHS : WORDS[4];
-    }
-    for (size_t j = 0; mix->mixed && j < n; j++) {
-        m->kind[j] = mix->mixed->kind[j];
-        m->lower[j] = mix->mixed->lower[j];
-        m->upper[j] = mix->mixed->upper[j];
-        m->shift[j] = 0.5 * (m->lower[j] + m->upper[j]);
     }
 }
 

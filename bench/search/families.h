@@ -8,8 +8,7 @@
  *   distance   >= 0, how far from it: a sphere, Rastrigin, Ackley, Rosenbrock or deceptive function of shifted, perhaps
  *              rotated variables, 0 at an inner point
  * or it is a convex quadratic of its own minimum (quadratics). Of mixed problems the last variables are whole numbers 0..10,
- * which stand for tenths, then choices of five words for 0, 3/4, 1/4, 1, 1/2: their distance's zero lies on these; or they
- * are those of mixed.h.
+ * which stand for tenths, then choices of five words for 0, 3/4, 1/4, 1, 1/2: their distance's zero lies on these.
  *
  * Threads  pure functions of what family_open has made */
 #ifndef IMTET_BENCH_SEARCH_FAMILIES_H
@@ -17,7 +16,7 @@
 
 #include "evaluate/problem.h"
 
-enum { FAMILY_VAR_MAX = 40, FAMILY_OBJ_MAX = 10, FAMILY_CON_MAX = 11 };
+enum { FAMILY_VAR_MAX = 40, FAMILY_OBJ_MAX = 10, FAMILY_CON_MAX = 2 };
 
 typedef struct {
     const char *name, *what;

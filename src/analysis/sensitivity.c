@@ -62,6 +62,9 @@ static void conclude(const Job *job, size_t parameter, Sensitivity *out)
         out->slope[k] = out->step > 0 ? fine : NAN;
         out->error[k] = out->step > 0 ? hypot(isnan(error) && !isnan(fine) ? 0 : error, coarse - fine) : NAN;
     }
+    /* J3 jumps with every impact more or less: a slope of it says nothing, unless nothing changes. */
+    if (out->slope[MEASURE_J3] != 0)
+        out->slope[MEASURE_J3] = out->error[MEASURE_J3] = NAN;
 }
 
 /* Names, values and steps; a variable that is 0 has no step. */

@@ -4,8 +4,8 @@
  *
  * with the same replicates on both sides (common random numbers: replicate 0 is the design, the others have its gaps
  * changed as in evaluate/replicates.h), so that what they share cancels. Error: root of (sd / root(n))^2 + (D(h) -
- * D(h/2))^2, sd that of the differences of single replicates; of one replicate the second part alone. Where slopes
- * jump with every impact (J3) it is the error that says so.
+ * D(h/2))^2, sd that of the differences of single replicates; of one replicate the second part alone. J3 jumps with
+ * every impact and has no slope: NAN, or 0 where nothing changes.
  *
  * Parameters: every gap, both thicknesses, contact.radius_m, contact.restitution, building.damping, core.damping, the
  * bumper's stiffness, core.foundation_factor and building.yield_drift where there is one. Steps: gaps GAP_STEP (half

@@ -270,7 +270,7 @@ static Status show_horizon(const Args *args, Settings *s, const double x[], Err 
 
 static json_t *describe_slopes(const Sensitivity *s)
 {
-    json_t *slopes = json_object();
+    json_t *slopes = json_of("j3_g=%p", json_null());
     for (int k = 0; k < MEASURES_LISTED; k++)
         if (isfinite(s->slope[k]))
             json_object_set_new(slopes, measure(k)->name, json_of("slope=%g error=%g", s->slope[k], s->error[k]));
@@ -288,10 +288,10 @@ static json_t *rows_of(size_t n, const Sensitivity list[])
     return table;
 }
 
-/* Change of J1, J2, J3 for one step of the parameter. */
+/* Change of J1 and J2 for one step of the parameter. */
 static void print_slopes(size_t n, const Sensitivity list[])
 {
-    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3};
+    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_J2};
     json_t *table = json_array();
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];

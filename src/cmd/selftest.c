@@ -8,7 +8,6 @@
 #include "settings/settings.h"
 #include "sim/fast/fast.h"
 #include "evaluate/measures.h"
-#include "evaluate/adapter.h"
 #include "evaluate/tower.h"
 #include "study/search_loop.h"
 
@@ -147,7 +146,7 @@ static Status check_tower(Selftest *t, Err *err)
 
 /* ---- a search ---------------------------------------------------------------------------------------------------- */
 
-enum { N_DTLZ2 = 3 };
+enum { N_DTLZ2 = 3, N_VARIABLES = 8 };
 
 static double distance_to(const Archive *all, const double w[N_DTLZ2])
 {
@@ -179,28 +178,51 @@ static int measure_front(const SearchView *view, const SearchTime *time, void *u
     return 0;
 }
 
-static Status search(const Settings *s, double *igd, Err *err)
+/* DTLZ2: three objectives on a sphere, as far from it as the variables behind the first two are from 1/2. */
+static Status simulate_dtlz2(void *self, size_t worker, const Task *task, Err *err)
 {
-    Adapter *adapter;
-    StopReason reason;
-    const SearchConfig config = search_config_of(s);
-    TRY(adapter_open(&adapter, s, err));
-    omp_set_num_threads(adapter_threads(adapter));
-    const Status status = search_run(adapter_problem(adapter), &config, measure_front, igd, &reason, err);
-    adapter_close(adapter);
-    return status;
+    const double *x = task->x, a = x[0] * M_PI_2, b = x[1] * M_PI_2;
+    double *f = task->result, r = 1;
+    (void)self;
+    (void)worker;
+    (void)err;
+    for (int j = N_DTLZ2 - 1; j < N_VARIABLES; j++)
+        r += (x[j] - 0.5) * (x[j] - 0.5);
+    f[0] = r * cos(a) * cos(b);
+    f[1] = r * cos(a) * sin(b);
+    f[2] = r * sin(a);
+    return STATUS_OK;
+}
+
+static void combine_dtlz2(const Problem *p, size_t n, const void *parts, Evaluation *e)
+{
+    (void)n;
+    memcpy(e->f, parts, p->n_obj * sizeof *e->f);
+    e->replicates = 1;
 }
 
 /* 200 evaluations reach 0.029 to 0.034 over eight seeds, without surrogate 0.22 to 0.27. */
 static Status check_search(Selftest *t, Err *err)
 {
-    static const char *const SETTINGS[] = {"problem.kind=dtlz2",   "problem.variables=8", "problem.objectives=3",
-                                           "search.max_evals=200", "search.seed=1",       "search.threads=1"};
+    static const char *const SETTINGS[] = {"search.max_evals=200", "search.seed=1"};
+    static const double LOWER[N_VARIABLES] = {0}, UPPER[N_VARIABLES] = {1, 1, 1, 1, 1, 1, 1, 1};
+    static const Simulator DTLZ2 = {.simulate = simulate_dtlz2, .combine = combine_dtlz2};
+    const Problem p = {.n_var = N_VARIABLES,
+                       .n_obj = N_DTLZ2,
+                       .lower = LOWER,
+                       .upper = UPPER,
+                       .simulator = &DTLZ2,
+                       .n_parts = 1,
+                       .part_size = N_DTLZ2 * sizeof(double),
+                       .n_workers = 1};
     Settings s;
+    StopReason reason;
     double igd = NAN;
     settings_defaults(&s);
     TRY(set_all(&s, SETTINGS, N_OF(SETTINGS), err));
-    TRY(search(&s, &igd, err));
+    const SearchConfig config = search_config_of(&s);
+    omp_set_num_threads(1);
+    TRY(search_run(&p, &config, measure_front, &igd, &reason, err));
     compare(t, "search", "igd_plus", igd, 0.0315, 0.3);
     return STATUS_OK;
 }

@@ -1,7 +1,6 @@
 #include "evaluate/adapter.h"
 
 #include "evaluate/external.h"
-#include "evaluate/textbook.h"
 #include "evaluate/tasks.h"
 
 struct Adapter {
@@ -66,8 +65,6 @@ static Status open_simulator(Adapter *a, const Settings *s, Err *err)
     own.sim.measures_only = 1;
     if (s->problem.kind == PROBLEM_TOWER)
         return tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err);
-    if (s->problem.kind != PROBLEM_EXTERNAL)
-        return textbook_open(&a->problem, &s->problem, (uint32_t)s->search.seed, err);
     TRY(external_open(&a->problem, &s->problem, a->threads, err));
     a->recipe.settings = *s;
     a->problem.recipe = &a->recipe;

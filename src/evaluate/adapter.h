@@ -2,7 +2,6 @@
  *
  *   problem.kind = tower      gaps and thicknesses (evaluate/tower.h)
  *                  external   processes that speak JSON lines (evaluate/external.h)
- *                  dtlz2 ...  evaluate/textbook.h, with problem.noise where that is set
  *
  * Life cycle  adapter_open -> search on adapter_problem -> adapter_close
  * Threads     as evaluate/problem.h */

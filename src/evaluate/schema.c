@@ -82,14 +82,12 @@ static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
         constraint->sense = 1.0;
         schema->limited[schema->n_limited++] = c;
     }
-    return take_senses(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.senses : "min", schema->n_obj, objectives, err);
+    return take_senses(s->problem.senses, schema->n_obj, objectives, err);
 }
 
 int schema_is_noisy(const Settings *s)
 {
-    const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
-    const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
-    return is_noisy && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
+    return s->problem.noisy == NOISY_YES && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
 }
 
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)

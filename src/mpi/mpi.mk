@@ -1,6 +1,6 @@
 # imtet_mpi: the same program over the ranks of MPI. What src/mpi defines takes the place of src/evaluate/alone.c.
 
-.PHONY: mpi scale scale-ranks tests-mpi test-mpi test-mpi-here slurm-test
+.PHONY: mpi tests-mpi test-mpi test-mpi-here slurm-test
 
 MPICC       ?= mpicc
 MPI_PROGRAM := $(if $(filter release,$(MODE)),imtet_mpi,$(BUILD)/imtet_mpi)
@@ -16,16 +16,6 @@ $(MPI_OBJ): $(BUILD)/%.o: %.c
 $(MPI_PROGRAM): $(BUILD)/src/main.o $(MPI_OBJ) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
-
-$(BUILD)/imtet-bench-ranks: $(BUILD)/bench/ranks.o $(MPI_OBJ) $(LIB)
-	@echo '  LD  $@'
-	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
-
-# Measurements of one revision are kept: what was interrupted, or ended by LIMIT, goes on.
-scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## how far ranks scale, measured and modelled; LIMIT=500 [s], then again
-	@scripts/scale-ranks --kept $(BUILD)/scale-ranks-$$(git rev-parse --short HEAD).jsonl $(if $(LIMIT),--seconds $(LIMIT))
-
-scale: scale-cost scale-ranks ## what a study costs, how far ranks scale
 
 # A program that differs by its revision alone.
 $(BUILD)/other/provenance.o: src/store/provenance.c $(BUILD)/revision
@@ -45,7 +35,7 @@ test-mpi: ## tests of imtet_mpi with RANKS=4 at most; skipped where there is no 
 	@if command -v $(MPICC) >/dev/null; then $(MAKE) --no-print-directory test-mpi-here; \
 	 else echo 'test-mpi: skipped, there is no $(MPICC); scripts/setup-mpi installs it'; fi
 
-tests-mpi: $(PROGRAM) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
+tests-mpi: $(PROGRAM) $(TEXTBOOK) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUILD)/tests/mpi
 
 test-mpi-here: tests-mpi
 	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi "$(CASE)"' | \

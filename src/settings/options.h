@@ -13,13 +13,8 @@
 
 /* -- [problem]: all but the kind only where it is not the tower -- */
 
-/* In the order of evaluate/textbook.h. */
-#define TEXTBOOK_LIST(X)     X(PROBLEM_DTLZ2, "dtlz2") X(PROBLEM_WFG4, "wfg4")
-#define PROBLEM_KIND_LIST(X) X(PROBLEM_TOWER, "tower") X(PROBLEM_EXTERNAL, "external") TEXTBOOK_LIST(X)
-typedef enum {
-    PROBLEM_KIND_LIST(CHOICE_NAME) PROBLEM_KIND_COUNT,
-    PROBLEM_TEXTBOOK = PROBLEM_EXTERNAL + 1 /* and whatever follows it */
-} ProblemKind;
+#define PROBLEM_KIND_LIST(X) X(PROBLEM_TOWER, "tower") X(PROBLEM_EXTERNAL, "external")
+typedef enum { PROBLEM_KIND_LIST(CHOICE_NAME) } ProblemKind;
 
 #define NOISY_LIST(X) X(NOISY_AUTO, "auto") X(NOISY_NO, "no") X(NOISY_YES, "yes")
 typedef enum { NOISY_LIST(CHOICE_NAME) } Noisy;
@@ -35,7 +30,6 @@ typedef struct {
     char variable_names[OPTION_TEXT_MAX], objective_names[OPTION_TEXT_MAX];
     Noisy noisy;
     long constraints; /* values g of every answer; below 0: the first one tells. No setting: of each run */
-    double noise;     /* [-] of a textbook problem's answers */
 } ProblemOptions;
 
 /* -- [search], [run] -- */

@@ -259,8 +259,7 @@ static const Option OPTIONS[] = {
            "the default is an example, in thousands of euros, no quotation"),
 
     CHOICE(problem.kind, ProblemKind, PROBLEM_KIND_LIST, "tower",
-           "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
-           "the literature"),
+           "tower: gaps and core thickness of the scene; external: your own simulator"),
     TEXT(problem.command, "none",
          "external: command of the simulator, started without a shell once per thread (docs/external.md)"),
     REAL(problem.timeout_s, "s", "600", 1e-3, 1e7,
@@ -273,9 +272,7 @@ static const Option OPTIONS[] = {
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
-    CHOICE(problem.noisy, Noisy, NOISY_LIST, "auto",
-           "whether evaluations of one design differ; auto: only with problem.noise"),
-    REAL(problem.noise, "-", "0", 0, 1, "test problems: standard deviation of an objective, as a share of its value"),
+    CHOICE(problem.noisy, Noisy, NOISY_LIST, "auto", "whether evaluations of one design differ; auto: no"),
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
@@ -531,7 +528,8 @@ void settings_defaults(Settings *s)
 /* Keys of earlier versions, which stand in their runs, and what is to be known of them today. */
 static const char *const FORMER[][2] = {{"search.asynchronous", "every search looks ahead (search.ahead)"},
                                         {"search.generations", "search.max_evals limits a search"},
-                                        {"search.blas", "OPENBLAS_CORETYPE in the environment chooses other kernels"}};
+                                        {"search.blas", "OPENBLAS_CORETYPE in the environment chooses other kernels"},
+                                        {"problem.noise", "textbook problems are in imtet-bench"}};
 
 static size_t find_former(const char *key)
 {

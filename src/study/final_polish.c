@@ -8,7 +8,7 @@
 #include "study/refine.h"
 
 /* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the
- * share of the search, 1 / SHARE, that all of them take; designs. Chosen by scripts/polish (docs/polish.md). */
+ * share of the search, 1 / SHARE, that all of them take; designs. Chosen in docs/polish.md. */
 enum { REPLICATES_MIN = 4, EVALS_MIN = 40, SHARE = 10, DESIGNS_MAX = 32 };
 
 static size_t n_designs(const Settings *s)

@@ -1,4 +1,4 @@
-/* evaluate/textbook.h -- test problems whose front is known, for trying the search without a simulator.
+/* bench/textbook.h -- test problems whose front is known, for trying the search without a simulator.
  *
  *   DTLZ2  x in [0,1]^n; sum f^2 = (1 + g)^2 with g = sum over the last n - m + 1 variables of (x - 1/2)^2;
  *          the front is the positive part of the unit sphere
@@ -6,19 +6,19 @@
  *          the positive part of the ellipsoid with half axes 2, 4, ..., 2 m; the first n_position variables say where
  *          on the front, the others how far from it
  *
- *   other kinds (problem.kinds): a whole number 0..10 stands for that many tenths of a variable's width; choice j of n
+ *   other kinds (evaluate/kinds.h): a whole number 0..10 stands for that many tenths of a variable's width; choice j of n
  *          words, counted from 0, for the share (j s mod n) / (n - 1) of it, s = 3 (4 where 3 divides n), so that
  *          neighbours among the words are none; log: 0.001 to 1, its logarithm evenly spread
  *
- * As a simulator  one part, the objectives f (n_obj), each times 1 + problem.noise z, z standard normal from the stream
- *                 (search.seed, id of the request); one worker, since it takes no time
+ * As a simulator  one part, the objectives f (n_obj), each times 1 + noise z, z standard normal from the stream (seed, id
+ *                 of the request); one worker, since it takes no time
+ * As a worker     build/release/textbook NAME VARIABLES OBJECTIVES [NOISE [SEED [KINDS]]] speaks JSON lines (docs/external.md)
  * Threads  pure functions
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
  *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4). */
 #pragma once
 
 #include "evaluate/problem.h"
-#include "settings/options.h"
 
 enum { TEXTBOOK_VAR_MAX = 256, TEXTBOOK_OBJ_MAX = 32 };
 
@@ -28,11 +28,19 @@ typedef struct {
     void (*evaluate)(size_t n_var, size_t n_obj, const double x[], double f[]);
 } Textbook;
 
-/* Problem i = 0, 1, ... in the order of the setting problem.kind; NULL behind the last. */
+/* Problem i = 0, 1, ...; NULL behind the last. */
 const Textbook *textbook(size_t i);
 
+typedef struct {
+    const char *name;
+    long n_var, n_obj;
+    double noise; /* [-] standard deviation of an objective, as a share of its value */
+    uint32_t seed;
+    const char *kinds; /* as problem.kinds */
+} TextbookOptions;
+
 /* Released by problem_close. */
-Status textbook_open(Problem *p, const ProblemOptions *options, uint32_t seed, Err *err);
+Status textbook_open(Problem *p, const TextbookOptions *options, Err *err);
 
 /* Of such a problem: the objectives without noise. */
 void textbook_exact(const Problem *p, const double x[], double f[]);

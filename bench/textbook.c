@@ -1,4 +1,4 @@
-#include "evaluate/textbook.h"
+#include "bench/textbook.h"
 
 #include "base/random.h"
 #include "evaluate/kinds.h"
@@ -123,6 +123,12 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = 1;
 }
 
+static void judge(const Evaluation *e, double f[], double g[], const void *user)
+{
+    (void)g;
+    memcpy(f, e->f, ((const Exercise *)user)->n_obj * sizeof *f);
+}
+
 static const Simulator TEXTBOOK = {.simulate = simulate, .combine = combine, .close = free};
 
 static Status set_variables(Exercise *e, const char *kinds, Err *err)
@@ -141,21 +147,22 @@ static Status set_variables(Exercise *e, const char *kinds, Err *err)
     return STATUS_OK;
 }
 
-Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *err)
+Status textbook_open(Problem *p, const TextbookOptions *o, Err *err)
 {
-    const long n_var = o->variables, m = o->objectives;
-    if (n_var > TEXTBOOK_VAR_MAX || m > TEXTBOOK_OBJ_MAX)
-        return bad_data(err, "problem.variables: a textbook problem has at most %d, and %d objectives",
-                        TEXTBOOK_VAR_MAX, TEXTBOOK_OBJ_MAX);
-    if (m < 2 || n_var < m)
-        return bad_data(err, "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
+    const char *names[N_OF(PROBLEMS)];
+    size_t i = 0;
+    for (size_t k = 0; k < N_OF(PROBLEMS); k++)
+        names[k] = PROBLEMS[k].name;
+    while (i < N_OF(PROBLEMS) && strcmp(o->name, names[i]) != 0)
+        i++;
+    if (i == N_OF(PROBLEMS))
+        return fail_no_word(err, STATUS_USAGE, "problem", o->name, "problem", names, N_OF(PROBLEMS));
+    if (o->n_var > TEXTBOOK_VAR_MAX || o->n_obj > TEXTBOOK_OBJ_MAX || o->n_obj < 2 || o->n_var < o->n_obj)
+        return bad_data(err, "a textbook problem has 2 to %d objectives and up to %d variables, no fewer",
+                        TEXTBOOK_OBJ_MAX, TEXTBOOK_VAR_MAX);
     Exercise *e;
     TRY_ROOM(e, 1, "a problem", err);
-    e->function = textbook(o->kind - PROBLEM_TEXTBOOK);
-    e->n_var = n_var;
-    e->n_obj = m;
-    e->noise = o->noise;
-    e->seed = seed;
+    *e = (Exercise){&PROBLEMS[i], o->n_var, o->n_obj, o->noise, o->seed, {0}, {0}, {0}};
     const Status status = set_variables(e, o->kinds, err);
     if (status != STATUS_OK) {
         free(e);
@@ -166,6 +173,8 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
                    .lower = e->lower,
                    .upper = e->upper,
                    .kind = kinds_are_real(o->kinds) ? NULL : e->kind,
+                   .judge = judge,
+                   .user = e,
                    .simulator = &TEXTBOOK,
                    .self = e,
                    .n_parts = 1,
