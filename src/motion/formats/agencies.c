@@ -60,7 +60,8 @@ static int recognise(const Format *f, Lines l)
     if (f->is)
         return f->is(l);
     while (l.number < MAX_OF(f->within, 1) && lines_next(&l))
-        if ((!f->begins || text_is(BEGINS, l.from, l.to, f->begins)) && (!f->has || text_is(HOLDS, l.from, l.to, f->has)))
+        if ((!f->begins || text_is(BEGINS, l.from, l.to, f->begins)) &&
+            (!f->has || text_is(HOLDS, l.from, l.to, f->has)))
             return 1;
     return 0;
 }
@@ -497,8 +498,8 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
     const char *p = ahead.from;
     while (p < ahead.to && !strchr("EeDd ", *p))
         p++;
-    for (p += p < ahead.to; p < ahead.to && (isdigit((unsigned char)*p) ||
-                                             (strchr("+-", *p) && !isdigit((unsigned char)p[-1])));)
+    for (p += p < ahead.to;
+         p < ahead.to && (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])));)
         p++;
     h->width = p >= ahead.raw + 10 && p <= ahead.raw + 20 ? (int)(p - ahead.raw) : 10;
     if (reals[RATE_AT] == reals[UNDEFINED] && reals[UNDEFINED] > 1e30) {
@@ -629,16 +630,15 @@ static const Format FORMATS[] = {
                {UNIT, "UNITS:"},
                {PEAK, "PGA_CM/S^2:"},
                {TYPE, "DATA_TYPE:"}}},
-    {"jma", .begins = "SITE CODE", .parting = ",",
-     .words = {{RATE, "SAMPLING RATE"}, {UNIT, "UNIT"}}},
+    {"jma", .begins = "SITE CODE", .parting = ",", .words = {{RATE, "SAMPLING RATE"}, {UNIT, "UNIT"}}},
     {"cwb", .begins = "#Earthquake Information", .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
      .words = {{RATE, "#SampleRate(Hz)"},
                {DURATION, "#RecordLength(sec)"},
                {UNIT, "#AmplitudeUnit"},
                {NAMES, "#DataSequence:"}}},
-    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .parting = " ", .peak_of = "(%s)",
-     .unit = UNIT_CM_S2, .words = {{COUNT, "NUMBER OF DATA|:"}, {STEP, "SAMPLING INTERVAL|:"}}},
-    {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION"2, .ends = "DATOS DE ACELERACION:", .parting = "/",
+    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .parting = " ", .peak_of = "(%s)", .unit = UNIT_CM_S2,
+     .words = {{COUNT, "NUMBER OF DATA|:"}, {STEP, "SAMPLING INTERVAL|:"}}},
+    {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12, .ends = "DATOS DE ACELERACION:", .parting = "/",
      .words = {{NAMES, "ORIENTACION C1|:"},
                {STEP, "INTERVALO DE MUESTREO, C1|:"},
                {UNIT, "UNIDADES DE LOS DATOS|:"},
@@ -663,15 +663,15 @@ static const Format FORMATS[] = {
                {UNIT, "units:"},
                {COUNT, "number of samples:"},
                {TYPE, "->"}}},
-    {"geonet", .begins = "Uncorrected accelerogram|Corrected accelerogram", .has = "GNS|Nuclear Sci",
-     .text_lines = 16, .width = 8, .one_word = 1, .more = geonet_more,
+    {"geonet", .begins = "Uncorrected accelerogram|Corrected accelerogram", .has = "GNS|Nuclear Sci", .text_lines = 16,
+     .width = 8, .one_word = 1, .more = geonet_more,
      .words = {{NAME, "Component"}, {UNIT, "|units of 1.00"}, {PEAK, "Acceleration|Peak"}}},
     {"smc", .is = smc_is, .text_lines = SMC_TEXT_LINES, .unit = UNIT_CM_S2, .more = smc_more,
      .words = {{NAME, "|component="}}},
     {"cosmos", .has = "(Format v", .text_lines = -1, .more = cosmos_more,
      .words = {{TYPE, "|(Format v"}, {PEAK, "Processed|Max"}, {NAME, "Sta Cha|:"}}},
-    {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .integers = 1,
-     .number_lines = 7, .more = csmip_more,
+    {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .integers = 1, .number_lines = 7,
+     .more = csmip_more,
      .words = {{NAME, "Chan|:"},
                {PLACE, "Chan|Location"},
                {COUNT, "|of points"},
@@ -685,8 +685,8 @@ static const Format FORMATS[] = {
                {COUNT, "|NO. OF POINTS"},
                {DURATION, "|DURATION"},
                {UNIT, "UNITS ARE| and "}}},
-    {"usc", .begins = "FILE", .has = "OF UNCORRECTED ACCELEROGRAM DATA", .text_lines = 13,
-     .number_lines = 14, .width = 7, .pairs = 1, .one_word = 1,
+    {"usc", .begins = "FILE", .has = "OF UNCORRECTED ACCELEROGRAM DATA", .text_lines = 13, .number_lines = 14,
+     .width = 7, .pairs = 1, .one_word = 1,
      .words = {{NAME, "COMP"}, {COUNT, "|NO. OF POINTS"}, {UNIT, "UNITS ARE| and "}}},
     {"sac", .is = sac_text_is, .read = sac_text_read},
     {"slist", .begins = "TIMESERIES ", .has = "SLIST", .text_lines = 1, .more = series_more},
@@ -696,11 +696,9 @@ static const Format FORMATS[] = {
     {"", .begins = "RESPONSE", .has = "FOURIER",
      .refused = "response and Fourier spectra (volume 3); take the accelerogram"},
     {"", .begins = "<?xml", .refused = "XML (StationXML, QuakeML or the like)"},
-    {"", .begins = "<!DOCTYPE html|<html",
-     .refused = "a web page, perhaps of a log-in, in the place of the record"},
+    {"", .begins = "<!DOCTYPE html|<html", .refused = "a web page, perhaps of a log-in, in the place of the record"},
     {"", .begins = "WID2|BEGIN GSE2", .refused = "GSE2; export it as miniSEED, SAC or text"},
-    {"", .begins = "version https://git-lfs",
-     .refused = "a pointer of git-lfs in the place of the record"},
+    {"", .begins = "version https://git-lfs", .refused = "a pointer of git-lfs in the place of the record"},
     {"at2", .is = at2_is, .ends = "NPTS", .width = 15, .more = at2_more,
      .words = {{COUNT, "|NPTS"},
                {UNIT, "|UNITS OF"},
