@@ -12,7 +12,7 @@
 static const double LARGEST_PEAK_G = 20.0;
 
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_SIMCENTER};
-enum { N_BINARY_FORMATS = N_OF(BINARY_FORMATS), ARCHIVES_DEEP = 2 };
+enum { ARCHIVES_DEEP = 2 };
 
 static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
@@ -88,25 +88,6 @@ static int is_acceleration(const Channel *c)
     return 1;
 }
 
-enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
-
-/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message. */
-static void list_channels(const Record *r, char list[LIST_MAX])
-{
-    const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
-    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 24 ? (int)each - 8 : 16;
-    size_t used = 0;
-    list[0] = 0;
-    for (size_t i = 0; i < n && used + shown + 24 < LIST_MAX; i++) {
-        char name[CHANNEL_NAME_MAX + 1];
-        name_shorten(name, shown, r->channel[i].name);
-        used += snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)", i ? ", " : "", i + 1,
-                         name);
-        if (i + 1 < n && used + shown + 24 >= LIST_MAX)
-            snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
-    }
-}
-
 /* Letters and digits only, in small letters, so that N-S is NS and "360 Deg" is 360deg. */
 static void plain_name(const char *name, char plain[64])
 {
@@ -142,24 +123,39 @@ static const Channel *find_channel(const Record *r, const char *wanted)
     return NULL;
 }
 
-static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
+/* The channel that is wanted, or the only acceleration where none is named. */
+static Status choose_channel(const Record *r, const char *path, const Channel **out, Err *err)
 {
-    char list[LIST_MAX];
-    const int automatic = !wanted || strcmp(wanted, "auto") == 0;
-    int n = 0;
-    for (size_t i = 0; i < r->n_channels; i++)
+    enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
+    const char *wanted = r->hints.channel;
+    const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
+    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 24 ? (int)each - 8 : 16;
+    char list[LIST_MAX] = "";
+    int n_accelerations = 0;
+    size_t used = 0;
+
+    /* "1 'NS', 2 'EW'", names shortened where there are too many for a message. */
+    for (size_t i = 0; i < n && used + shown + 24 < LIST_MAX; i++) {
+        char name[CHANNEL_NAME_MAX + 1];
+        name_shorten(name, shown, r->channel[i].name);
+        used += snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)", i ? ", " : "", i + 1,
+                         name);
+        if (i + 1 < n && used + shown + 24 >= LIST_MAX)
+            snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
+    }
+    for (size_t i = 0; i < n; i++)
         if (is_acceleration(&r->channel[i])) {
             *out = &r->channel[i];
-            n++;
+            n_accelerations++;
         }
-    list_channels(r, list);
-    if (automatic && n == 0)
-        return bad_data(err, "%s: none of its channels is an acceleration: %s", path, list);
-    if (!automatic || n > 1)
-        *out = automatic ? NULL : find_channel(r, wanted);
-    if (!*out && automatic)
-        return bad_data(err, "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)",
-                        path, r->n_channels, list);
+    if (wanted)
+        *out = find_channel(r, wanted);
+    else if (n_accelerations != 1)
+        return n_accelerations == 0
+                   ? bad_data(err, "%s: none of its channels is an acceleration: %s", path, list)
+                   : bad_data(err,
+                              "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)",
+                              path, n, list);
     if (!*out)
         return bad_data(err, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path, wanted, list);
     if (!is_acceleration(*out))
@@ -175,14 +171,13 @@ static Status choose_channel(const Record *r, const char *path, const char *want
 /* The rows of one channel. */
 typedef struct {
     const char *path;
+    const Channel *c;
     const Row *base;
-    size_t stride, n;
-    int is_timed;
 } Series;
 
 static const Row *row_at(const Series *s, size_t i)
 {
-    return &s->base[i * s->stride];
+    return &s->base[i * s->c->stride];
 }
 
 /* The shortest decimal number within `slack` of x: times printed with few digits say 0.02, not 0.0200003. */
@@ -203,53 +198,75 @@ static double step_before(const Series *s, size_t i)
     return row_at(s, i)->t - row_at(s, i - 1)->t;
 }
 
-/* Names the step that is least like the others: there the sample is missing, while the drift that it causes is noticed
- * elsewhere. The step of the others is what it breaks. */
-static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err *err)
-{
-    size_t odd = 1;
-    for (size_t i = 2; i < s->n; i++)
-        if (fabs(step_before(s, i) - dt) > fabs(step_before(s, odd) - dt))
-            odd = i;
-    const double step = step_before(s, odd), others = fmax((double)s->n - 2, 1);
-    const double span = row_at(s, s->n - 1)->t - row_at(s, 0)->t;
-    return bad_data(
-        err,
-        "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
-        "is missing, or the file must be resampled: %sset motion.dt_s",
-        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
-        s->is_timed ? "" : "name the column of its times time_s and ");
-}
-
-/* Times on film may coincide in the digits that are printed. */
-static Status times_increase(const Series *s, int digitized, Err *err)
-{
-    for (size_t i = 1; i < s->n; i++)
-        if (!(step_before(s, i) > 0) && !(digitized && step_before(s, i) == 0))
-            return bad_data(err, "%s:%d: time %.10g s does not come after %.10g s", s->path, row_at(s, i)->line,
-                            row_at(s, i)->t, row_at(s, i - 1)->t);
-    return STATUS_OK;
-}
-
 /* The common step. A printed time is off by half a unit of its last digit at most, and so are the first and the last
  * one, which give the step: one unit in all, or 1e-5 of the time where six significant digits were printed, or 1e-3 of
  * a step in any case. A missing or doubled sample is off by half a step or more wherever it stands; hence the cap. */
 static Status uniform_step(const Series *s, double *dt, Err *err)
 {
-    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, intervals = (double)(s->n - 1);
-    int decimals = row_at(s, 0)->decimals;
-    for (size_t i = 1; i < s->n; i++)
+    const size_t n = s->c->n;
+    const double begin = row_at(s, 0)->t, span = row_at(s, n - 1)->t - begin, intervals = (double)(n - 1);
+    int decimals = row_at(s, 0)->decimals, is_even = 1;
+    for (size_t i = 1; i < n; i++)
         decimals = MAX_OF(row_at(s, i)->decimals, decimals);
     const double digit = pow(10.0, -decimals);
     *dt = shortest_near(span / intervals, digit / intervals);
     if (!(*dt > 0) || !isfinite(span))
-        return bad_data(err, "%s: %zu samples from %g s to %g s have no usable step", s->path, s->n, begin,
-                        row_at(s, s->n - 1)->t);
-    for (size_t i = 0; i < s->n; i++) {
+        return bad_data(err, "%s: %zu samples from %g s to %g s have no usable step", s->path, n, begin,
+                        row_at(s, n - 1)->t);
+    for (size_t i = 0; i < n && is_even; i++) {
         const double t = row_at(s, i)->t, printed = fmax(digit, 1e-5 * fabs(t));
-        if (fabs(t - begin - (double)i * *dt) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
-            return fail_at_oddest_step(s, *dt, digit, err);
+        is_even = !(fabs(t - begin - (double)i * *dt) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt));
     }
+    if (is_even)
+        return STATUS_OK;
+
+    /* The message names the step that is least like the others: there the sample is missing, while the drift that it
+     * causes is noticed elsewhere. The step of the others is what it breaks. */
+    size_t odd = 1;
+    for (size_t i = 2; i < n; i++)
+        if (fabs(step_before(s, i) - *dt) > fabs(step_before(s, odd) - *dt))
+            odd = i;
+    const double step = step_before(s, odd), others = fmax((double)n - 2, 1);
+    return bad_data(
+        err,
+        "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
+        "is missing, or the file must be resampled: %sset motion.dt_s",
+        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
+        s->c->is_timed ? "" : "name the column of its times time_s and ");
+}
+
+/* The step that the file states or its times have; 0: the times are uneven and to be resampled. */
+static Status find_step(const Series *s, const MotionHow *how, double *dt, Err *err)
+{
+    const Channel *c = s->c;
+    const double intervals = (double)(c->n - 1);
+    Err uneven = {0};
+    *dt = c->dt;
+    if (*dt == 0) {
+        for (size_t i = 1; i < c->n; i++) /* times on film may coincide in the digits that are printed */
+            if (!(step_before(s, i) > 0) && !(c->digitized && step_before(s, i) == 0))
+                return bad_data(err, "%s:%d: time %.10g s does not come after %.10g s", s->path, row_at(s, i)->line,
+                                row_at(s, i)->t, row_at(s, i - 1)->t);
+        uniform_step(s, dt, &uneven);
+    }
+    if (*dt > MOTION_STEP_MAX_S)
+        return bad_data(err, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", s->path,
+                        row_at(s, 0)->line, *dt, MOTION_STEP_MAX_S);
+    if (uneven.code != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
+        return c->digitized ? bad_data(err,
+                                       "%s:%d: digitized from film, where its trace bends; have it resampled by "
+                                       "straight lines: --set motion.dt_s=0.005",
+                                       s->path, row_at(s, 0)->line)
+                            : bad_data(err, "%s", uneven.text);
+
+    /* The header's step and that of the printed times, which have fewer digits: within 1 %, and half a step in all. */
+    const double apart = c->other_dt > 0 ? fabs(*dt - c->other_dt) : 0;
+    if (uneven.code == STATUS_OK && apart * intervals > *dt * (0.6 + 0.01 * intervals))
+        return bad_data(err, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
+                        c->dt > 0 ? *dt : c->other_dt, c->dt > 0 ? c->other_dt : *dt);
+    if (c->other_dt > 0 && apart * (double)c->n < 0.1 * *dt)
+        *dt = c->other_dt;
+    *dt = uneven.code == STATUS_OK ? *dt : 0;
     return STATUS_OK;
 }
 
@@ -259,70 +276,68 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
 static const Row *peak_from(const Series *s, double offset)
 {
     const Row *peak = row_at(s, 0);
-    for (size_t i = 1; i < s->n; i++)
+    for (size_t i = 1; i < s->c->n; i++)
         peak = fabs(row_at(s, i)->a - offset) > fabs(peak->a - offset) ? row_at(s, i) : peak;
     return peak;
 }
 
-static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
+/* Are the samples, in the unit of the file, plausible, and do they peak where the header says? offset: their mean where
+ * that is to be subtracted. */
+static Status check_peak(Motion *m, const Series *s, double offset, double to_m_s2, MotionUnit unit, Err *err)
 {
-    for (size_t i = 0; i < s->n; i++)
-        if (!isfinite(row_at(s, i)->a))
-            return bad_data(err, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
-    const Row *peak = peak_from(s, 0);
-    if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
-        return bad_data(err, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path, peak->line,
-                        scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
-    return STATUS_OK;
-}
-
-/* The mean of the samples [unit of the file]; 0 where the channel keeps its own. */
-static double offset_of(const Channel *c, const Series *s)
-{
-    double sum = 0;
-    for (size_t i = 0; c->subtract_mean && i < s->n; i++)
-        sum += row_at(s, i)->a;
-    return sum / (double)s->n;
-}
-
-/* The peak of the samples against the one that the header states, in the unit of the file. */
-static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, double to_m_s2,
-                                MotionUnit unit, Err *err)
-{
+    const Channel *c = s->c;
+    const Row *highest = peak_from(s, 0);
     const double to_file = c->scale / to_m_s2, peak = to_m_s2 * fabs(peak_from(s, offset)->a - offset);
     const double error = c->peak > 0 ? (fabs(peak - c->peak) - c->peak_slack) / c->peak : 0;
     char what[160];
+    if (!(fabs(highest->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
+        return bad_data(err, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
+                        highest->line, c->scale * highest->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
     snprintf(what, sizeof what, "its samples peak at %.5g %s, its header says %.5g", peak * to_file, UNIT_NAMES[unit],
              c->peak * to_file);
     if (error > PEAK_ERROR_MAX)
         return bad_data(err, "%s: %s; more than %g %% apart", s->path, what, 100 * PEAK_ERROR_MAX);
-    if (error > 0.2 * PEAK_ERROR_MAX)
-        snprintf(m->warning, sizeof m->warning, "%s", what);
+    snprintf(m->warning, sizeof m->warning, "%s", error > 0.2 * PEAK_ERROR_MAX ? what : c->warning ? c->warning : "");
     return STATUS_OK;
 }
 
-static Status allocate(Motion *m, size_t n, double dt, Err *err)
+/* The samples in m/s2 become the motion's; uneven ones are resampled by straight lines, at begin + k dt up to the end.
+ * A step so short that it would multiply the file many times is a mistake. */
+static Status take_samples(Motion *m, const Series *s, const MotionHow *how, Err *err)
 {
+    const Channel *c = s->c;
+    MotionUnit unit;
+    double dt, to_m_s2 = 1, offset = 0, n = (double)c->n;
+    TRY(find_step(s, how, &dt, err));
+    const int is_even = dt > 0;
+    TRY(settle_unit(s->path, c, how, &unit, &to_m_s2, err));
+    for (size_t i = 0; i < c->n; i++) {
+        if (!isfinite(row_at(s, i)->a))
+            return bad_data(err, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
+        offset += c->subtract_mean ? row_at(s, i)->a : 0;
+    }
+    offset /= n;
+    TRY(check_peak(m, s, offset, to_m_s2, unit, err));
+    if (c->subtract_mean)
+        snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
+    const double begin = row_at(s, 0)->t, span = row_at(s, c->n - 1)->t - begin;
+    if (!is_even) {
+        dt = how->dt_s;
+        n = floor(span / dt * (1 + 1e-12)) + 1;
+        if (!(n >= 2 && n <= 1e6 + 16 * (double)c->n))
+            return bad_data(err, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n, c->n,
+                            span);
+        snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
+                 "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
+    }
     TRY_ROOM(m->accel, n, "samples of a motion", err);
-    m->n = n;
+    m->n = (size_t)n;
     m->dt_s = dt;
-    return STATUS_OK;
-}
-
-/* Straight lines between the samples, at begin + k dt up to the end. A step so short that it would multiply the file
- * many times is a mistake. */
-static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, double offset, Err *err)
-{
-    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
-    const double n = floor(span / dt * (1 + 1e-12)) + 1;
-    if (!(n >= 2 && n <= most))
-        return bad_data(err, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n, s->n, span);
-    TRY(allocate(m, (size_t)n, dt, err));
-    snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
-             "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
-    for (size_t k = 0, i = 0; k < m->n; k++) {
+    for (size_t k = 0; k < m->n && is_even; k++)
+        m->accel[k] = to_m_s2 * (row_at(s, k)->a - offset);
+    for (size_t k = 0, i = 0; k < m->n && !is_even; k++) {
         const double t = begin + (double)k * dt;
-        while (i + 2 < s->n && row_at(s, i + 1)->t <= t)
+        while (i + 2 < c->n && row_at(s, i + 1)->t <= t)
             i++;
         const Row *a = row_at(s, i), *b = row_at(s, i + 1);
         m->accel[k] = to_m_s2 * (a->a - offset + (b->a - a->a) * fmin((t - a->t) / (b->t - a->t), 1));
@@ -330,99 +345,15 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     return STATUS_OK;
 }
 
-/* Where it is even, the header's step against that of the printed times: within 1 %, and half a step in all. */
-static Status check_step(const Series *s, const Channel *c, double dt, int even, Err *err)
-{
-    const double intervals = (double)(c->n - 1);
-    if (dt > MOTION_STEP_MAX_S)
-        return bad_data(err, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", s->path,
-                        row_at(s, 0)->line, dt, MOTION_STEP_MAX_S);
-    if (!even || c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
-        return STATUS_OK;
-    return bad_data(err, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
-                    c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
-}
-
-/* The samples in m/s2 become the motion's. */
-static Status take_samples(Motion *m, const char *path, const Record *r, const Channel *c, const MotionHow *how,
-                           Err *err)
-{
-    MotionUnit unit;
-    double dt = c->dt, to_m_s2 = 1;
-    const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n, .is_timed = c->is_timed};
-    Err uneven = {0};
-    Status status = STATUS_OK;
-    if (dt == 0) {
-        TRY(times_increase(&s, c->digitized, err));
-        status = uniform_step(&s, &dt, &uneven);
-    }
-    TRY(check_step(&s, c, dt, status == STATUS_OK, err));
-    if (c->other_dt > 0 && fabs(dt - c->other_dt) * (double)c->n < 0.1 * dt) /* printed times have fewer digits */
-        dt = c->other_dt;
-    if (status != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
-        return c->digitized ? fail(err, status,
-                                   "%s:%d: digitized from film, where its trace bends; have it resampled by straight "
-                                   "lines: --set motion.dt_s=0.005",
-                                   path, row_at(&s, 0)->line)
-                            : fail(err, status, "%s", uneven.text);
-    TRY(settle_unit(path, c, how, &unit, &to_m_s2, err));
-    TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
-    const double offset = offset_of(c, &s);
-    if (c->warning)
-        snprintf(m->warning, sizeof m->warning, "%s", c->warning);
-    TRY(check_stated_peak(m, c, &s, offset, to_m_s2, unit, err));
-    if (c->subtract_mean)
-        snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
-    if (status != STATUS_OK)
-        return resample(m, &s, how->dt_s, to_m_s2, offset, err);
-    TRY(allocate(m, c->n, dt, err));
-    for (size_t i = 0; i < m->n; i++)
-        m->accel[i] = to_m_s2 * (row_at(&s, i)->a - offset);
-    return STATUS_OK;
-}
-
 /* ---- the file ------------------------------------------------------------------------------------------------- */
-
-/* Line of the first byte that no text file holds, 0 if there is none. */
-static int binary_line(const char *text, size_t length)
-{
-    int line = 1;
-    for (size_t i = 0; i < length; i++) {
-        const unsigned char c = text[i];
-        if (c < ' ' && !isspace(c))
-            return line;
-        line += c == '\n';
-    }
-    return 0;
-}
-
-/* Text: without its byte order mark and what old programs put behind it. */
-static Status read_text(Record *r, const char *path, const char *text, size_t length, const ReadHints *hints, Err *err)
-{
-    Lines l;
-    while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
-        length--;
-    if (length == 0)
-        return bad_data(err, "%s: is empty", path);
-    const int is_wide = length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0);
-    const int binary = is_wide ? 0 : binary_line(text, length);
-    if (binary)
-        return bad_data(err, "%s:%d: holds bytes that no text has; a binary file of this kind is not read", path,
-                        binary);
-    TRY(lines_open(&l, path, text, length, err));
-    return text_read(r, &l, hints, err);
-}
 
 typedef struct {
     Record *r;
     const char *path;
-    const ReadHints *hints;
-    int deep;
     Err first; /* why the first member could not be read */
 } Members;
 
-static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
-                           Err *err);
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, Err *err);
 
 /* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a damaged one not. */
 static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
@@ -431,7 +362,9 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
     Err why = {0};
     Record *one;
     TRY_ROOM(one, 1, "a record", err);
-    Status status = read_content(one, name, bytes, n, members->hints, members->deep + 1, &why);
+    one->hints = members->r->hints;
+    one->deep = members->r->deep + 1;
+    Status status = read_content(one, name, bytes, n, &why);
     if (status == STATUS_OK)
         status = record_append(members->r, one, members->path, name, err);
     else if (status == STATUS_NO_MEMORY)
@@ -449,25 +382,22 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
     return status;
 }
 
-static Status read_archive(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
-                           Err *err)
-{
-    Members members = {.r = r, .path = path, .hints = hints, .deep = deep};
-    if (deep == ARCHIVES_DEEP)
-        return bad_data(err, "%s: an archive in an archive in an archive", path);
-    TRY(archive_each(path, bytes, n, take_member, &members, err));
-    return r->n_channels > 0 ? STATUS_OK
-                             : bad_data(err, "%s: no member of this archive is a record: %.300s", path,
-                                        members.first.text[0] ? members.first.text : "it is empty");
-}
-
-static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
-                           Err *err)
+/* Every channel of an archive, of a binary file, or of a text. */
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const unsigned char *raw = (const unsigned char *)bytes;
-    if (archive_is(raw, n))
-        return read_archive(r, path, bytes, n, hints, deep, err);
-    for (int i = 0; i < N_BINARY_FORMATS; i++)
+    Members members = {.r = r, .path = path};
+    Lines l;
+    int line = 1;
+    if (archive_is(raw, n)) {
+        if (r->deep == ARCHIVES_DEEP)
+            return bad_data(err, "%s: an archive in an archive in an archive", path);
+        TRY(archive_each(path, bytes, n, take_member, &members, err));
+        return r->n_channels > 0 ? STATUS_OK
+                                 : bad_data(err, "%s: no member of this archive is a record: %.300s", path,
+                                            members.first.text[0] ? members.first.text : "it is empty");
+    }
+    for (size_t i = 0; i < N_OF(BINARY_FORMATS); i++)
         if (BINARY_FORMATS[i]->recognise(raw, n)) {
             r->is_known = BINARY_FORMATS[i] != &FORMAT_SIMCENTER; /* JSON may be anything */
             TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
@@ -475,35 +405,44 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
                 r->channel[k].format = BINARY_FORMATS[i]->name;
             return STATUS_OK;
         }
-    return read_text(r, path, bytes, n, hints, err);
-}
-
-static Status read_motion(Motion *m, Record *r, const char *path, const char *bytes, size_t n, const MotionHow *how,
-                          Err *err)
-{
-    const int chosen = how->channel && strcmp(how->channel, "auto") != 0;
-    const ReadHints hints = {.dt_s = how->dt_s, .channel = chosen ? how->channel : NULL};
-    const Channel *c = NULL;
-    TRY(read_content(r, path, bytes, n, &hints, 0, err));
-    TRY(choose_channel(r, path, how->channel, &c, err));
-    TRY(take_samples(m, path, r, c, how, err));
-    if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
-        snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
-                 m->dt_s);
-    m->is_corrected = c->is_corrected;
-    snprintf(m->name, sizeof m->name, "%s", path);
-    snprintf(m->format, sizeof m->format, "%s", c->format);
-    snprintf(m->channel, sizeof m->channel, "%s", c->name);
-    m->file_hash = hash_fnv1a(bytes, n, HASH_SEED);
-    return STATUS_OK;
+    while (n && strchr("\x1a\t\r\n ", bytes[n - 1])) /* Ctrl-Z and NUL end the texts of old programs */
+        n--;
+    if (n == 0)
+        return bad_data(err, "%s: is empty", path);
+    const int is_wide = n >= 2 && (memcmp(bytes, "\xff\xfe", 2) == 0 || memcmp(bytes, "\xfe\xff", 2) == 0);
+    for (size_t i = 0; i < n && !is_wide; i++) {
+        if (raw[i] < ' ' && !isspace(raw[i]))
+            return bad_data(err, "%s:%d: holds bytes that no text has; a binary file of this kind is not read", path,
+                            line);
+        line += raw[i] == '\n';
+    }
+    TRY(lines_open(&l, path, bytes, n, err));
+    return text_read(r, &l, err);
 }
 
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
 {
-    memset(m, 0, sizeof *m);
+    const Channel *c = NULL;
     Record *r;
+    memset(m, 0, sizeof *m);
     TRY_ROOM(r, 1, "a record", err);
-    const Status s = read_motion(m, r, path, text, length, how, err);
+    r->hints.dt_s = how->dt_s;
+    r->hints.channel = how->channel && strcmp(how->channel, "auto") != 0 ? how->channel : NULL;
+    Status s = read_content(r, path, text, length, err);
+    if (s == STATUS_OK)
+        s = choose_channel(r, path, &c, err);
+    if (s == STATUS_OK)
+        s = take_samples(m, &(Series){path, c, r->row + c->first}, how, err);
+    if (s == STATUS_OK) {
+        if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
+            snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
+                     m->dt_s);
+        m->is_corrected = c->is_corrected;
+        snprintf(m->name, sizeof m->name, "%s", path);
+        snprintf(m->format, sizeof m->format, "%s", c->format);
+        snprintf(m->channel, sizeof m->channel, "%s", c->name);
+        m->file_hash = hash_fnv1a(text, length, HASH_SEED);
+    }
     record_free(r);
     free(r);
     return s;

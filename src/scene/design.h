@@ -42,15 +42,23 @@ static const double DESIGN_OPEN_M = 10.0; /* [m] a gap as wide stands for no sto
 
 enum { DESIGN_VARIABLES_MAX = (SIDES + 4) * FLOORS_MAX + 6 };
 
-/* x: n_gaps gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), n_bumpers bumpers, has_side sides,
- * n_links links, n_slips friction links, the tuned mass (n_mass = 3), n_choices choices of n_words devices, has_roof
- * choices of a tuned mass or none. */
 typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_FRICTION, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
 
+/* x: gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), bumpers, side, links, friction links, the tuned
+ * mass (n_mass = 3), choices of n_words devices, choice of a tuned mass or none at the roof. */
+enum { DESIGN_GROUPS = 9 };
+
 typedef struct {
-    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side, n_links, n_slips, n_mass, n_choices, n_words, has_roof;
-    FloorDevice word[N_FLOOR_DEVICES];                     /* (n_words) */
-    int gap_zones, bumper_zones, link_zones, device_zones; /* 0: a variable per floor */
+    int n_floors, n_var, n_words;
+    union {
+        struct {
+            int n_gaps, n_walls, n_bumpers, has_side, n_links, n_slips, n_mass, n_choices, has_roof;
+        };
+        int count[DESIGN_GROUPS]; /* the same as numbers of variables in the groups of x */
+    };
+    int first[DESIGN_GROUPS];          /* the first variable of each group */
+    int zones[DESIGN_GROUPS];          /* 0: a variable per floor, or a group that has nothing to do with floors */
+    FloorDevice word[N_FLOOR_DEVICES]; /* (n_words) */
     GapSides gap_sides;
 } DesignSpace;
 

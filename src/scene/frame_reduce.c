@@ -2,120 +2,25 @@
 #include "scene/core_beam.h"
 #include "scene/frame.h"
 
-/* ---- unknowns ------------------------------------------------------------------------------------------------- */
-
-enum { ENDS = 2, LOCAL = ENDS * FRAME_DOFS };
-
-/* Unknowns 0..n_slaves-1 are removed; from n_slaves on are the masters: the floors, then others that are kept; n, one
- * more than there are, stands for what the ground holds. */
+/* Which displacements are removed, and the matrices of the condensation. Unknowns 0..n_slaves-1 are removed; from
+ * n_slaves on are the masters: the floors, then others that are kept; n, one more than there are, stands for what the
+ * ground holds. */
 typedef struct {
     const Frame *frame;
-    int n_slaves, n, band; /* band: largest distance of two coupled slaves */
-    int n_shapes;          /* masters, or one more: what is missed of the ground's motion */
-    int *unknown;          /* (displacements) */
-} Numbering;
+    int n_displacements, n_slaves, n_masters, n;
+    int band;     /* largest distance of two coupled slaves */
+    int n_shapes; /* masters, or one more: what is missed of the ground's motion */
+    int *unknown; /* (n_displacements) */
+    int *root;    /* (n_displacements) the displacement that each equals; itself: it is tied to none */
+    size_t rows;  /* n + 1 */
+    double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
+    double *T;    /* (n_shapes, rows) displacements in a shape, row by row: of the slaves, 1 of its master, 0 of the
+                   * ground's */
+    double *F;    /* (n_shapes, rows) forces that belong to it */
+    double *diag; /* (rows) of the stiffness of all unknowns */
+} Condensation;
 
-static int n_displacements(const Frame *f)
-{
-    return f->n[FRAME_NODES] * FRAME_DOFS;
-}
-
-static int n_masters(const Numbering *u)
-{
-    return u->n - u->n_slaves;
-}
-
-/* The displacement that this one equals. */
-static int root_of(const Frame *f, int i)
-{
-    return frame_followed(f, i / FRAME_DOFS, i % FRAME_DOFS) * FRAME_DOFS + i % FRAME_DOFS;
-}
-
-typedef struct {
-    double z, x;
-    int node;
-} Place;
-
-/* From the bottom up, which keeps the band narrow. */
-static int by_height(const void *a, const void *b)
-{
-    const Place *p = a, *q = b;
-    if (p->z != q->z)
-        return p->z < q->z ? -1 : 1;
-    if (p->x != q->x)
-        return p->x < q->x ? -1 : 1;
-    return p->node - q->node;
-}
-
-/* What becomes of a displacement that follows no other; before it has a number this stands in the place of that. */
-enum { HELD = -4, FLOOR, KEPT, SLAVE };
-
-/* Numbers from `next` on for what is of one kind; returns the next one. */
-static int number_kind(Numbering *u, const Place place[], int kind, int next)
-{
-    for (int k = 0; k < n_displacements(u->frame); k++) {
-        int *unknown = &u->unknown[root_of(u->frame, place[k / FRAME_DOFS].node * FRAME_DOFS + k % FRAME_DOFS)];
-        if (*unknown == kind)
-            *unknown = next++;
-    }
-    return next;
-}
-
-/* Held, floors, slaves; an unknown that equals a held one is held. */
-static Status sort_unknowns(Numbering *u, Err *err)
-{
-    const Frame *f = u->frame;
-    for (int i = 0; i < n_displacements(f); i++)
-        if (f->node[i / FRAME_DOFS].fixed[i % FRAME_DOFS])
-            u->unknown[root_of(f, i)] = HELD;
-    for (int floor = 1; floor <= f->n_floors; floor++) {
-        int *unknown = &u->unknown[root_of(f, frame_floor_node(f, floor) * FRAME_DOFS + FRAME_X)];
-        if (*unknown == HELD || *unknown == FLOOR)
-            return bad_data(err, "frame: floor %d cannot move by itself: it is held or tied", floor);
-        *unknown = FLOOR;
-    }
-    return STATUS_OK;
-}
-
-static Status number_unknowns(Numbering *u, Err *err)
-{
-    const Frame *f = u->frame;
-    const int n = f->n[FRAME_NODES];
-    Place *place;
-    TRY_ROOM(place, n, "nodes of a frame", err);
-    for (int i = 0; i < n; i++)
-        place[i] = (Place){f->node[i].z, f->node[i].x, i};
-    qsort(place, n, sizeof *place, by_height);
-    u->n_slaves = number_kind(u, place, SLAVE, 0);
-    for (int floor = 1; floor <= f->n_floors; floor++)
-        u->unknown[root_of(f, frame_floor_node(f, floor) * FRAME_DOFS + FRAME_X)] = u->n_slaves + floor - 1;
-    u->n = number_kind(u, place, KEPT, u->n_slaves + f->n_floors);
-    free(place);
-    for (int i = 0; i < n_displacements(f); i++) {
-        const int unknown = u->unknown[root_of(f, i)];
-        u->unknown[i] = unknown == HELD ? u->n : unknown;
-    }
-    return STATUS_OK;
-}
-
-static void element_unknowns(const Numbering *u, const FrameElement *e, int at[LOCAL])
-{
-    for (int k = 0; k < LOCAL; k++)
-        at[k] = u->unknown[e->node[k / FRAME_DOFS] * FRAME_DOFS + k % FRAME_DOFS];
-}
-
-static void find_band(Numbering *u)
-{
-    for (int e = 0; e < u->frame->n[FRAME_ELEMENTS]; e++) {
-        int at[LOCAL];
-        element_unknowns(u, &u->frame->element[e], at);
-        for (int k = 0; k < LOCAL * LOCAL; k++) {
-            const int i = at[k / LOCAL], j = at[k % LOCAL];
-            if (i < u->n_slaves && j < u->n_slaves && i - j > u->band)
-                u->band = i - j;
-        }
-    }
-}
+enum { ENDS = 2, LOCAL = ENDS * FRAME_DOFS };
 
 /* ---- elements ------------------------------------------------------------------------------------------------- */
 
@@ -125,18 +30,6 @@ static void transform(int n, double a[], const double T[])
     double copy[LOCAL * LOCAL], work[LOCAL * LOCAL];
     memcpy(copy, a, n * n * sizeof *a);
     linalg_congruent(n, n, copy, T, work, a);
-}
-
-/* The moment at end r of the bending part vanishes: the rotation there follows the other three unknowns statically. */
-static void release(double k[4][4], double m[4][4], int r)
-{
-    double T[4][4] = {{0}};
-    for (int i = 0; i < 4; i++) {
-        T[i][i] = i != r;
-        T[r][i] = k[r][r] > 0 && i != r ? -k[r][i] / k[r][r] : 0;
-    }
-    transform(4, k[0], T[0]);
-    transform(4, m[0], T[0]);
 }
 
 /* Bending and stretching of an element along (c, s) in one matrix of x, z, rotation at both ends. */
@@ -160,9 +53,18 @@ static void join_and_turn(const double bend[4][4], double along_same, double alo
     transform(LOCAL, a[0], t[0]);
 }
 
-/* Stiffness and mass of x, z, rotation at both ends; a rotation is positive from x to z. */
-static void element_matrices(const Frame *f, const FrameElement *e, double k[LOCAL][LOCAL], double m[LOCAL][LOCAL])
+/* Displacement k of the six of an element among those of the frame. */
+static int displacement_of(const FrameElement *e, int k)
 {
+    return e->node[k / FRAME_DOFS] * FRAME_DOFS + k % FRAME_DOFS;
+}
+
+/* Stiffness and mass of x, z, rotation at both ends; a rotation is positive from x to z. at: what these six are by
+ * `number` (n_displacements). */
+static void element_matrices(const Frame *f, int element, const int number[], int at[LOCAL], double k[LOCAL][LOCAL],
+                             double m[LOCAL][LOCAL])
+{
+    const FrameElement *e = &f->element[element];
     const FrameSection *s = &f->section[e->section];
     const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
     const double dx = b->x - a->x, dz = b->z - a->z, l = hypot(dx, dz);
@@ -173,26 +75,61 @@ static void element_matrices(const Frame *f, const FrameElement *e, double k[LOC
                          .mass_per_m = mass / l,
                          .length = l},
                  bend, sway);
-    for (int end = 0; end < ENDS; end++)
-        if (e->pinned[end])
-            release(bend, sway, 2 * end + 1);
+
+    /* The moment at a pinned end vanishes: the rotation there follows the other three unknowns statically. */
+    for (int r = 1; r < 4; r += 2) {
+        double T[4][4] = {{0}};
+        for (int i = 0; i < 4 && e->pinned[r / 2]; i++) {
+            T[i][i] = i != r;
+            T[r][i] = bend[r][r] > 0 && i != r ? -bend[r][i] / bend[r][r] : 0;
+        }
+        if (e->pinned[r / 2]) {
+            transform(4, bend[0], T[0]);
+            transform(4, sway[0], T[0]);
+        }
+    }
     join_and_turn(bend, axial, -axial, dx / l, dz / l, k);
     join_and_turn(sway, mass / 3, mass / 6, dx / l, dz / l, m);
+    for (int i = 0; i < LOCAL; i++)
+        at[i] = number[displacement_of(e, i)];
 }
 
-/* ---- which unknowns are kept ---------------------------------------------------------------------------------- */
+/* ---- unknowns ------------------------------------------------------------------------------------------------- */
 
-/* Diagonal of the mass matrix by displacement, each in the place of the one that it equals. */
-static void add_up_mass(const Frame *f, double *mass)
+typedef struct {
+    double z, x;
+    int node;
+} Place;
+
+/* From the bottom up, which keeps the band narrow. */
+static int by_height(const void *a, const void *b)
 {
-    for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++) {
-        double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
-        element_matrices(f, &f->element[e], k, m);
-        for (int i = 0; i < LOCAL; i++)
-            mass[root_of(f, f->element[e].node[i / FRAME_DOFS] * FRAME_DOFS + i % FRAME_DOFS)] += m[i][i];
+    const Place *p = a, *q = b;
+    if (p->z != q->z)
+        return p->z < q->z ? -1 : 1;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return p->node - q->node;
+}
+
+/* What becomes of a displacement that follows no other; before it has a number this stands in the place of that. */
+enum { HELD = -4, FLOOR, KEPT, SLAVE };
+
+/* Numbers from `next` on for what is of one kind; returns the next one. */
+static int number_kind(Condensation *c, const Place place[], int kind, int next)
+{
+    for (int k = 0; k < c->n_displacements; k++) {
+        int *unknown = &c->unknown[c->root[place[k / FRAME_DOFS].node * FRAME_DOFS + k % FRAME_DOFS]];
+        if (*unknown == kind)
+            *unknown = next++;
     }
-    for (int i = 0; i < n_displacements(f); i++)
-        mass[root_of(f, i)] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS];
+    return next;
+}
+
+/* The unknown of the node that stands for a floor. */
+static int *floor_unknown(Condensation *c, int floor)
+{
+    return &c->unknown[c->root[frame_floor_node(c->frame, floor) * FRAME_DOFS + FRAME_X]];
 }
 
 /* Of the largest mass (a rotary one counts as at 1 m): what has less is condensed as if it had none. Such masses keep a
@@ -201,233 +138,235 @@ static const double NEGLIGIBLE_MASS = 1e-8;
 
 /* A displacement is one of the full model's if it has mass and is named in the frame, or none is named. Without mass
  * static condensation is exact. */
-static Status find_kept(Numbering *u, Err *err)
+static Status find_kept(Condensation *c, Err *err)
 {
-    const Frame *f = u->frame;
-    const int n = n_displacements(f);
-    int named = 0;
-    double largest = 0, *mass = calloc(n, sizeof *mass);
-    if (!mass)
-        return fail_memory(err, n, "masses");
-    add_up_mass(f, mass);
+    const Frame *f = c->frame;
+    const int n = c->n_displacements;
+    int named = 0, at[LOCAL];
+    double largest = 0, *mass, k[LOCAL][LOCAL], m[LOCAL][LOCAL];
+    TRY_ROOM(mass, n, "masses", err);
+    for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++) {
+        element_matrices(f, e, c->root, at, k, m);
+        for (int i = 0; i < LOCAL; i++)
+            mass[at[i]] += m[i][i];
+    }
+    for (int i = 0; i < n; i++)
+        mass[c->root[i]] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS];
     for (int i = 0; i < n; i++) {
         largest = fmax(largest, mass[i]);
         named |= f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS];
     }
     for (int i = 0; i < n; i++)
-        if ((!named || f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS]) && mass[root_of(f, i)] > NEGLIGIBLE_MASS * largest)
-            u->unknown[root_of(f, i)] = KEPT;
+        if ((!named || f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS]) && mass[c->root[i]] > NEGLIGIBLE_MASS * largest)
+            c->unknown[c->root[i]] = KEPT;
     free(mass);
     return STATUS_OK;
 }
 
-/* full: with the unknowns of the full model beside the floors. */
-static Status numbering_make(Numbering *u, const Frame *f, int full, Err *err)
+/* Numbers the unknowns. full: those of the full model are kept beside the floors. */
+static Status number_unknowns(Condensation *c, int full, Err *err)
 {
-    const int n = n_displacements(f);
-    *u = (Numbering){.frame = f, .unknown = malloc(n * sizeof *u->unknown)};
-    if (!u->unknown)
-        return fail_memory(err, n, "unknowns");
-    for (int i = 0; i < n; i++)
-        u->unknown[i] = SLAVE;
+    const Frame *f = c->frame;
+    const int nodes = f->n[FRAME_NODES], n = c->n_displacements = nodes * FRAME_DOFS;
+    TRY_ROOM(c->unknown, 2 * n, "unknowns", err);
+    c->root = c->unknown + n;
+
+    /* Every displacement is a slave, or kept, or held; one that equals a held one is held; then the floors. */
+    for (int i = 0; i < n; i++) {
+        c->unknown[i] = SLAVE;
+        c->root[i] = frame_followed(f, i / FRAME_DOFS, i % FRAME_DOFS) * FRAME_DOFS + i % FRAME_DOFS;
+    }
     if (full)
-        TRY(find_kept(u, err));
-    TRY(sort_unknowns(u, err));
-    TRY(number_unknowns(u, err));
-    u->n_shapes = n_masters(u) + !full;
-    find_band(u);
+        TRY(find_kept(c, err));
+    for (int i = 0; i < n; i++)
+        if (f->node[i / FRAME_DOFS].fixed[i % FRAME_DOFS])
+            c->unknown[c->root[i]] = HELD;
+    for (int floor = 1; floor <= f->n_floors; floor++) {
+        int *unknown = floor_unknown(c, floor);
+        if (*unknown == HELD || *unknown == FLOOR)
+            return bad_data(err, "frame: floor %d cannot move by itself: it is held or tied", floor);
+        *unknown = FLOOR;
+    }
+
+    /* Numbers for the slaves, the floors and what else is kept; what is tied has the number of what it equals. */
+    Place *place;
+    TRY_ROOM(place, nodes, "nodes of a frame", err);
+    for (int i = 0; i < nodes; i++)
+        place[i] = (Place){f->node[i].z, f->node[i].x, i};
+    qsort(place, nodes, sizeof *place, by_height);
+    c->n_slaves = number_kind(c, place, SLAVE, 0);
+    for (int floor = 1; floor <= f->n_floors; floor++)
+        *floor_unknown(c, floor) = c->n_slaves + floor - 1;
+    c->n = number_kind(c, place, KEPT, c->n_slaves + f->n_floors);
+    free(place);
+    for (int i = 0; i < n; i++) {
+        const int unknown = c->unknown[c->root[i]];
+        c->unknown[i] = unknown == HELD ? c->n : unknown;
+    }
+    c->n_masters = c->n - c->n_slaves;
+    c->n_shapes = c->n_masters + !full;
+    for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++)
+        for (int k = 0; k < LOCAL * LOCAL; k++) {
+            const int i = c->unknown[displacement_of(&f->element[e], k / LOCAL)],
+                      j = c->unknown[displacement_of(&f->element[e], k % LOCAL)];
+            if (i < c->n_slaves && j < c->n_slaves)
+                c->band = MAX_OF(c->band, i - j);
+        }
     return STATUS_OK;
 }
 
 /* ---- condensation --------------------------------------------------------------------------------------------- */
 
-/* The displacement that has an unknown. */
-static int displacement_of(const Numbering *u, int unknown)
+/* The node whose displacement has an unknown, and which one of it. */
+static const FrameNode *node_of(const Condensation *c, int unknown, int *dof)
 {
     int i = 0;
-    while (u->unknown[i] != unknown)
+    while (c->unknown[i] != unknown)
         i++;
-    return i;
+    *dof = i % FRAME_DOFS;
+    return &c->frame->node[i / FRAME_DOFS];
 }
 
-static Status fail_mechanism(const Numbering *u, int i, Err *err)
+/* Fills Kss, the right-hand sides -Ksm in T, and the diagonal of the stiffness of all unknowns. */
+static void assemble_slaves(const Condensation *c)
 {
-    static const char *const WORDS[] = {"moves along x", "moves along z", "turns"};
-    const FrameNode *node = &u->frame->node[i / FRAME_DOFS];
-    return bad_data(err, "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %s; fix it, or connect it",
-                    node->name, node->x, node->z, WORDS[i % FRAME_DOFS]);
-}
-
-typedef struct {
-    size_t rows;  /* n + 1 */
-    double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
-    double *T;    /* (n_shapes, rows) displacements in a shape, row by row: of the slaves, 1 of its master, 0 of the
-                   * ground's */
-    double *F;    /* (n_shapes, rows) forces that belong to it */
-    double *diag; /* (rows) of the stiffness of all unknowns */
-} Shapes;
-
-static void assemble_slaves(const Numbering *u, const Shapes *s)
-{
-    const int n = u->n_slaves, height = u->band + 1;
-    for (int e = 0; e < u->frame->n[FRAME_ELEMENTS]; e++) {
+    const int n = c->n_slaves, height = c->band + 1;
+    for (int e = 0; e < c->frame->n[FRAME_ELEMENTS]; e++) {
         int at[LOCAL];
         double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
-        element_unknowns(u, &u->frame->element[e], at);
-        element_matrices(u->frame, &u->frame->element[e], k, m);
+        element_matrices(c->frame, e, c->unknown, at, k, m);
         for (int i = 0; i < LOCAL; i++) {
-            s->diag[at[i]] += k[i][i];
+            c->diag[at[i]] += k[i][i];
             for (int j = 0; j < LOCAL && at[i] < n; j++) {
-                if (at[j] >= n && at[j] < u->n)
-                    s->T[(at[j] - n) * s->rows + at[i]] -= k[i][j];
+                if (at[j] >= n && at[j] < c->n)
+                    c->T[(at[j] - n) * c->rows + at[i]] -= k[i][j];
                 else if (at[i] >= at[j])
-                    s->Kss[at[j] * (size_t)height + (at[i] - at[j])] += k[i][j];
+                    c->Kss[at[j] * (size_t)height + (at[i] - at[j])] += k[i][j];
             }
         }
     }
 }
 
-/* Factors in place; a pivot that has lost so many digits of the diagonal is zero but for rounding, and what has it
- * moves without resistance. first: unknown of the first row. */
+/* Factors the stiffness of the slaves, or of the masters, in place; a pivot that has lost so many digits of the
+ * diagonal is zero but for rounding, and what has it moves without resistance. */
 static const double PIVOT_LOST = 1e-11, SWAY_LOST = 1e-12;
-static Status factor(const Numbering *u, int n, int band, double A[], const Shapes *s, int first, double lost, Err *err)
+static Status factor(const Condensation *c, int masters, double A[], Err *err)
 {
-    const int info = n > 0 ? linalg_factor_band(n, band, A) : 0;
+    static const char *const WORDS[] = {"moves along x", "moves along z", "turns"};
+    const int n = masters ? c->n_masters : c->n_slaves, band = masters ? n - 1 : c->band;
+    const int first = masters ? c->n_slaves : 0, info = n > 0 ? linalg_factor_band(n, band, A) : 0;
     const int factored = info > 0 ? info - 1 : n;
-    int p = 0;
-    while (p < factored && pow(A[p * (band + 1)], 2) > lost * s->diag[first + p])
+    int p = 0, dof;
+    while (p < factored && pow(A[p * (band + 1)], 2) > (masters ? SWAY_LOST : PIVOT_LOST) * c->diag[first + p])
         p++;
     if (info < 0)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d unknowns", n);
-    return p < n ? fail_mechanism(u, displacement_of(u, first + p), err) : STATUS_OK;
-}
-
-static Status solve_slaves(const Numbering *u, const Shapes *s, Err *err)
-{
-    const int n = u->n_slaves;
-    TRY(factor(u, n, u->band, s->Kss, s, 0, PIVOT_LOST, err));
-    if (n > 0)
-        linalg_solve_band(n, u->band, s->Kss, n_masters(u), (int)s->rows, s->T);
-    for (int m = 0; m < n_masters(u); m++)
-        s->T[m * s->rows + (n + m)] = 1;
-    return STATUS_OK;
-}
-
-/* The shape behind the masters': r, 1 of every slave along x, less what all masters together move of it. */
-static void find_missed(const Numbering *u, const Shapes *s)
-{
-    double *missed = s->T + n_masters(u) * s->rows;
-    for (int i = FRAME_X; i < n_displacements(u->frame); i += FRAME_DOFS)
-        if (u->unknown[i] < u->n_slaves)
-            missed[u->unknown[i]] = 1;
-    for (int m = 0; m < n_masters(u); m++)
-        for (int i = 0; i < u->n_slaves; i++)
-            missed[i] -= s->T[m * s->rows + i];
+    if (p == n)
+        return STATUS_OK;
+    const FrameNode *node = node_of(c, first + p, &dof);
+    return bad_data(err, "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %s; fix it, or connect it",
+                    node->name, node->x, node->z, WORDS[dof]);
 }
 
 /* A = T' K T, or T' M T with the masses of the nodes. */
-static void sum_up(const Numbering *u, const Shapes *s, int is_mass, double A[])
+static void sum_up(const Condensation *c, int is_mass, double A[])
 {
-    const Frame *f = u->frame;
-    memset(s->F, 0, u->n_shapes * s->rows * sizeof *s->F);
+    const Frame *f = c->frame;
+    memset(c->F, 0, c->n_shapes * c->rows * sizeof *c->F);
     for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++) {
         int at[LOCAL];
         double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
-        element_unknowns(u, &f->element[e], at);
-        element_matrices(f, &f->element[e], k, m);
-        for (size_t row = 0; row < u->n_shapes * s->rows; row += s->rows)
+        element_matrices(f, e, c->unknown, at, k, m);
+        for (size_t row = 0; row < c->n_shapes * c->rows; row += c->rows)
             for (int i = 0; i < LOCAL; i++)
                 for (int j = 0; j < LOCAL; j++)
-                    s->F[row + at[i]] += (is_mass ? m : k)[i][j] * s->T[row + at[j]];
+                    c->F[row + at[i]] += (is_mass ? m : k)[i][j] * c->T[row + at[j]];
     }
-    for (int i = 0; i < n_displacements(f) && is_mass; i++)
-        for (int p = 0; p < u->n_shapes; p++) {
-            const size_t at = p * s->rows + u->unknown[i];
-            s->F[at] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS] * s->T[at];
+    for (int i = 0; i < c->n_displacements && is_mass; i++)
+        for (int p = 0; p < c->n_shapes; p++) {
+            const size_t at = p * c->rows + c->unknown[i];
+            c->F[at] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS] * c->T[at];
         }
-    linalg_product_of_rows(u->n_shapes, (int)s->rows, s->T, s->F, A);
-}
-
-static Status check_sway(const Numbering *u, const Shapes *s, const double K[], Err *err)
-{
-    const int n = n_masters(u);
-    double *L;
-    TRY_ROOM(L, n * n, "numbers of a frame", err);
-    for (int j = 0; j < n; j++)
-        for (int i = j; i < n; i++)
-            L[j * n + i - j] = K[i * u->n_shapes + j];
-    const Status status = factor(u, n, n - 1, L, s, u->n_slaves, SWAY_LOST, err);
-    free(L);
-    return status;
-}
-
-static Status check_mass(const Numbering *u, const double M[], Err *err)
-{
-    for (int k = 0; k < u->frame->n_floors; k++)
-        if (!(M[k * u->n_shapes + k] > 0))
-            return bad_data(err,
-                            "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg",
-                            k + 1, u->frame->node[displacement_of(u, u->n_slaves + k) / FRAME_DOFS].name);
-    return STATUS_OK;
+    linalg_product_of_rows(c->n_shapes, (int)c->rows, c->T, c->F, A);
 }
 
 /* Of the ground's load: the missed shape's part of it below which that shape is left out. */
 static const double MISSED_MIN = 1e-3;
 
-static int is_missed(int n, const double M[])
+/* Condenses the frame to its masters, and to the shape that they miss of the ground's motion where that matters. */
+static Status condense(Condensation *c, FrameFull *out, Err *err)
 {
-    double load = 0, missed = 0;
-    for (int p = 0; p < n; p++) {
-        for (int q = 0; q < n; q++)
-            load += M[p * n + q];
-        missed += fabs(M[p * n + n - 1]);
-    }
-    return missed > MISSED_MIN * load;
-}
+    const int n = c->n_slaves, masters = c->n_masters, is_full = c->n_shapes == masters;
+    double *missed = c->T + masters * c->rows, *L, load = 0, moved = 0;
+    int dof;
 
-static Status condense(Numbering *u, const Shapes *s, FrameFull *out, Err *err)
-{
-    assemble_slaves(u, s);
-    TRY(solve_slaves(u, s, err));
-    if (u->n_shapes > n_masters(u)) {
-        find_missed(u, s);
-        sum_up(u, s, 1, out->M);
-        u->n_shapes -= !is_missed(u->n_shapes, out->M);
-    }
-    sum_up(u, s, 0, out->K);
-    sum_up(u, s, 1, out->M);
-    out->n = u->n_shapes;
-    TRY(check_sway(u, s, out->K, err));
-    return check_mass(u, out->M, err);
-}
+    /* The slaves follow every master by statics. */
+    assemble_slaves(c);
+    TRY(factor(c, 0, c->Kss, err));
+    if (n > 0)
+        linalg_solve_band(n, c->band, c->Kss, masters, (int)c->rows, c->T);
+    for (int m = 0; m < masters; m++)
+        c->T[m * c->rows + (n + m)] = 1;
 
-static Status reduce(Numbering *u, FrameFull *out, Err *err)
-{
-    const size_t n = u->n_slaves, shapes = u->n_shapes, band = (size_t)u->band + 1;
-    TRY(frame_full_make(out, u->n_shapes, err));
-    for (int i = FRAME_X; i < n_displacements(u->frame); i += FRAME_DOFS) /* what moves along x follows the ground */
-        if (u->unknown[i] >= u->n_slaves && u->unknown[i] < u->n)
-            out->influence[u->unknown[i] - u->n_slaves] = 1;
-    if (u->n_shapes > n_masters(u)) /* and so does what they miss of it */
-        out->influence[n_masters(u)] = 1;
-    Shapes s = {.rows = (size_t)u->n + 1};
-    TRY_ROOM(s.Kss, n * band + (2 * shapes + 1) * s.rows, "numbers of a frame", err);
-    s.T = s.Kss + n * band;
-    s.F = s.T + shapes * s.rows;
-    s.diag = s.F + shapes * s.rows;
-    const Status status = condense(u, &s, out, err);
-    free(s.Kss);
-    return status;
+    /* What moves along x follows the ground. Missed is r, 1 of every slave along x, less what all masters together move
+     * of it. */
+    for (int i = FRAME_X; i < c->n_displacements; i += FRAME_DOFS) {
+        const int unknown = c->unknown[i];
+        if (unknown >= n && unknown < c->n)
+            out->influence[unknown - n] = 1;
+        else if (!is_full && unknown < n)
+            missed[unknown] = 1;
+    }
+    if (!is_full) {
+        out->influence[masters] = 1;
+        for (int m = 0; m < masters; m++)
+            for (int i = 0; i < n; i++)
+                missed[i] -= c->T[m * c->rows + i];
+        sum_up(c, 1, out->M);
+        for (int p = 0; p <= masters; p++) {
+            for (int q = 0; q <= masters; q++)
+                load += out->M[p * (masters + 1) + q];
+            moved += fabs(out->M[p * (masters + 1) + masters]);
+        }
+        c->n_shapes -= !(moved > MISSED_MIN * load);
+    }
+    sum_up(c, 0, out->K);
+    sum_up(c, 1, out->M);
+    out->n = c->n_shapes;
+
+    /* The masters must resist sideways, and every floor must have mass. */
+    TRY_ROOM(L, masters * masters, "numbers of a frame", err);
+    for (int j = 0; j < masters; j++)
+        for (int i = j; i < masters; i++)
+            L[j * masters + i - j] = out->K[i * out->n + j];
+    const Status status = factor(c, 1, L, err);
+    free(L);
+    TRY(status);
+    for (int k = 0; k < c->frame->n_floors; k++)
+        if (!(out->M[k * out->n + k] > 0))
+            return bad_data(err,
+                            "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg",
+                            k + 1, node_of(c, n + k, &dof)->name);
+    return STATUS_OK;
 }
 
 Status frame_reduce(const Frame *f, FrameKept kept, FrameFull *out, Err *err)
 {
-    Numbering u;
+    Condensation c = {.frame = f};
     *out = (FrameFull){0};
-    Status status = numbering_make(&u, f, kept == FRAME_FULL, err);
+    Status status = number_unknowns(&c, kept == FRAME_FULL, err);
     if (status == STATUS_OK)
-        status = reduce(&u, out, err);
-    free(u.unknown);
+        status = frame_full_make(out, c.n_shapes, err);
+    if (status == STATUS_OK) {
+        const size_t band = c.n_slaves * ((size_t)c.band + 1), shapes = c.n_shapes * (c.rows = (size_t)c.n + 1);
+        c.Kss = calloc(band + 2 * shapes + c.rows, sizeof *c.Kss);
+        c.T = c.Kss + band;
+        c.F = c.T + shapes;
+        c.diag = c.F + shapes;
+        status = c.Kss ? condense(&c, out, err) : fail_memory(err, band + 2 * shapes, "numbers of a frame");
+    }
+    free(c.Kss);
+    free(c.unknown);
     if (status != STATUS_OK)
         frame_full_free(out);
     return status;

@@ -22,14 +22,16 @@ typedef struct {
     Frame library; /* sections "section 7", "uniaxialMaterial 1", "geomTransf 1" of what has such a tag, in the units of
                     * the model; of the last two the modulus alone counts, or nothing */
     int has_model, is_wiped, has_analysed, has_failed, has_ended;
-    char said[200]; /* by Tcl, where it failed */
-    Err refused;    /* of the first command that is not read; code STATUS_OK: none yet */
+    const char *command; /* that is read */
+    char said[200];      /* by Tcl, where it failed */
+    Err refused;         /* of the first command that is not read; code STATUS_OK: none yet */
+    Err why;             /* a part is not taken by the frame */
 } Reader;
 
 typedef Tcl_Obj *const Words[];
 
 /* The functions that take words return whether all is well; if not the model is refused, whether the script catches
- * it or not. */
+ * it or not. The name of the command stands before the text. */
 __attribute__((format(printf, 2, 3))) static int refuse(Reader *r, const char *format, ...)
 {
     static const char WHERE[] =
@@ -41,7 +43,8 @@ __attribute__((format(printf, 2, 3))) static int refuse(Reader *r, const char *f
     va_end(args);
     if (r->refused.code == STATUS_OK) {
         const int known = Tcl_Eval(r->tcl, WHERE) == TCL_OK;
-        fail(&r->refused, STATUS_BAD_DATA, "%s: %s", known ? Tcl_GetStringResult(r->tcl) : r->path, text);
+        fail(&r->refused, STATUS_BAD_DATA, "%s: %s%s%s", known ? Tcl_GetStringResult(r->tcl) : r->path, r->command,
+             !*r->command || *text == ' ' ? "" : ": ", text);
     }
     return 0;
 }
@@ -54,55 +57,43 @@ static int is_word(Tcl_Obj *word, const char *text)
 }
 
 /* Did the frame take the part that the command adds? */
-static int is_taken(Reader *r, Words w, Status status, const Err *err)
+static int is_taken(Reader *r, Status status)
 {
-    return status == STATUS_OK || refuse(r, "%s: %s", Tcl_GetString(w[0]), err->text);
+    return status == STATUS_OK || refuse(r, "%s", r->why.text);
 }
 
 static int take_numbers(Reader *r, Words w, int first, int n, double values[])
 {
     for (int i = 0; i < n; i++)
         if (Tcl_GetDoubleFromObj(NULL, w[first + i], &values[i]) != TCL_OK || !isfinite(values[i]))
-            return refuse(r, "%s: '%.60s' is no number", Tcl_GetString(w[0]), Tcl_GetString(w[first + i]));
+            return refuse(r, "'%.60s' is no number", Tcl_GetString(w[first + i]));
     return 1;
 }
 
 /* A name from a tag, behind what it is of where that is not NULL. */
-static int take_tag(Reader *r, Words w, int at, const char *what, char name[TABLE_NAME_MAX])
+static int take_tag(Reader *r, Tcl_Obj *word, const char *what, char name[TABLE_NAME_MAX])
 {
     int tag;
-    if (Tcl_GetIntFromObj(NULL, w[at], &tag) != TCL_OK)
-        return refuse(r, "%s: '%.60s' is no tag, a whole number", Tcl_GetString(w[0]), Tcl_GetString(w[at]));
+    if (Tcl_GetIntFromObj(NULL, word, &tag) != TCL_OK)
+        return refuse(r, "'%.60s' is no tag, a whole number", Tcl_GetString(word));
     snprintf(name, TABLE_NAME_MAX, "%s%s%d", what ? what : "", what ? " " : "", tag);
     return 1;
 }
 
-static int find_node(Reader *r, Words w, int at, int *index)
+/* What has the tag: a node of the frame, or of the library what it is called. */
+static int find(Reader *r, Tcl_Obj *word, const char *what, int *index)
 {
     char name[TABLE_NAME_MAX];
-    if (!take_tag(r, w, at, NULL, name))
+    if (!take_tag(r, word, what, name))
         return 0;
-    *index = frame_find(r->frame, FRAME_NODES, name);
-    return *index >= 0 || refuse(r, "%s: there is no node %s above", Tcl_GetString(w[0]), name);
-}
-
-/* What of the library has the tag in word `at`. */
-static int look_up(Reader *r, Words w, int at, const char *what, const FrameSection **found)
-{
-    char name[TABLE_NAME_MAX];
-    if (!take_tag(r, w, at, what, name))
-        return 0;
-    const int i = frame_find(&r->library, FRAME_SECTIONS, name);
-    *found = &r->library.section[i];
-    return i >= 0 || refuse(r, "%s: there is no %s above", Tcl_GetString(w[0]), name);
+    *index = what ? frame_find(&r->library, FRAME_SECTIONS, name) : frame_find(r->frame, FRAME_NODES, name);
+    return *index >= 0 || refuse(r, "there is no %s%s above", what ? "" : "node ", name);
 }
 
 /* Into the library, under the tag behind the two words of its kind. */
 static int define(Reader *r, Words w, FrameSection s)
 {
-    Err err = {0};
-    return take_tag(r, w, 2, Tcl_GetString(w[0]), s.name) &&
-           is_taken(r, w, frame_add_section(&r->library, &s, &err), &err);
+    return take_tag(r, w[2], r->command, s.name) && is_taken(r, frame_add_section(&r->library, &s, &r->why));
 }
 
 /* ---- nodes and what they are given ---------------------------------------------------------------------------- */
@@ -114,39 +105,36 @@ static int take_model(Reader *r, int n, Words w)
         if (is_word(w[i], "-ndm") || is_word(w[i], "-ndf"))
             Tcl_GetIntFromObj(NULL, w[i + 1], is_word(w[i], "-ndm") ? &dimensions : &unknowns);
     r->has_model = 1;
-    return (dimensions == 2 && unknowns == FRAME_DOFS) || refuse(r, "model: only -ndm 2 -ndf 3 is read");
+    return (dimensions == 2 && unknowns == FRAME_DOFS) || refuse(r, "only -ndm 2 -ndf 3 is read");
 }
 
 /* A later mass of a node replaces the earlier one (OpenSees: Node::setMass); that of elements adds to it at the end. */
 static int set_mass(Reader *r, int node, Words w, int first)
 {
     double m[FRAME_DOFS];
-    const double unit = r->force / r->length;
-    Err err = {0};
     if (!take_numbers(r, w, first, FRAME_DOFS, m))
         return 0;
     for (int d = 0; d < FRAME_DOFS; d++)
-        m[d] *= unit * (d == FRAME_ROT ? r->length * r->length : 1);
-    return is_taken(r, w, frame_set_mass(r->frame, node, m, &err), &err);
+        m[d] *= r->force / r->length * (d == FRAME_ROT ? r->length * r->length : 1);
+    return is_taken(r, frame_set_mass(r->frame, node, m, &r->why));
 }
 
 static int take_node(Reader *r, int n, Words w)
 {
     double xy[2];
     FrameNode node = {0};
-    Err err = {0};
     if (!r->has_model || r->is_wiped)
-        return refuse(r, r->is_wiped ? "node: the model above was wiped; keep one of the two"
-                                     : "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
-    if (!take_numbers(r, w, 2, 2, xy) || !take_tag(r, w, 1, NULL, node.name))
+        return refuse(r, r->is_wiped ? "the model above was wiped; keep one of the two"
+                                     : "'model BasicBuilder -ndm 2 -ndf 3' must stand above");
+    if (!take_numbers(r, w, 2, 2, xy) || !take_tag(r, w[1], NULL, node.name))
         return 0;
     node.x = xy[0] * r->length;
     node.z = xy[1] * r->length;
-    if (!is_taken(r, w, frame_add_node(r->frame, &node, &err), &err))
+    if (!is_taken(r, frame_add_node(r->frame, &node, &r->why)))
         return 0;
-    return n == 4 || (n == 5 + FRAME_DOFS && is_word(w[4], "-mass")
-                          ? set_mass(r, r->frame->n[FRAME_NODES] - 1, w, 5)
-                          : refuse(r, "node: behind TAG x y only -mass mx my mr is read"));
+    return n == 4 ||
+           (n == 5 + FRAME_DOFS && is_word(w[4], "-mass") ? set_mass(r, r->frame->n[FRAME_NODES] - 1, w, 5)
+                                                          : refuse(r, "behind TAG x y only -mass mx my mr is read"));
 }
 
 static int take_fix(Reader *r, int n, Words w)
@@ -154,7 +142,7 @@ static int take_fix(Reader *r, int n, Words w)
     double fixed[FRAME_DOFS];
     int node;
     (void)n;
-    if (!find_node(r, w, 1, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
+    if (!find(r, w[1], NULL, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
         return 0;
     for (int d = 0; d < FRAME_DOFS; d++)
         r->frame->node[node].fixed[d] |= fixed[d] != 0;
@@ -165,21 +153,20 @@ static int take_mass(Reader *r, int n, Words w)
 {
     int node;
     (void)n;
-    return find_node(r, w, 1, &node) && set_mass(r, node, w, 2);
+    return find(r, w[1], NULL, &node) && set_mass(r, node, w, 2);
 }
 
 static int take_equal(Reader *r, int n, Words w)
 {
     int node, same_as, dof, dofs[FRAME_DOFS] = {0};
-    Err err = {0};
-    if (!find_node(r, w, 1, &same_as) || !find_node(r, w, 2, &node))
+    if (!find(r, w[1], NULL, &same_as) || !find(r, w[2], NULL, &node))
         return 0;
     for (int i = 3; i < n; i++) {
         if (Tcl_GetIntFromObj(NULL, w[i], &dof) != TCL_OK || dof < 1 || dof > FRAME_DOFS)
-            return refuse(r, "equalDOF: '%.60s' is no degree of freedom 1 to 3", Tcl_GetString(w[i]));
+            return refuse(r, "'%.60s' is no degree of freedom 1 to 3", Tcl_GetString(w[i]));
         dofs[dof - 1] = 1;
     }
-    return is_taken(r, w, frame_tie(r->frame, node, same_as, dofs, &err), &err);
+    return is_taken(r, frame_tie(r->frame, node, same_as, dofs, &r->why));
 }
 
 /* ---- elements ------------------------------------------------------------------------------------------------- */
@@ -188,7 +175,7 @@ static int take_transformation(Reader *r, int n, Words w)
 {
     return n == 3 && (is_word(w[1], "Linear") || is_word(w[1], "PDelta"))
                ? define(r, w, (FrameSection){.area = 1, .inertia = 1, .E = 1})
-               : refuse(r, "geomTransf: only Linear and PDelta TAG are read; building.p_delta decides between them");
+               : refuse(r, "only Linear and PDelta TAG are read; building.p_delta decides between them");
 }
 
 /* section Elastic TAG E A I, uniaxialMaterial Elastic TAG E */
@@ -197,8 +184,7 @@ static int take_elastic(Reader *r, int n, Words w)
     const int is_section = is_word(w[0], "section"), numbers = is_section ? 3 : 1;
     double value[3] = {1, 1, 1};
     if (!is_word(w[1], "Elastic") || n < 3 + numbers)
-        return refuse(r, "%s %.60s: only Elastic TAG E%s is read", Tcl_GetString(w[0]), Tcl_GetString(w[1]),
-                      is_section ? " A I" : "");
+        return refuse(r, " %.60s: only Elastic TAG E%s is read", Tcl_GetString(w[1]), is_section ? " A I" : "");
     return take_numbers(r, w, 3, numbers, value) &&
            define(r, w, (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]});
 }
@@ -209,20 +195,19 @@ static const struct {
     const char *type, *words;
 } MEMBERS[] = {{"elasticBeamColumn", "AEIT"},  {"elasticBeamColumn", "ST"}, {"forceBeamColumn", "-ST"},
                {"nonlinearBeamColumn", "-ST"}, {"dispBeamColumn", "-ST"},   {"truss", "AM"}};
-enum { N_MEMBERS = N_OF(MEMBERS) };
 
-/* *options: where they begin. Section s in the units of the model. */
+/* Takes the words behind the nodes into a section in the units of the model. *options: where they begin. */
 static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
 {
-    int form = 0;
+    size_t form = 0;
     for (*options = 5; *options < n && Tcl_GetString(w[*options])[0] != '-';)
         ++*options;
-    while (form < N_MEMBERS &&
+    while (form < N_OF(MEMBERS) &&
            (!is_word(w[1], MEMBERS[form].type) || strlen(MEMBERS[form].words) != (size_t)(*options - 5)))
         form++;
-    if (form == N_MEMBERS)
+    if (form == N_OF(MEMBERS))
         return refuse(r,
-                      "element %.60s: read are elasticBeamColumn TAG i j A E I TRANSF (or SECTION TRANSF), truss TAG i "
+                      " %.60s: read are elasticBeamColumn TAG i j A E I TRANSF (or SECTION TRANSF), truss TAG i "
                       "j A MATERIAL, forceBeamColumn and dispBeamColumn TAG i j POINTS SECTION TRANSF",
                       Tcl_GetString(w[1]));
     *s = (FrameSection){.inertia = 1}; /* of a bar, whose ends are pinned, it does nothing */
@@ -230,79 +215,57 @@ static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
         const char word = MEMBERS[form].words[i - 5];
         const char *what = word == 'S' ? "section" : word == 'M' ? "uniaxialMaterial" : "geomTransf";
         double *const number = word == 'A' ? &s->area : word == 'E' ? &s->E : word == 'I' ? &s->inertia : NULL;
-        const FrameSection *found;
-        if (number ? !take_numbers(r, w, i, 1, number) : word != '-' && !look_up(r, w, i, what, &found))
+        int found;
+        if (number ? !take_numbers(r, w, i, 1, number) : word != '-' && !find(r, w[i], what, &found))
             return 0;
         if (word == 'S')
-            *s = *found;
+            *s = r->library.section[found];
         if (word == 'M')
-            s->E = found->E;
+            s->E = r->library.section[found].E;
     }
     return 1;
-}
-
-/* mass: per length, in the units of the model. */
-static int take_options(Reader *r, int n, Words w, int at, double *mass, int *is_consistent, double *release)
-{
-    *mass = *release = *is_consistent = 0;
-    for (int i = at; i < n; i++) {
-        const int is_mass = is_word(w[i], "-mass") || is_word(w[i], "-rho");
-        if (is_word(w[i], "-cMass") || is_word(w[i], "-lMass"))
-            *is_consistent = is_word(w[i], "-cMass");
-        else if ((!is_mass && !is_word(w[i], "-release")) || i + 1 == n)
-            return refuse(r, "element %s: '%.60s' is not read", Tcl_GetString(w[1]), Tcl_GetString(w[i]));
-        else if (!take_numbers(r, w, ++i, 1, is_mass ? mass : release))
-            return 0;
-    }
-    if (*mass < 0)
-        return refuse(r, "element: a mass of %g; it must not be negative", *mass);
-    return *release == 0 || *release == 1 || *release == 2 || *release == 3 ||
-           refuse(r, "element: -release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", *release);
-}
-
-/* From the units of the model to those of a frame. */
-static int add_section(Reader *r, Words w, FrameSection *s, const char *element)
-{
-    const double L = r->length, F = r->force;
-    Err err = {0};
-    s->area *= L * L;
-    s->inertia *= L * L * L * L;
-    s->E *= F / (L * L);
-    snprintf(s->name, sizeof s->name, "of %.40s", element);
-    return is_taken(r, w, frame_add_section(r->frame, s, &err), &err);
 }
 
 /* A mass that is not consistent goes to both ends in halves, as OpenSees lumps it: added_mass until all is read. */
 static int take_element(Reader *r, int n, Words w)
 {
     Frame *f = r->frame;
+    const double L = r->length, F = r->force;
     FrameSection s;
     FrameElement e = {.section = f->n[FRAME_SECTIONS]};
-    Err err = {0};
-    int options, is_consistent;
-    double mass, release;
-    if (!find_node(r, w, 3, &e.node[0]) || !find_node(r, w, 4, &e.node[1]) || !take_member(r, n, w, &s, &options) ||
-        !take_options(r, n, w, options, &mass, &is_consistent, &release) || !take_tag(r, w, 2, NULL, e.name))
+    int at, is_consistent = 0;
+    double mass = 0, release = 0;
+    if (!find(r, w[3], NULL, &e.node[0]) || !find(r, w[4], NULL, &e.node[1]) || !take_member(r, n, w, &s, &at))
         return 0;
+    for (; at < n; at++) {
+        const int is_mass = is_word(w[at], "-mass") || is_word(w[at], "-rho");
+        if (is_word(w[at], "-cMass") || is_word(w[at], "-lMass"))
+            is_consistent = is_word(w[at], "-cMass");
+        else if ((!is_mass && !is_word(w[at], "-release")) || at + 1 == n)
+            return refuse(r, " %s: '%.60s' is not read", Tcl_GetString(w[1]), Tcl_GetString(w[at]));
+        else if (!take_numbers(r, w, ++at, 1, is_mass ? &mass : &release))
+            return 0;
+    }
+    if (mass < 0)
+        return refuse(r, "a mass of %g; it must not be negative", mass);
+    if (release != 0 && release != 1 && release != 2 && release != 3)
+        return refuse(r, "-release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", release);
+    if (!take_tag(r, w[2], NULL, e.name))
+        return 0;
+
+    /* From the units of the model, where a mass is one per length, to those of a frame. */
     const FrameNode *a = &f->node[e.node[0]], *b = &f->node[e.node[1]];
     const int is_bar = is_word(w[1], "truss");
-    mass *= r->force / (r->length * r->length);
+    mass *= F / (L * L);
     s.mass_per_m = is_consistent ? mass : 0;
+    s.area *= L * L;
+    s.inertia *= L * L * L * L;
+    s.E *= F / (L * L);
+    snprintf(s.name, sizeof s.name, "of %.40s", e.name);
     e.added_mass = is_consistent ? 0 : mass * hypot(b->x - a->x, b->z - a->z);
     e.pinned[0] = is_bar || (int)release & 1;
     e.pinned[1] = is_bar || release >= 2;
-    return is_taken(r, w, frame_add_element(f, &e, &err), &err) && add_section(r, w, &s, e.name);
-}
-
-static void lump_masses(Frame *f)
-{
-    for (int i = 0; i < f->n[FRAME_ELEMENTS]; i++) {
-        FrameElement *e = &f->element[i];
-        for (int k = 0; k < 2; k++)
-            for (int d = FRAME_X; d <= FRAME_Z; d++)
-                f->node[e->node[k]].mass[d] += 0.5 * e->added_mass;
-        e->added_mass = 0;
-    }
+    return is_taken(r, frame_add_element(f, &e, &r->why)) && is_taken(r, frame_add_section(f, &s, &r->why));
 }
 
 /* ---- what is skipped, and the rest of a script ---------------------------------------------------------------- */
@@ -315,22 +278,17 @@ static const char SKIPPED[] =
     "numberer open parameter pattern print printA puts rayleigh reactions record recorder "
     "region remove reset setTime sp system test timeSeries wipeAnalysis";
 
-/* Each command once; puts is none worth a word. */
-static void note(Frame *f, const char *word)
-{
-    char listed[64];
-    const size_t used = strlen(f->note);
-    snprintf(listed, sizeof listed, " %s,", word);
-    if (!strstr(f->note, listed) && strcmp(word, "puts") != 0)
-        snprintf(f->note + used, sizeof f->note - used, "%s", listed);
-}
-
-/* A result of an analysis is 0; eigen has as many eigenvalues of 1 as it was asked for. */
+/* Names the command once in the note; puts is none worth a word. A result of an analysis is 0; eigen has as many
+ * eigenvalues of 1 as it was asked for. */
 static int skip(Reader *r, int n, Words w)
 {
+    char listed[64], *note = r->frame->note;
     int count = 0;
+    const size_t used = strlen(note);
     const int is_eigen = is_word(w[0], "eigen");
-    note(r->frame, Tcl_GetString(w[0]));
+    snprintf(listed, sizeof listed, " %s,", r->command);
+    if (!strstr(note, listed) && !is_word(w[0], "puts"))
+        snprintf(note + used, sizeof r->frame->note - used, "%s", listed);
     r->has_analysed |= is_eigen || is_word(w[0], "analyze");
     if (is_eigen)
         Tcl_GetIntFromObj(NULL, w[n - 1], &count);
@@ -358,6 +316,7 @@ static int take_exit(Reader *r, int n, Words w)
 
 static int take_unknown(Reader *r, int n, Words w)
 {
+    r->command = "";
     return refuse(r, "'%.60s' is not among the commands that are read (docs/building.md)", Tcl_GetString(w[n > 1]));
 }
 
@@ -448,13 +407,12 @@ static int take_source(Reader *r, int n, Words w)
     char path[PATH_MAX], whole[PATH_MAX];
     const size_t length = strlen(r->folder);
     const char *name = Tcl_GetString(w[n - 1]);
-    const int is_absolute = *name == '/';
     const int n_path =
-        snprintf(path, sizeof path, "%s%s%s", is_absolute ? "" : r->folder, is_absolute ? "" : "/", name);
+        snprintf(path, sizeof path, "%s%s%s", *name == '/' ? "" : r->folder, *name == '/' ? "" : "/", name);
     if (n_path >= (int)sizeof path || !realpath(path, whole))
-        return refuse(r, "source: %.200s: %s", name, strerror(errno));
+        return refuse(r, "%.200s: %s", name, strerror(errno));
     if (strncmp(whole, r->folder, length) != 0 || whole[length] != '/')
-        return refuse(r, "source: %.200s is not below the folder of the model", name);
+        return refuse(r, "%.200s is not below the folder of the model", name);
     return run_file(r, whole);
 }
 
@@ -483,37 +441,34 @@ static const TclCommand COMMANDS[] = {
     {"unknown", 1, take_unknown, ""},
     {"", 1, skip, ""}, /* those of SKIPPED */
 };
-enum { N_COMMANDS = N_OF(COMMANDS) };
 
 static int run_command(ClientData command, Tcl_Interp *tcl, int n, Words w)
 {
     const TclCommand *c = command;
     Reader *r = Tcl_GetAssocData(tcl, "reader", NULL);
-    const int ok = n < c->least ? refuse(r, "%s: wants %s", c->word, c->usage) : c->take(r, n, w);
-    return ok ? TCL_OK : TCL_ERROR;
+    r->command = Tcl_GetString(w[0]);
+    return (n < c->least ? refuse(r, "wants %s", c->usage) : c->take(r, n, w)) ? TCL_OK : TCL_ERROR;
 }
 
-static void add_commands(Tcl_Interp *tcl)
+/* Runs the script with the commands of COMMANDS alone and within the limits, then lumps the masses of elements. */
+static Status run_model(Reader *r, Err *err)
 {
     /* by which a script could wait for ever, or run outside the limits */
     static const char *const REMOVED[] = {"interp", "after", "vwait", "update"};
+    const TclCommand *skipped = &COMMANDS[N_OF(COMMANDS) - 1];
+    Frame *f = r->frame;
     char words[sizeof SKIPPED], *rest = words;
-    memcpy(words, SKIPPED, sizeof words);
-    for (char *word; (word = strsep(&rest, " "));)
-        Tcl_CreateObjCommand(tcl, word, run_command, (ClientData)&COMMANDS[N_COMMANDS - 1], NULL);
-    for (int i = 0; i < N_COMMANDS - 1; i++)
-        Tcl_CreateObjCommand(tcl, COMMANDS[i].word, run_command, (ClientData)&COMMANDS[i], NULL);
-    for (size_t i = 0; i < N_OF(REMOVED); i++)
-        Tcl_DeleteCommand(tcl, REMOVED[i]);
-    Tcl_CreateAlias(tcl, "pset", tcl, "set", 0, NULL); /* a parameter of OpenSees */
-}
-
-static Status run_model(Reader *r, Err *err)
-{
     Tcl_SetAssocData(r->tcl, "reader", NULL, r);
     if (Tcl_MakeSafe(r->tcl) != TCL_OK)
         return fail(err, STATUS_INTERNAL, "%s: Tcl has no safe interpreter", r->path);
-    add_commands(r->tcl);
+    memcpy(words, SKIPPED, sizeof words);
+    for (char *word; (word = strsep(&rest, " "));)
+        Tcl_CreateObjCommand(r->tcl, word, run_command, (ClientData)skipped, NULL);
+    for (const TclCommand *c = COMMANDS; c < skipped; c++)
+        Tcl_CreateObjCommand(r->tcl, c->word, run_command, (ClientData)c, NULL);
+    for (size_t i = 0; i < N_OF(REMOVED); i++)
+        Tcl_DeleteCommand(r->tcl, REMOVED[i]);
+    Tcl_CreateAlias(r->tcl, "pset", r->tcl, "set", 0, NULL); /* a parameter of OpenSees */
     Tcl_LimitSetCommands(r->tcl, COMMANDS_MAX);
     Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_COMMANDS);
     Tcl_LimitSetTime(r->tcl, &(Tcl_Time){.sec = time(NULL) + SECONDS_MAX});
@@ -523,9 +478,14 @@ static Status run_model(Reader *r, Err *err)
         return bad_data(err, "%s: takes more than %d s or %d commands", r->path, SECONDS_MAX, COMMANDS_MAX);
     if (r->refused.code != STATUS_OK)
         return fail(err, r->refused.code, "%s", r->refused.text);
-    if (r->frame->n[FRAME_ELEMENTS] == 0)
+    if (f->n[FRAME_ELEMENTS] == 0)
         return bad_data(err, "%s: holds no element", r->path);
-    lump_masses(r->frame);
+    for (FrameElement *e = f->element; e < f->element + f->n[FRAME_ELEMENTS]; e++) {
+        for (int k = 0; k < 2; k++)
+            for (int d = FRAME_X; d <= FRAME_Z; d++)
+                f->node[e->node[k]].mass[d] += 0.5 * e->added_mass;
+        e->added_mass = 0;
+    }
     return STATUS_OK;
 }
 

@@ -11,6 +11,7 @@
  * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES
  * are in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
 #include <ctype.h>
+#include <strings.h>
 
 #include "base/units.h"
 #include "motion/formats/record.h"
@@ -25,15 +26,16 @@ typedef struct {
     size_t lines_behind; /* the samples, of velocities and displacements */
 } Header;
 
+/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE; either may be empty, WORD also left out with
+ * its bar. "=LTV": the line is one of these letters. */
 typedef struct {
     Field field;
-    const char *line;   /* how the line begins; "=LTV": it is one of these letters */
-    const char *behind; /* the value stands behind this word of it */
+    const char *text;
 } HeaderWord;
 
 typedef struct Format {
     const char *name, *begins, *has; /* a line begins and has, of words parted by |, */
-    int within;                      /* among the first so many; 1: it begins a channel, and another may follow */
+    int within;                      /* among the first so many; 0: it begins a channel, and another may follow */
     int (*is)(Lines l);              /* in the place of them */
     const char *ends;                /* of the header; NULL: the first line of numbers */
     int text_lines, number_lines;    /* of the header; -1: "with N text lines" */
@@ -52,18 +54,14 @@ typedef struct Format {
 
 /* ---- headers ----------------------------------------------------------------------------------------------------- */
 
-static int begins_channel(const Format *f, const Lines *l)
-{
-    return (!f->begins || text_is(BEGINS, l->from, l->to, f->begins)) &&
-           (!f->has || text_is(HOLDS, l->from, l->to, f->has));
-}
-
+/* Does a record of the format begin with the next line? */
 static int recognise(const Format *f, Lines l)
 {
     if (f->is)
         return f->is(l);
-    while (l.number < f->within && lines_next(&l))
-        if (begins_channel(f, &l))
+    while (l.number < MAX_OF(f->within, 1) && lines_next(&l))
+        if ((!f->begins || text_is(BEGINS, l.from, l.to, f->begins)) &&
+            (!f->has || text_is(HOLDS, l.from, l.to, f->has)))
             return 1;
     return 0;
 }
@@ -79,17 +77,6 @@ static int take_behind(Header *h, Field field, const Lines *l, const char *word)
     return p != NULL;
 }
 
-static void take_words(const Format *f, const Lines *l, Header *h)
-{
-    for (const HeaderWord *w = f->words; w->line; w++) {
-        Lines rest = *l;
-        const int is_letter = *w->line == '=' && l->to - l->from == 1 && strchr(w->line + 1, *l->from);
-        rest.from += is_letter ? 0 : strlen(w->line);
-        if (!h->at[w->field].from && (is_letter || line_begins(l, w->line)))
-            take_behind(h, w->field, &rest, w->behind);
-    }
-}
-
 /* 16I5: nothing but digits, signs and blanks. */
 static int is_integers(const Lines *l)
 {
@@ -102,7 +89,7 @@ static int is_integers(const Lines *l)
     return digits >= 16;
 }
 
-/* Up to the header's last line. */
+/* Reads up to the header's last line and takes its words. */
 static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
 {
     double n_lines = f->text_lines;
@@ -112,7 +99,14 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
     if (f->text_lines < 0 && !(number_behind(l->from, l->to, "with", &n_lines) && n_lines > 0 && n_lines <= 1000))
         return fail_at(err, l, "no usable number of text lines in '%.*s'", line_shown(l), l->from);
     for (int i = 1;; i++) {
-        take_words(f, l, h);
+        for (const HeaderWord *w = f->words; w->text; w++) {
+            const size_t n = strcspn(w->text, "|");
+            const int is_letter = *w->text == '=' && l->to - l->from == 1 && strchr(w->text + 1, *l->from);
+            Lines rest = *l;
+            rest.from += is_letter ? 0 : n;
+            if (!h->at[w->field].from && (is_letter || (rest.from <= l->to && !strncasecmp(l->from, w->text, n))))
+                take_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
+        }
         h->last = l->from < l->to ? *l : h->last;
         ended |= f->ends && line_has(l, f->ends);
         if (ahead.number <= l->number) /* not over the same blank lines again and again */
@@ -153,11 +147,12 @@ static double number_of(const Header *h, Field field, int k)
 static Status fail_word(const Format *f, const Lines *l, Field first, Field second, Err *err)
 {
     const HeaderWord *w = f->words;
-    while (w->line && w->field != first && w->field != second)
+    while (w->text && w->field != first && w->field != second)
         w++;
-    return bad_data(err, w->line ? "%s:%d: no usable %s above this line (%s%s)" : "%s:%d: no usable %s above this line",
-                    l->path, l->number, first == COUNT ? "number of points" : "time step (above 0, at most 1 s)",
-                    w->line, w->behind);
+    const int n = w->text ? (int)strcspn(w->text, "|") : 0;
+    return fail_at(err, l, "no usable %s above this line%s%.*s%s%s",
+                   first == COUNT ? "number of points" : "time step (above 0, at most 1 s)", w->text ? " (" : "", n,
+                   w->text ? w->text : "", w->text && w->text[n] ? w->text + n + 1 : "", w->text ? ")" : "");
 }
 
 /* Number and step of channel k; where a length is stated too it must be theirs. */
@@ -219,17 +214,32 @@ static void take_peak(Channel *c, const char *line, const char *from, const char
     c->peak_slack = 0.5 * digit * scale;
 }
 
-/* What the header says of channel k. */
+/* Takes unit and peak of channel k. Behind `peak_of` with the channel's name stand one number or two, "0.658~ -0.837",
+ * of which the larger counts. */
 static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
 {
     const Lines *unit = &h->at[UNIT], *peak = &h->at[PEAK];
+    char word[CHANNEL_NAME_MAX + 32];
     if (unit->from)
         channel_unit(c, unit->from, unit->to);
     else if (!c->unit)
         c->unit = f->unit;
-    const Cell item = item_of(peak, k);
-    if (item.from && !f->peak_of)
-        take_peak(c, peak->raw, item.from, item.to);
+    if (!f->peak_of) {
+        const Cell item = item_of(peak, k);
+        if (item.from)
+            take_peak(c, peak->raw, item.from, item.to);
+        return;
+    }
+    snprintf(word, sizeof word, f->peak_of, c->name);
+    const char *end = h->last.to, *at = find_word(h->first.from, end, word);
+    if (!at)
+        return;
+    const char *stop = memchr(at, '\n', end - at);
+    stop = stop ? stop : end;
+    take_peak(c, at, at + strlen(word), stop);
+    const char *wave = memchr(at, '~', stop - at);
+    if (wave)
+        take_peak(c, at, wave + 1, stop);
 }
 
 static Status check_type(const Lines *type, Err *err)
@@ -245,50 +255,10 @@ static Status check_type(const Lines *type, Err *err)
 
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
 
-/* Behind `peak_of` with the channel's name: one number or two, "0.658~ -0.837", of which the larger counts. */
-static void take_named_peak(const Format *f, const Header *h, Channel *c, const char *end)
-{
-    char word[CHANNEL_NAME_MAX + 32];
-    snprintf(word, sizeof word, f->peak_of, c->name);
-    const char *at = find_word(h->first.from, end, word), *stop = at ? memchr(at, '\n', end - at) : NULL;
-    if (!at)
-        return;
-    stop = stop ? stop : end;
-    take_peak(c, at, at + strlen(word), stop);
-    const char *wave = memchr(at, '~', stop - at);
-    if (wave)
-        take_peak(c, at, wave + 1, stop);
-}
-
-static Status column_channel(const Format *f, Record *r, const Lines *l, Header *h, int k, Cell name, Channel shape,
-                             Err *err)
-{
-    Channel *c;
-    const char *sign = memchr(name.from, '(', name.to - name.from);
-    TRY(record_channel(r, l, &c, err));
-    *c = shape;
-    channel_name(c, name.from, sign ? sign : name.to);
-    h->count = h->dt = NAN;
-    TRY(settle_steps(f, l, h, k, err));
-    *(shape.dt == 0 ? &c->other_dt : &c->dt) = h->dt;
-    settle_channel(f, h, c, k);
-    if (f->peak_of)
-        take_named_peak(f, h, c, h->last.to);
-    if (h->at[DURATION].from && h->count > 1 && fabs(h->count - (double)c->n) * h->dt > 1) /* stated in whole seconds */
-        return fail_at(err, l, "%zu rows, but its header announces %g s every %g s", c->n, h->count * h->dt, h->dt);
-    if (h->at[COUNT].from && h->count < c->n && c->n <= h->count + 16 && h->count >= 2 &&
-        memchr(h->at[COUNT].from, '/', 4)) { /* as UNAM's files have them */
-        c->n = (size_t)h->count;
-        c->warning = "it has some rows more than its header announces; they are left out";
-    } else if (h->at[COUNT].from && h->count != c->n) {
-        return fail_at(err, l, "%zu rows, but its header announces %g for channel %d", c->n, h->count, k + 1);
-    }
-    return STATUS_OK;
-}
-
+/* One column for each channel whose NAMES are in the header, perhaps behind one of times. */
 static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err *err)
 {
-    const Lines *names = h->at[NAMES].from ? &h->at[NAMES] : &h->last;
+    const Lines *names = h->at[NAMES].from ? &h->at[NAMES] : &h->last, *count = &h->at[COUNT];
     size_t width = 0, n, k = 0, timed = 0;
     const size_t base = r->n;
     for (Lines ahead = lines_ahead(l); ahead.from; ahead = lines_ahead(l)) {
@@ -303,19 +273,32 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
     }
     for (const char *p = names->from; p <= names->to;) {
         const Cell name = cell_next(&p, names->to, f->parting);
+        Channel *c;
         if (name.from == name.to)
             continue;
         timed |= k == 0 && find_word(name.from, name.to, "time") == name.from;
-        if (k >= timed && k < width)
-            TRY(column_channel(f, r, l, h, (int)(k - timed), name,
-                               (Channel){.scale = 1,
-                                         .dt = !timed,
-                                         .is_timed = (int)timed,
-                                         .first = base + k,
-                                         .stride = width,
-                                         .n = (r->n - base) / width},
-                               err));
-        k++;
+        if (k++ < timed || k > width)
+            continue;
+        const char *sign = memchr(name.from, '(', name.to - name.from);
+        TRY(record_channel(r, l, &c, err));
+        channel_name(c, name.from, sign ? sign : name.to);
+        c->is_timed = (int)timed;
+        c->first = base + k - 1;
+        c->stride = width;
+        c->n = (r->n - base) / width;
+        h->count = h->dt = NAN;
+        TRY(settle_steps(f, l, h, (int)(k - 1 - timed), err));
+        *(timed ? &c->other_dt : &c->dt) = h->dt;
+        settle_channel(f, h, c, (int)(k - 1 - timed));
+        if (h->at[DURATION].from && h->count > 1 && fabs(h->count - (double)c->n) * h->dt > 1) /* in whole seconds */
+            return fail_at(err, l, "%zu rows, but its header announces %g s every %g s", c->n, h->count * h->dt, h->dt);
+        if (count->from && h->count < c->n && c->n <= h->count + 16 && h->count >= 2 &&
+            memchr(count->from, '/', 4)) { /* as UNAM's files have them */
+            c->n = (size_t)h->count;
+            c->warning = "it has some rows more than its header announces; they are left out";
+        } else if (count->from && h->count != c->n) {
+            return fail_at(err, l, "%zu rows, but its header announces %g for channel %zu", c->n, h->count, k - timed);
+        }
     }
     if (k != width)
         return fail_at(err, names, "names %zu columns, but %zu follow", k, width);
@@ -428,22 +411,6 @@ static Status part_begins(Lines *l, const char *word, double *n_lines, Err *err)
     return STATUS_OK;
 }
 
-/* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal, the others up to 9 are no
- * accelerations in them. */
-static Status check_code(const Lines *unit, Err *err)
-{
-    static const MotionUnit CODES[] = {[2] = UNIT_G, [4] = UNIT_CM_S2, [10] = UNIT_CM_S2};
-    double code;
-    const char *open = unit->from ? memchr(unit->from, '(', unit->to - unit->from) : NULL;
-    if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))
-        return STATUS_OK;
-    const MotionUnit said = unit_of(unit->from, open);
-    return !said || said == CODES[(int)code]
-               ? STATUS_OK
-               : fail_at(err, unit, "the unit in words, '%.*s', is not the one of its code %g",
-                         (int)(open - unit->from), unit->from, code);
-}
-
 /* COSMOS 1.20: an integer and a real header and comments, each under a line that says how many lines follow, then
  *
  *   7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)
@@ -452,7 +419,8 @@ static Status check_code(const Lines *unit, Err *err)
 static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum { N_REALS = 100, STEP_AT = 61 };
-    double n_lines = 0, reals[N_REALS];
+    static const MotionUnit CODES[] = {[2] = UNIT_G, [4] = UNIT_CM_S2, [10] = UNIT_CM_S2};
+    double n_lines = 0, reals[N_REALS], code;
     (void)c;
     TRY(part_begins(l, "Integer-header", &n_lines, err));
     if (!lines_skip(l, (int)n_lines))
@@ -468,7 +436,18 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     h->at[COUNT] = *l;
     take_behind(h, DURATION, l, "approx");
     take_behind(h, UNIT, l, "units=");
-    return check_code(&h->at[UNIT], err);
+
+    /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal, the others up to 9 are
+     * no accelerations in them. */
+    const Lines *unit = &h->at[UNIT];
+    const char *open = unit->from ? memchr(unit->from, '(', unit->to - unit->from) : NULL;
+    if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))
+        return STATUS_OK;
+    const MotionUnit said = unit_of(unit->from, open);
+    return !said || said == CODES[(int)code]
+               ? STATUS_OK
+               : fail_at(err, unit, "the unit in words, '%.*s', is not the one of its code %g",
+                         (int)(open - unit->from), unit->from, code);
 }
 
 /* USGS SMC (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held; 6 lines
@@ -484,24 +463,6 @@ static int smc_is(Lines l)
     return lines_next(&l) &&
            (line_begins(&l, "*") || text_is(HOLDS, l.from, l.to, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN")) &&
            lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
-}
-
-/* The first number of a block stands at the right end of its column. */
-static int smc_width(const Lines *l)
-{
-    const Lines ahead = lines_ahead(l);
-    const char *p = ahead.from;
-    if (!p)
-        return 10;
-    while (p < ahead.to && !strchr("EeDd ", *p))
-        p++;
-    for (p += p < ahead.to; p < ahead.to;)
-        if (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])))
-            p++;
-        else
-            break;
-    const long width = p - ahead.raw;
-    return width >= 10 && width <= 20 ? (int)width : 10;
 }
 
 static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
@@ -531,7 +492,16 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
     }
     h->count = integers[NUMBERS];
     h->dt = reals[RATE_AT] <= 1e5 ? 1 / reals[RATE_AT] : INFINITY;
-    h->width = smc_width(l);
+
+    /* The first number of a block stands at the right end of its column. */
+    const Lines ahead = lines_ahead(l);
+    const char *p = ahead.from;
+    while (p < ahead.to && !strchr("EeDd ", *p))
+        p++;
+    for (p += p < ahead.to;
+         p < ahead.to && (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])));)
+        p++;
+    h->width = p >= ahead.raw + 10 && p <= ahead.raw + 20 ? (int)(p - ahead.raw) : 10;
     if (reals[RATE_AT] == reals[UNDEFINED] && reals[UNDEFINED] > 1e30) {
         c->digitized = 1;
         h->count = floor(h->count / 2); /* a line more may follow, of another record */
@@ -646,100 +616,97 @@ static Status series_more(Lines *l, Header *h, Channel *c, Err *err)
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
 static const Format FORMATS[] = {
-    {"knet", .begins = "Origin Time", .within = 1, .ends = "Memo.", .unit = UNIT_CM_S2, .more = knet_more,
-     .words = {{RATE, "Sampling Freq(Hz)", ""},
-               {DURATION, "Duration Time(s)", ""},
-               {NAME, "Dir.", ""},
-               {FACTOR, "Scale Factor", ""},
-               {PEAK, "Max. Acc. (gal)", ""}}},
-    {"esm", .begins = "EVENT_NAME:", .within = 1,
-     .words = {{COUNT, "NDATA:", ""},
-               {STEP, "SAMPLING_INTERVAL_S:", ""},
-               {DURATION, "DURATION_S:", ""},
-               {NAME, "STREAM:", ""},
-               {UNIT, "UNITS:", ""},
-               {PEAK, "PGA_CM/S^2:", ""},
-               {TYPE, "DATA_TYPE:", ""}}},
-    {"jma", .begins = "SITE CODE", .within = 1, .parting = ",",
-     .words = {{RATE, "SAMPLING RATE", ""}, {UNIT, "UNIT", ""}}},
-    {"cwb", .begins = "#Earthquake Information", .within = 1, .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
-     .words = {{RATE, "#SampleRate(Hz)", ""},
-               {DURATION, "#RecordLength(sec)", ""},
-               {UNIT, "#AmplitudeUnit", ""},
-               {NAMES, "#DataSequence:", ""}}},
-    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .within = 1, .parting = " ", .peak_of = "(%s)",
-     .unit = UNIT_CM_S2, .words = {{COUNT, "NUMBER OF DATA", ":"}, {STEP, "SAMPLING INTERVAL", ":"}}},
+    {"knet", .begins = "Origin Time", .ends = "Memo.", .unit = UNIT_CM_S2, .more = knet_more,
+     .words = {{RATE, "Sampling Freq(Hz)"},
+               {DURATION, "Duration Time(s)"},
+               {NAME, "Dir."},
+               {FACTOR, "Scale Factor"},
+               {PEAK, "Max. Acc. (gal)"}}},
+    {"esm", .begins = "EVENT_NAME:",
+     .words = {{COUNT, "NDATA:"},
+               {STEP, "SAMPLING_INTERVAL_S:"},
+               {DURATION, "DURATION_S:"},
+               {NAME, "STREAM:"},
+               {UNIT, "UNITS:"},
+               {PEAK, "PGA_CM/S^2:"},
+               {TYPE, "DATA_TYPE:"}}},
+    {"jma", .begins = "SITE CODE", .parting = ",", .words = {{RATE, "SAMPLING RATE"}, {UNIT, "UNIT"}}},
+    {"cwb", .begins = "#Earthquake Information", .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
+     .words = {{RATE, "#SampleRate(Hz)"},
+               {DURATION, "#RecordLength(sec)"},
+               {UNIT, "#AmplitudeUnit"},
+               {NAMES, "#DataSequence:"}}},
+    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .parting = " ", .peak_of = "(%s)", .unit = UNIT_CM_S2,
+     .words = {{COUNT, "NUMBER OF DATA|:"}, {STEP, "SAMPLING INTERVAL|:"}}},
     {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12, .ends = "DATOS DE ACELERACION:", .parting = "/",
-     .words = {{NAMES, "ORIENTACION C1", ":"},
-               {STEP, "INTERVALO DE MUESTREO, C1", ":"},
-               {UNIT, "UNIDADES DE LOS DATOS", ":"},
-               {COUNT, "NUM. TOTAL DE MUESTRAS, C1", ":"},
-               {PEAK, "ACEL. MAX.(Gal), C1", ":"}}},
+     .words = {{NAMES, "ORIENTACION C1|:"},
+               {STEP, "INTERVALO DE MUESTREO, C1|:"},
+               {UNIT, "UNIDADES DE LOS DATOS|:"},
+               {COUNT, "NUM. TOTAL DE MUESTRAS, C1|:"},
+               {PEAK, "ACEL. MAX.(Gal), C1|:"}}},
     {"csmnc", .begins = "NO. OF POINTS", .has = "EQUALLY SPACED INTERVALS OF", .within = 20, .ends = "NO. OF POINTS",
      .width = 14,
-     .words = {{NAME, "COMP.", ""},
-               {UNIT, "", "UNIT:"},
-               {TYPE, "", "UNIT:"},
-               {PEAK, "PEAK VALUE", ""},
-               {COUNT, "NO. OF POINTS", ""},
-               {STEP, "NO. OF POINTS", "INTERVALS OF"}}},
+     .words = {{NAME, "COMP."},
+               {UNIT, "|UNIT:"},
+               {TYPE, "|UNIT:"},
+               {PEAK, "PEAK VALUE"},
+               {COUNT, "NO. OF POINTS"},
+               {STEP, "NO. OF POINTS|INTERVALS OF"}}},
     {"csn", .begins = "# Tasa de muestreo", .within = 8,
-     .words = {{RATE, "# Tasa de muestreo:", ""},
-               {COUNT, "# Numero total de muestras:", ""},
-               {UNIT, "# Unidades:", ""},
-               {NAME, "# Estacion", "Componente:"}}},
+     .words = {{RATE, "# Tasa de muestreo:"},
+               {COUNT, "# Numero total de muestras:"},
+               {UNIT, "# Unidades:"},
+               {NAME, "# Estacion|Componente:"}}},
     {"isesd", .begins = "earthquake code:|waveform code:", .within = 7, .ends = "->",
-     .words = {{NAME, "orientation of transducer:", ""},
-               {STEP, "sampling period:", ""},
-               {UNIT, "units:", ""},
-               {COUNT, "number of samples:", ""},
-               {TYPE, "->", ""}}},
-    {"geonet", .begins = "Uncorrected accelerogram|Corrected accelerogram", .has = "GNS|Nuclear Sci", .within = 1,
-     .text_lines = 16, .width = 8, .one_word = 1, .more = geonet_more,
-     .words = {{NAME, "Component", ""}, {UNIT, "", "units of 1.00"}, {PEAK, "Acceleration", "Peak"}}},
-    {"smc", .is = smc_is, .within = 1, .text_lines = SMC_TEXT_LINES, .unit = UNIT_CM_S2, .more = smc_more,
-     .words = {{NAME, "", "component="}}},
-    {"cosmos", .has = "(Format v", .within = 1, .text_lines = -1, .more = cosmos_more,
-     .words = {{TYPE, "", "(Format v"}, {PEAK, "Processed", "Max"}, {NAME, "Sta Cha", ":"}}},
-    {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .within = 1, .integers = 1,
-     .number_lines = 7, .more = csmip_more,
-     .words = {{NAME, "Chan", ":"},
-               {PLACE, "Chan", "Location"},
-               {COUNT, "", "of points"},
-               {STEP, "", "spaced intervals of"},
-               {UNIT, "Units of", " and "},
-               {PEAK, "Units of", "Max"},
-               {PEAK, "Peak acceleration", ""}}},
-    {"bhrc", .begins = "* VOL1", .within = 1, .text_lines = 13, .number_lines = 14, .width = 13, .one_word = 1,
-     .words = {{NAME, "=LTV", ""},
-               {NAME, "COMP", ""},
-               {COUNT, "", "NO. OF POINTS"},
-               {DURATION, "", "DURATION"},
-               {UNIT, "UNITS ARE", " and "}}},
-    {"usc", .begins = "FILE", .has = "OF UNCORRECTED ACCELEROGRAM DATA", .within = 1, .text_lines = 13,
-     .number_lines = 14, .width = 7, .pairs = 1, .one_word = 1,
-     .words = {{NAME, "COMP", ""}, {COUNT, "", "NO. OF POINTS"}, {UNIT, "UNITS ARE", " and "}}},
+     .words = {{NAME, "orientation of transducer:"},
+               {STEP, "sampling period:"},
+               {UNIT, "units:"},
+               {COUNT, "number of samples:"},
+               {TYPE, "->"}}},
+    {"geonet", .begins = "Uncorrected accelerogram|Corrected accelerogram", .has = "GNS|Nuclear Sci", .text_lines = 16,
+     .width = 8, .one_word = 1, .more = geonet_more,
+     .words = {{NAME, "Component"}, {UNIT, "|units of 1.00"}, {PEAK, "Acceleration|Peak"}}},
+    {"smc", .is = smc_is, .text_lines = SMC_TEXT_LINES, .unit = UNIT_CM_S2, .more = smc_more,
+     .words = {{NAME, "|component="}}},
+    {"cosmos", .has = "(Format v", .text_lines = -1, .more = cosmos_more,
+     .words = {{TYPE, "|(Format v"}, {PEAK, "Processed|Max"}, {NAME, "Sta Cha|:"}}},
+    {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .integers = 1, .number_lines = 7,
+     .more = csmip_more,
+     .words = {{NAME, "Chan|:"},
+               {PLACE, "Chan|Location"},
+               {COUNT, "|of points"},
+               {STEP, "|spaced intervals of"},
+               {UNIT, "Units of| and "},
+               {PEAK, "Units of|Max"},
+               {PEAK, "Peak acceleration"}}},
+    {"bhrc", .begins = "* VOL1", .text_lines = 13, .number_lines = 14, .width = 13, .one_word = 1,
+     .words = {{NAME, "=LTV"},
+               {NAME, "COMP"},
+               {COUNT, "|NO. OF POINTS"},
+               {DURATION, "|DURATION"},
+               {UNIT, "UNITS ARE| and "}}},
+    {"usc", .begins = "FILE", .has = "OF UNCORRECTED ACCELEROGRAM DATA", .text_lines = 13, .number_lines = 14,
+     .width = 7, .pairs = 1, .one_word = 1,
+     .words = {{NAME, "COMP"}, {COUNT, "|NO. OF POINTS"}, {UNIT, "UNITS ARE| and "}}},
     {"sac", .is = sac_text_is, .read = sac_text_read},
-    {"slist", .begins = "TIMESERIES ", .has = "SLIST", .within = 1, .text_lines = 1, .more = series_more},
-    {"tspair", .begins = "TIMESERIES ", .has = "TSPAIR", .within = 1, .text_lines = 1, .pairs = 1, .more = series_more},
-    {"", .begins = "Response and Fourier amplitude spectra", .within = 1,
+    {"slist", .begins = "TIMESERIES ", .has = "SLIST", .text_lines = 1, .more = series_more},
+    {"tspair", .begins = "TIMESERIES ", .has = "TSPAIR", .text_lines = 1, .pairs = 1, .more = series_more},
+    {"", .begins = "Response and Fourier amplitude spectra",
      .refused = "response and Fourier spectra of CSMIP (V3); take its V2 or V1"},
-    {"", .begins = "RESPONSE", .has = "FOURIER", .within = 1,
+    {"", .begins = "RESPONSE", .has = "FOURIER",
      .refused = "response and Fourier spectra (volume 3); take the accelerogram"},
-    {"", .begins = "<?xml", .within = 1, .refused = "XML (StationXML, QuakeML or the like)"},
-    {"", .begins = "<!DOCTYPE html|<html", .within = 1,
-     .refused = "a web page, perhaps of a log-in, in the place of the record"},
-    {"", .begins = "WID2|BEGIN GSE2", .within = 1, .refused = "GSE2; export it as miniSEED, SAC or text"},
-    {"", .begins = "version https://git-lfs", .within = 1,
-     .refused = "a pointer of git-lfs in the place of the record"},
+    {"", .begins = "<?xml", .refused = "XML (StationXML, QuakeML or the like)"},
+    {"", .begins = "<!DOCTYPE html|<html", .refused = "a web page, perhaps of a log-in, in the place of the record"},
+    {"", .begins = "WID2|BEGIN GSE2", .refused = "GSE2; export it as miniSEED, SAC or text"},
+    {"", .begins = "version https://git-lfs", .refused = "a pointer of git-lfs in the place of the record"},
     {"at2", .is = at2_is, .ends = "NPTS", .width = 15, .more = at2_more,
-     .words = {{COUNT, "", "NPTS"},
-               {UNIT, "", "UNITS OF"},
-               {UNIT, "", "UNITS"},
-               {UNIT, "", "UNIT"},
-               {UNIT, "ACCELERATION", " IN "},
-               {TYPE, "", "TIME SERIES"},
-               {TYPE, "", "TIME HISTORY"}}},
+     .words = {{COUNT, "|NPTS"},
+               {UNIT, "|UNITS OF"},
+               {UNIT, "|UNITS"},
+               {UNIT, "|UNIT"},
+               {UNIT, "ACCELERATION| IN "},
+               {TYPE, "|TIME SERIES"},
+               {TYPE, "|TIME HISTORY"}}},
 };
 
 /* The format of a record that begins with line l. */
@@ -779,12 +746,12 @@ static Status find_next(Lines *l, const Format **next, Err *err)
 }
 
 /* Records lie one after the other. */
-Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+Status text_read(Record *r, Lines *l, Err *err)
 {
     const Lines first = lines_ahead(l);
     const Format *f = first.from ? format_at(first) : NULL;
     if (!f)
-        return columns_read(r, l, hints, err);
+        return columns_read(r, l, err);
     if (f->refused)
         return bad_data(err, "%s: is not read: %s", l->path, f->refused);
     for (r->is_known = 1; f;) {

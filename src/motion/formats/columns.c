@@ -22,7 +22,6 @@
 typedef struct {
     Record *r;
     Lines *l;
-    const ReadHints *hints;
     Lines start, names, above;     /* from == NULL: no line of words, no comment that heads columns */
     size_t n_names, width, n_rows; /* width: numbers of the first row */
     size_t odd_row, odd_width;     /* the first row that is not as wide */
@@ -45,6 +44,8 @@ static void take_number(Plain *t, double *have, double x, const char *what, cons
         fail_at(&t->wrong, l, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x, *have);
 }
 
+static const char PARTS[] = "_ ()[],"; /* between the words of a name */
+
 static int names_seconds(Cell c)
 {
     return text_is(EQUALS, c.from, c.to, "s|sec|secs|second|seconds");
@@ -55,7 +56,7 @@ static int names_seconds(Cell c)
 static int names_frequency(Cell c)
 {
     const char *p = c.from;
-    const Cell word = cell_next(&p, c.to, "_ ()[],");
+    const Cell word = cell_next(&p, c.to, PARTS);
     return text_is(EQUALS, word.from, word.to, "tn|t0|t1|t2") ||
            text_is(HOLDS, c.from, c.to, "period|freq|frec|omega|[hz|(hz|_hz|\xe5\x91\xa8|\xe9\xa2\x91");
 }
@@ -63,16 +64,15 @@ static int names_frequency(Cell c)
 /* "time", "t [s]", "Zeit", or anything in seconds but a period. */
 static int names_times(Cell c)
 {
+    const char *p = c.from;
+    Cell word = cell_next(&p, c.to, PARTS);
     if (names_frequency(c))
         return 0;
-    if (text_is(HOLDS, c.from, c.to, "time") || text_is(BEGINS, c.from, c.to, "sec|zeit|tiempo|temps|tempo|zaman|czas"))
-        return 1;
-    const char *p = c.from;
-    Cell word = cell_next(&p, c.to, "_ ()[],");
-    if (text_is(EQUALS, word.from, word.to, "t"))
+    if (text_is(EQUALS, word.from, word.to, "t") || text_is(HOLDS, c.from, c.to, "time") ||
+        text_is(BEGINS, c.from, c.to, "sec|zeit|tiempo|temps|tempo|zaman|czas"))
         return 1;
     while (p < c.to)
-        word = cell_next(&p, c.to, "_ ()[],");
+        word = cell_next(&p, c.to, PARTS);
     return names_seconds(word);
 }
 
@@ -102,6 +102,7 @@ static const struct {
             {"number of data", COUNT},
             {"step", STEP}};
 
+/* The value of a key behind its mark. */
 static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
 {
     double x;
@@ -121,9 +122,10 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
         kind == COUNT ? number_behind(mark, l->to, "", &x) : quantity_behind(mark, l->to, "", kind == RATE, &x);
     if (got < 0)
         fail_at(&t->wrong, l, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
+    else if (got > 0 && x > 0 && x <= 1e6 && kind == COUNT)
+        take_number(t, &t->count, x, "number of samples", l);
     else if (got > 0 && x > 0 && x <= 1e6)
-        take_number(t, kind == COUNT ? &t->count : &t->dt, kind == RATE ? 1 / x : x,
-                    kind == COUNT ? "number of samples" : "step", l);
+        take_number(t, &t->dt, kind == RATE ? 1 / x : x, "step", l);
 }
 
 /* Every "key ... = value" or "key ... : value" of a comment or a line of words. */
@@ -141,7 +143,7 @@ static void take_pairs(Plain *t, const Lines *l)
                 isalpha((unsigned char)at[n]) || find_word(at + n, mark, " per "))
                 continue;
             take_value(t, KEYS[i].kind, l, mark);
-            t->restated_line = t->n_rows ? l->number : 0;
+            t->restated_line = t->r->n ? l->number : 0;
         }
     }
 }
@@ -194,19 +196,6 @@ static Cell next_name(const Lines *l, const char **p)
         ++*p;
     *p += *p == l->to;
     return c;
-}
-
-/* A comment that parts names as a table does, of which the first is one of times or periods. */
-static void take_heading(Plain *t, const Lines *l)
-{
-    Lines h = *l;
-    while (h.from < h.to && strchr("#%!/ ", *h.from))
-        h.from++;
-    const char *p = h.from;
-    const Cell first = next_name(&h, &p);
-    if (!text_is(HOLDS, h.from, h.to, "=|:") && (has_marks(&h) || text_is(HOLDS, h.from, h.to, "[|(|_")) &&
-        (names_times(first) || names_frequency(first)))
-        t->above = h;
 }
 
 /* Name k, from 0. */
@@ -289,16 +278,21 @@ static Status check_times(const Plain *t, Cell name, Err *err)
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
-static void count_row(Plain *t, size_t n, int line)
+/* Finds number and width of the rows, and the first one that has another width than the first. */
+static void measure_rows(Plain *t)
 {
-    if (t->n_rows == 0)
-        t->width = n;
-    if (n != t->width && !t->odd_line) {
-        t->odd_line = line;
-        t->odd_row = t->n_rows;
-        t->odd_width = n;
+    const Record *r = t->r;
+    t->n_rows = t->width = t->odd_line = 0;
+    for (size_t i = 0, k; i < r->n; i += k, t->n_rows++) {
+        for (k = 1; i + k < r->n && r->row[i + k].line == r->row[i].line; k++)
+            ;
+        t->width = i ? t->width : k;
+        if (k != t->width && !t->odd_line) {
+            t->odd_line = r->row[i].line;
+            t->odd_row = t->n_rows;
+            t->odd_width = k;
+        }
     }
-    t->n_rows++;
 }
 
 /* Does something else than commas part the columns? */
@@ -322,10 +316,11 @@ static Status fail_unknown(const Plain *t, Err *err)
 
 /* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one
  * width? */
-static int is_table(const Plain *t)
+static int is_table(Plain *t)
 {
     Lines start = t->start;
     size_t n = 0;
+    measure_rows(t);
     if (t->odd_line || !lines_next_filled(&start))
         return 0;
     const int with_comma = has_decimal_commas(t);
@@ -335,25 +330,38 @@ static int is_table(const Plain *t)
            (t->n_rows == 0 && n == t->n_names && has_marks(&t->names) && has_marks(t->l));
 }
 
+/* Comments, names and rows of numbers. */
 static Status read_rows(Plain *t, Err *err)
 {
     Lines *l = t->l;
     while (lines_next_filled(l)) {
+        const size_t before = t->r->n;
         const char *p = l->from;
+        size_t n;
         while (p < l->to && strchr(",; \t", *p)) /* spreadsheets write rows of empty cells */
             p++;
         if (p == l->to)
             continue;
-        if (is_comment(l) || (t->n_rows == 0 && is_words(l) && memchr(l->from, '=', l->to - l->from))) {
+        const int is_above = before == 0 && is_words(l);
+        if (is_comment(l) || (is_above && memchr(l->from, '=', l->to - l->from))) {
             take_pairs(t, l);
-            if (t->n_rows == 0)
-                take_heading(t, l);
-        } else if (t->n_rows == 0 && is_words(l)) {
+            if (before > 0)
+                continue;
+
+            /* A comment heads columns that parts names as a table does, of which the first is one of times or periods. */
+            Lines h = *l;
+            while (h.from < h.to && strchr("#%!/ ", *h.from))
+                h.from++;
+            p = h.from;
+            const Cell first = next_name(&h, &p);
+            if (!text_is(HOLDS, h.from, h.to, "=|:") && (has_marks(&h) || text_is(HOLDS, h.from, h.to, "[|(|_")) &&
+                (names_times(first) || names_frequency(first)))
+                t->above = h;
+        } else if (is_above) {
             if (t->names.from)
                 take_pairs(t, &t->names);
             take_names(t, l);
         } else {
-            size_t n;
             if (t->restated_line)
                 return bad_data(
                     err,
@@ -361,29 +369,15 @@ static Status read_rows(Plain *t, Err *err)
                     "record? Keep one of them",
                     l->path, t->restated_line);
             const Status s = record_add_cells(t->r, l, has_decimal_commas(t), &n, err);
-            if (s != STATUS_OK && t->n_rows && is_words(l) && !has_marks(l) && !lines_ahead(l).from) /* "end" */
+            if (s == STATUS_OK)
+                continue;
+            t->r->n = before;
+            if (before && is_words(l) && !has_marks(l) && !lines_ahead(l).from) /* "end" */
                 return STATUS_OK;
-            if (s != STATUS_OK)
-                return err->sub != SUB_NO_NUMBER || is_table(t) ? s : fail_unknown(t, err);
-            count_row(t, n, l->number);
+            return err->sub != SUB_NO_NUMBER || is_table(t) ? s : fail_unknown(t, err);
         }
     }
     return STATUS_OK;
-}
-
-/* The samples without the first n numbers. */
-static void drop_first(Plain *t, size_t n)
-{
-    Record *r = t->r;
-    r->n -= n;
-    memmove(r->row, r->row + n, r->n * sizeof *r->row);
-    t->n_rows = 0;
-    t->odd_line = 0;
-    for (size_t i = 0, k; i < r->n; i += k) {
-        for (k = 1; i + k < r->n && r->row[i + k].line == r->row[i].line; k++)
-            ;
-        count_row(t, k, r->row[i].line);
-    }
 }
 
 /* Two numbers before the samples are "npts dt" where they stand alone in their row, or one each in two, and the first
@@ -391,22 +385,22 @@ static void drop_first(Plain *t, size_t n)
 static void take_count(Plain *t)
 {
     enum { SAMPLES_MIN = 10 }; /* of fewer a sample might be their number */
-    const Record *r = t->r;
+    Record *r = t->r;
     if (r->n < 4 || t->width > 2 || (t->width == 1 && r->n < SAMPLES_MIN))
         return;
     const double count = r->row[0].a, dt = r->row[1].a, rows = (double)t->n_rows, n = (double)r->n;
     const int in_two = t->width == 1 && r->row[2].line != r->row[1].line && count == n - 2;
     const int is_pair = t->width == 2 && (count == n - 2 || count == rows - 1);
+    const int has_dt = dt > 0 && dt < MOTION_STEP_MAX_S && (is_pair || in_two);
     const Lines l = {.path = t->l->path, .number = r->row[0].line};
-    if (dt > 0 && dt < MOTION_STEP_MAX_S && (is_pair || in_two)) {
-        drop_first(t, 2);
-        take_number(t, &t->dt, dt, "step", &l);
-    } else if (t->width == 1 && (count == n - 1 || count == rows - 1)) {
-        drop_first(t, 1);
-    } else {
+    if (!has_dt && !(t->width == 1 && (count == n - 1 || count == rows - 1)))
         return;
-    }
+    if (has_dt)
+        take_number(t, &t->dt, dt, "step", &l);
     take_number(t, &t->count, count, "number of samples", &l);
+    r->n -= 1 + has_dt;
+    memmove(r->row, r->row + 1 + has_dt, r->n * sizeof *r->row);
+    measure_rows(t);
 }
 
 /* Rows, with the comma as decimal mark where the names name one column; then without what stands above the samples. */
@@ -414,13 +408,15 @@ static Status read_table(Plain *t, Err *err)
 {
     Lines first = t->start;
     TRY(read_rows(t, err));
+    measure_rows(t);
     if (t->n_rows < 2 && !is_named(t) && lines_next_filled(&first) && !is_comment(&first) && !(t->count > 1))
         return fail_unknown(t, err);
     if (t->n_names == 1 && t->width == 2 && !t->l->point_line) {
-        *t = (Plain){.r = t->r, .l = t->l, .hints = t->hints, .start = t->start, .is_one = 1};
+        *t = (Plain){.r = t->r, .l = t->l, .start = t->start, .is_one = 1};
         *t->l = t->start;
         t->r->n = 0;
         TRY(read_rows(t, err));
+        measure_rows(t);
     }
     take_count(t);
     if (t->names.from && !is_named(t))
@@ -437,6 +433,7 @@ static Status read_table(Plain *t, Err *err)
     return STATUS_OK;
 }
 
+/* Refuses rows of different widths. */
 static Status check_rows(const Plain *t, Err *err)
 {
     const char *s = t->odd_width == 1 ? "" : "s";
@@ -457,36 +454,6 @@ static Status check_rows(const Plain *t, Err *err)
 }
 
 /* ---- which column is what ---------------------------------------------------------------------------------------- */
-
-/* How many steps down the first column rise. */
-static size_t count_rises(const Plain *t)
-{
-    size_t rises = 0;
-    for (size_t i = t->width; i < t->r->n; i += t->width)
-        rises += t->r->row[i].a > t->r->row[i - t->width].a;
-    return rises;
-}
-
-/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
-static int counts_samples(const Plain *t)
-{
-    const Row *row = t->r->row;
-    if (t->odd_line || t->width < 2 || t->n_rows < 2)
-        return 0;
-    for (size_t k = 0; k < t->n_rows; k++)
-        if (row[k * t->width].decimals != 0 || row[k * t->width].a != row[0].a + (double)k)
-            return 0;
-    return row[0].a == floor(row[0].a);
-}
-
-/* One motion row by row: the last row is shorter, none is as narrow as the components of a station, and the first
- * column does not rise like times. */
-static int is_wrapped(const Plain *t)
-{
-    enum { COMPONENTS_MAX = 4 };
-    return t->width > COMPONENTS_MAX && t->odd_line && t->odd_row + 1 == t->n_rows && t->odd_width < t->width &&
-           !t->hints->channel && 4 * count_rises(t) < 3 * (t->n_rows - 1);
-}
 
 /* All columns but `skipped` become channels, at equal steps unless they are `timed`. */
 static Status name_channels(const Plain *t, size_t skipped, int timed, double stated_dt, Err *err)
@@ -523,85 +490,88 @@ static Status name_channels(const Plain *t, size_t skipped, int timed, double st
 }
 
 /* What numbers without names are, when their first column holds no times. */
-static Status fail_unnamed(const Plain *t, Err *err)
+static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
 {
-    const char *path = t->l->path;
-    const int line = t->r->row[0].line;
     TRY(check_rows(t, err));
     if (t->n_names > 1 && 2 * t->n_names == t->width && !t->l->point_line)
-        return bad_data(
-            err,
-            "%s:%d: %zu columns are named, but the rows have %zu numbers: are its commas decimal ones too? Write "
-            "decimal points, or semicolons between the columns",
-            path, line, t->n_names, t->width);
+        return fail_at(err, first,
+                       "%zu columns are named, but the rows have %zu numbers: are its commas decimal ones too? Write "
+                       "decimal points, or semicolons between the columns",
+                       t->n_names, t->width);
     if (!(t->dt > 0))
-        return bad_data(err,
-                        "%s:%d: has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
-                        "motion.dt_s=0.01)",
-                        path, line, t->width);
-    return bad_data(
-        err,
-        "%s:%d: has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
-        "if they are one motion written row by row, put '# npts = %zu' above them%s",
-        path, line, t->n_rows, t->width, t->width, t->r->n,
-        t->width == 2 && !t->l->point_line ? "; if they are one column with decimal commas, put its name above it"
-                                           : "");
+        return fail_at(err, first,
+                       "has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
+                       "motion.dt_s=0.01)",
+                       t->width);
+    return fail_at(err, first,
+                   "has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
+                   "if they are one motion written row by row, put '# npts = %zu' above them%s",
+                   t->n_rows, t->width, t->width, t->r->n,
+                   t->width == 2 && !t->l->point_line
+                       ? "; if they are one column with decimal commas, put its name above it"
+                       : "");
 }
 
-/* The column that is named as times, or the first, where none is. */
-static size_t column_of_times(Plain *t)
+Status columns_read(Record *r, Lines *l, Err *err)
 {
-    for (size_t k = 0; is_named(t) && k < t->width; k++)
-        if ((t->is_timed = names_times(name_at(t, k))))
-            return k;
-    return 0;
-}
-
-static Status read_columns(Plain *t, Err *err)
-{
-    const Record *r = t->r;
+    enum { COMPONENTS_MAX = 4 };
+    Plain plain = {.r = r, .l = l, .start = *l}, *t = &plain;
+    size_t times = 0, rises = 0;
     TRY(read_table(t, err));
     const double stated_dt = t->dt;
-    t->dt = stated_dt > 0 ? stated_dt : t->hints->dt_s;
-    const size_t times = column_of_times(t);
+    const Row *row = r->row;
+    const Lines first = {.path = l->path, .number = row[0].line};
+    t->dt = stated_dt > 0 ? stated_dt : r->hints.dt_s;
+
+    /* Times stand in the column that is named so, or in the first, where none is. */
+    for (size_t k = 0; is_named(t) && k < t->width && !t->is_timed; k++)
+        if ((t->is_timed = names_times(name_at(t, k))))
+            times = k;
     if (is_named(t) && !t->is_timed && names_frequency(name_at(t, 0)))
         return fail_at(err, &t->names, "'%.*s' heads a spectrum; a motion is a function of time", line_shown(&t->names),
                        t->names.from);
     int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !t->is_timed);
     if (t->width == 1 && !(t->dt > 0))
-        return bad_data(err,
-                        "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
-                        t->l->path, r->row[0].line);
-    if (t->width > 1 && !is_named(t) && t->dt > 0 && (t->count == r->n || is_wrapped(t))) {
-        t->width = 1;
-        t->n_rows = r->n;
-        return name_channels(t, 1, 0, 0, err);
-    }
-    if (t->width > 1 && !is_named(t) && (t->odd_line || count_rises(t) + 1 < t->n_rows)) {
-        timed = !(t->dt > 0) && 4 * count_rises(t) >= 3 * (t->n_rows - 1); /* times, perhaps with a mistake */
-        if (t->odd_line || (!timed && (!(t->dt > 0) || !t->hints->channel)))
-            return fail_unnamed(t, err);
+        return fail_at(err, &first,
+                       "has one column and does not say its step; set motion.dt_s, or give times beside it");
+
+    /* Without names: one motion row by row, whose number of samples is stated, or whose last row is shorter, while none
+     * is as narrow as the components of a station and the first column does not rise like times; or times, perhaps with
+     * a mistake; or columns of which one is wanted. */
+    if (t->width > 1 && !is_named(t)) {
+        for (size_t i = t->width; i < r->n; i += t->width)
+            rises += row[i].a > row[i - t->width].a;
+        const int mostly_rises = 4 * rises >= 3 * (t->n_rows - 1);
+        const int is_wrapped = t->width > COMPONENTS_MAX && t->odd_line && t->odd_row + 1 == t->n_rows &&
+                               t->odd_width < t->width && !r->hints.channel && !mostly_rises;
+        if (t->dt > 0 && (t->count == r->n || is_wrapped)) {
+            t->width = 1;
+            t->n_rows = r->n;
+            return name_channels(t, 1, 0, 0, err);
+        }
+        if (t->odd_line || rises + 1 < t->n_rows) {
+            timed = !(t->dt > 0) && mostly_rises;
+            if (t->odd_line || (!timed && (!(t->dt > 0) || !r->hints.channel)))
+                return fail_unnamed(t, &first, err);
+        }
     }
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
-        return bad_data(err, "%s: announces %g samples, but has %zu rows", t->l->path, t->count, t->n_rows);
-    t->is_counted = counts_samples(t);
-    const int numbered = !t->is_timed && t->is_counted;
-    if (numbered && !(t->dt > 0))
-        return bad_data(err,
-                        "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
-                        "motion.dt_s=0.01); if they are seconds, name the column time_s",
-                        t->l->path, r->row[0].line, r->row[0].a, r->row[t->width].a);
-    timed = timed && !numbered;
+        return bad_data(err, "%s: announces %g samples, but has %zu rows", l->path, t->count, t->n_rows);
+
+    /* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
+    t->is_counted = t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a);
+    for (size_t k = 0; k < t->n_rows && t->is_counted; k++)
+        t->is_counted = row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k;
+    if (!t->is_timed && t->is_counted && !(t->dt > 0))
+        return fail_at(err, &first,
+                       "the first column counts %g, %g, ...: are these samples? Give their step (--set "
+                       "motion.dt_s=0.01); if they are seconds, name the column time_s",
+                       row[0].a, row[t->width].a);
+    timed = timed && (t->is_timed || !t->is_counted);
     if (timed && is_named(t))
         TRY(check_times(t, name_at(t, times), err));
     if (timed)
-        record_set_times(t->r, 0, t->width, times);
+        record_set_times(r, 0, t->width, times);
     return name_channels(t, timed ? times : t->width, timed, stated_dt, err);
-}
-
-Status columns_read(Record *r, Lines *l, const ReadHints *hints, Err *err)
-{
-    Plain t = {.r = r, .l = l, .hints = hints, .start = *l};
-    return read_columns(&t, err);
 }

@@ -37,6 +37,13 @@ typedef struct {
 } Channel;
 
 typedef struct {
+    double dt_s;         /* of a file that has neither times nor a step; 0: none was given */
+    const char *channel; /* the one that is wanted; NULL: none was named */
+} ReadHints;
+
+typedef struct {
+    ReadHints hints;
+    int deep; /* in so many archives */
     Row *row;
     size_t n, capacity;
     Channel channel[CHANNELS_MAX];
@@ -45,16 +52,11 @@ typedef struct {
     int is_broken; /* a member of this archive is such a one */
 } Record;
 
-typedef struct {
-    double dt_s;         /* of a file that has neither times nor a step; 0: none was given */
-    const char *channel; /* the one that is wanted; NULL: none was named */
-} ReadHints;
-
 /* Text: r->is_known where it is of a format that says what it is; else a table of numbers. */
-Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err);
+Status text_read(Record *r, Lines *l, Err *err);
 
 /* The last resort of it: plain columns. */
-Status columns_read(Record *r, Lines *l, const ReadHints *hints, Err *err);
+Status columns_read(Record *r, Lines *l, Err *err);
 
 /* Files that are no text, and JSON; the first that recognises the bytes reads them. */
 typedef struct {
