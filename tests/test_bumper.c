@@ -92,8 +92,8 @@ TEST(the_stored_energy_is_the_integral_of_the_elastic_force)
 
 TEST(a_hard_bumper_is_none_and_a_soft_one_is_a_spring)
 {
-    const Contact steel = {.k = STEEL, .a = 0.45}, hard = {STEEL, 0.45, 0, 0, 1e18, 0.1};
-    const Contact soft = {STEEL, 0.45, 0, 0, 1e3, 0.1};
+    const Contact steel = {.k = STEEL, .a = 0.45}, hard = {.k = STEEL, .a = 0.45, .bumper = 1e18, .bumper_a = 0.1};
+    const Contact soft = {.k = STEEL, .a = 0.45, .bumper = 1e3, .bumper_a = 0.1};
     for (double p = 1e-6; p < 0.1; p *= 3) {
         assert_close(contact_force(&hard, 1, p, 0.2, 1).force, contact_force(&steel, 1, p, 0.2, 1).force, 1e-6);
         assert_close(contact_force(&soft, 1, p, 0.2, 1).force, 1e3 * p * (1 + 0.1 * 0.2), 1e-3);
@@ -197,7 +197,7 @@ TEST(steel_and_bumper_of_the_same_damping_rebound_as_either_alone)
     for (double bumper = 1e4; bumper < 1e13; bumper *= 10)
         for (int i = 1; i < 4; i++) {
             const double a = 0.3 * i;
-            const Blow b = {{STEEL, a, 0, 1e-300, bumper, a}, 1e5, i == 2 ? 3e5 : 0, 0.3};
+            const Blow b = {{.k = STEEL, .a = a, .v0_floor = 1e-300, .bumper = bumper, .bumper_a = a}, 1e5, i == 2 ? 3e5 : 0, 0.3};
             const SimResult r = strike(&b, ENGINE_FAST, ACCURACY_FINE);
             assert_close(sqrt(kept_share(&b, &r)), contact_rebound(a), 4e-6);
         }
@@ -220,7 +220,7 @@ TEST(a_soft_bumper_rebounds_by_its_own_damping_ratio)
 /* A spring meets a mass for half a period, and is compressed by v sqrt(m/k). */
 TEST(an_undamped_soft_bumper_is_a_spring_in_depth_and_force)
 {
-    const Blow b = {{STEEL, 0, 0, 1e-300, 1e5, 0}, 1e5, 0, 0.4};
+    const Blow b = {{.k = STEEL, .v0_floor = 1e-300, .bumper = 1e5}, 1e5, 0, 0.4};
     const SimResult r = strike(&b, ENGINE_FAST, ACCURACY_FINE);
     assert_close(r.bumper_compression_m, 0.4, 1e-3);
     assert_close(r.j3_g * 9.81 * b.mass, 1e5 * r.bumper_compression_m, 1e-4);

@@ -16,6 +16,6 @@ typedef struct {
     SimResult first;          /* under the first record, or the one under which it failed */
 } Baseline;
 
-/* x (n_var): the design, for its core. p: of a tower. out: by SceneKind; with_devices 0: without those whose device would
- * have to be found. What is left out has failed. */
+/* x (n_var): the design, for its core. p: of a tower. out: by SceneKind; with_devices 0: without those whose device
+ * would have to be found. What is left out has failed. */
 Status baselines_find(const Problem *p, const double x[], int with_devices, Baseline out[N_SCENES], Err *err);

@@ -386,8 +386,8 @@ const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
     return text;
 }
 
-/* What there is of errors and deviations; NULL: nothing. error: likely ones, behind the sign stands their bound, which 95 % keep, as
- * the errors of named designs do. word: what the deviation is, in the place of "sd". */
+/* What there is of errors and deviations; NULL: nothing. error: likely ones, behind the sign stands their bound,
+ * which 95 % keep, as the errors of named designs do. word: what the deviation is, in the place of "sd". */
 static void put_objectives(json_t *row, const MeasureOrder *order, const double value[], const double error[],
                            const double sd[], const char *word)
 {

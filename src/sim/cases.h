@@ -2,12 +2,13 @@
  *
  *   with core          building and core, with the gaps and devices of the design
  *   no core            the building alone
- *   rigidly connected  floors and core without gaps, in the modes of both with the building's damping ratios (sim/joined.h)
+ *   rigidly connected  floors and core without gaps, in the modes of both with the building's damping ratios
+ *                      (sim/joined.h)
  *   tuned mass damper  no core, but its mass on a spring and a dashpot at the roof; frequency and damping optimized
  *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
  *
- * A further case is a row here and, where its devices are new, what case_design makes of a design. Its device is found by
- * evaluate/device.h.
+ * A further case is a row here and, where its devices are new, what case_design makes of a design. Its device is
+ * found by evaluate/device.h.
  *
  * Threads  pure functions */
 #pragma once

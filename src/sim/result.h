@@ -115,8 +115,8 @@ typedef struct {
     SimForces forces;
 } SimResult;
 
-/* What there is of a result beside its measures (evaluate/measures.h), by name: of the scene, of every floor or storey, of
- * every mode, or of every floor on both sides of the core, u > v first. A storey counts from 1. */
+/* What there is of a result beside its measures (evaluate/measures.h), by name: of the scene, of every floor or
+ * storey, of every mode, or of every floor on both sides of the core, u > v first. A storey counts from 1. */
 typedef enum {
     PART_NUMBER,
     PART_LONG,
@@ -137,8 +137,8 @@ typedef struct {
 } ResultPart;
 extern const ResultPart RESULT_PARTS[]; /* ends with one that has no name */
 
-/* Its values (rows, n), for which there is room for SIDES * FLOORS_MAX; returns n, 0: the scene has no such part. scene:
- * what there is of it (SceneCase.has, sim/cases.h). */
+/* Its values (rows, n), for which there is room for SIDES * FLOORS_MAX; returns n, 0: the scene has no such part.
+ * scene: what there is of it (SceneCase.has, sim/cases.h). */
 size_t result_part(const SimResult *r, unsigned scene, const ResultPart *part, double values[], size_t *rows);
 
 /* Hertz's theory requires an indentation that is small against the radius. Beyond it the figures are those of the
