@@ -197,7 +197,8 @@ TEST(steel_and_bumper_of_the_same_damping_rebound_as_either_alone)
     for (double bumper = 1e4; bumper < 1e13; bumper *= 10)
         for (int i = 1; i < 4; i++) {
             const double a = 0.3 * i;
-            const Blow b = {{.k = STEEL, .a = a, .v0_floor = 1e-300, .bumper = bumper, .bumper_a = a}, 1e5, i == 2 ? 3e5 : 0, 0.3};
+            const Blow b = {
+                {.k = STEEL, .a = a, .v0_floor = 1e-300, .bumper = bumper, .bumper_a = a}, 1e5, i == 2 ? 3e5 : 0, 0.3};
             const SimResult r = strike(&b, ENGINE_FAST, ACCURACY_FINE);
             assert_close(sqrt(kept_share(&b, &r)), contact_rebound(a), 4e-6);
         }

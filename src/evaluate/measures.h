@@ -39,7 +39,7 @@ enum {
     X(J3, "j3_g", "g", 1, NEEDS_NOTHING, r->j3_g, "J3 acceleration", "g", 1, "largest floor acceleration")             \
     X(ED1, "ed1_pct", "%", 1, NEEDS_NOTHING, r->ed1_pct, "mode 1 share", "%", 1,                                       \
       "share of the input dissipated by the first building mode")                                                      \
-    X(ED5_10, "ed5_10_pct", "%", -1, NEEDS_NOTHING, r->ed5_10_pct, "modes 5–10 share", "%", 1,                        \
+    X(ED5_10, "ed5_10_pct", "%", -1, NEEDS_NOTHING, r->ed5_10_pct, "modes 5–10 share", "%", 1,                         \
       "share dissipated by building modes 5 to 10")                                                                    \
     X(EDCS, "edcs_pct", "%", -1, NEEDS_NOTHING, r->edcs_pct, "core share", "%", 1, "share dissipated by the core")     \
     X(MCORE, "mcore_kg", "kg", 1, NEEDS_NOTHING, r->mcore_kg, "core mass", "t", 1e-3, "mass of the core")              \
