@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise pages paper chart ablation pictures study web setup-browser report-bench serve-bench
+.PHONY: setup-figures bench promise pages paper chart ablation pictures ladder study web setup-browser report-bench serve-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -43,6 +43,10 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
 	@d=$$(mktemp -d) && cp -r $(RUN) $$d/kobe && node tests/serve/drive.mjs $(abspath $(PROGRAM)) --pictures $$d docs/pictures; rm -r $$d
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
+
+ladder: $(PROGRAM) ## docs/ladder.md: which effects five scenes need
+	@scripts/ladder $(ARGS)
+	@scripts/tables ladder
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)
