@@ -1,8 +1,9 @@
 "use strict";
 // The run as the page holds it: columns of numbers, and what each is called and measured in.
 
-const run = JSON.parse(document.getElementById("run").textContent);
-const lines = document.getElementById("rows").textContent.trim().split("\n").filter((line) => line);
+const byId = (id) => document.getElementById(id), finite = Number.isFinite, root = document.documentElement;
+const run = JSON.parse(byId("run").textContent);
+const lines = byId("rows").textContent.trim().split("\n").filter((line) => line);
 const n = lines.length;
 
 // ---- columns: titles and units of objectives come with the run, those of the tower's variables follow from their names
@@ -79,7 +80,7 @@ const tickText = (c) => (v) => (c.words ? (c.words[v] ?? "") : show(v));
 
 // Three or four digits, never an exponent where a person would not write one.
 function show(v) {
-  if (v === null || v === undefined || !Number.isFinite(v)) return "\u2013";
+  if (v === null || v === undefined || !finite(v)) return "\u2013";
   const size = Math.abs(v);
   if (v === 0) return "0";
   if (size >= 1e6 || size < 1e-6) return v.toExponential(2).replace(/e\+?/, "\u00b710^");
@@ -88,11 +89,11 @@ function show(v) {
 
 // The same with all its digits, for columns.
 function digits(v) {
-  return v === null || !Number.isFinite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
+  return v === null || !finite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
 }
 
 // A value of design i with its likely error, where one is known.
-const known = (c, i) => (c.words ? c.words[c.value[i]] : Number.isFinite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
+const known = (c, i) => (c.words ? c.words[c.value[i]] : finite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
 const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");
@@ -109,6 +110,7 @@ function element(tag, attributes = {}, ...children) {
   return e;
 }
 
+const note = (...words) => element("p", { class: "note" }, ...words), warn = (...words) => element("p", { class: "warn" }, ...words);
 const heading = (c) => [c.title, ...(c.unit ? [element("small", {}, c.unit)] : [])];
 
 // ---- colours: Okabe and Ito's, and viridis without its palest end
@@ -117,7 +119,7 @@ const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e6
   PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32, PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, GREY];
 
 // Light or dark, as the system has it or the address says; of the style sheet what canvases draw with.
-const root = document.documentElement, ownTheme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+const ownTheme = !run.paper && matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 let INK, PAPER, PALE, AXIS, RAMP;
 const ramp = (t) => charts.interpolateViridis(root.dataset.theme === "dark" ? 0.15 + 0.85 * t : 0.92 * t);
 function takeTheme(name) {
@@ -131,11 +133,11 @@ takeTheme(ownTheme);
 // ---- the chosen design and what it is compared with
 
 const SCENES = {
-  with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
-  no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [8, 4] },
-  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3], note: "Rigidly connected: floors and core move together without a gap" },
-  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4], note: "Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof" },
-  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", path: charts.symbolStar, dash: [2, 4], note: "Viscous links: a dashpot between every floor and the core" },
+  with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", dash: [] },
+  no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", dash: [8, 4] },
+  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", dash: [3, 3], note: "Rigidly connected: floors and core move together without a gap" },
+  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", dash: [12, 4], note: "Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof" },
+  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", dash: [2, 4], note: "Viscous links: a dashpot between every floor and the core" },
 };
 
 // Beside the designs in every picture of the front: a value per column, in the units of the eye, NaN where there is none.
@@ -155,7 +157,7 @@ function extent(c, beside = shownOverlays()) {
 
 // Values of a column that as many designs lie between, from one end of its scale to the other.
 function percentiles(c, low, high) {
-  const sorted = Float64Array.from(c.value).filter(Number.isFinite).sort(), inner = Array.from({ length: 19 }, (_, k) => sorted[Math.round(((k + 1) * (sorted.length - 1)) / 20)]);
+  const sorted = Float64Array.from(c.value).filter(finite).sort(), inner = Array.from({ length: 19 }, (_, k) => sorted[Math.round(((k + 1) * (sorted.length - 1)) / 20)]);
   return [...new Set([low, ...inner.filter((v) => v > low && v < high), high])];
 }
 

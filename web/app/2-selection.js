@@ -44,7 +44,7 @@ function rest() {
   clearTimeout(resting);
   resting = undefined;
   redrawAll();
-  delete document.documentElement.dataset.busy;
+  delete root.dataset.busy;
 }
 window.addEventListener("beforeprint", rest);
 
@@ -76,7 +76,7 @@ let waiting = false;
 function selectionChanged() {
   if (waiting) return;
   waiting = true;
-  document.documentElement.dataset.busy = "yes";
+  root.dataset.busy = "yes";
   requestAnimationFrame(() => {
     waiting = false;
     findSelected();
@@ -172,12 +172,12 @@ function layered(host, label, rowAt, isBelow) {
 // ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
 
 const byName = (name) => columns.find((c) => c.name === name);
-const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (Number.isFinite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
+const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (finite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
 const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
 const partsFrom = (text = "") => text.split(",").map((part) => part.split(":")).map(([name, ...words]) => [columns.find((c) => [c.name, encodeURIComponent(c.name)].includes(name)), ...words]).filter(([c]) => c);
-const endFrom = (word, open) => (word && Number.isFinite(+word) ? +word : open);
+const endFrom = (word, open) => (word && finite(+word) ? +word : open);
 const rangesFrom = (text) => new Map(partsFrom(text).map(([c, a, b]) => [c, [endFrom(a, -Infinity), endFrom(b, Infinity)]]));
-const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && Number.isFinite(+v)).map(([c, v]) => [c, +v]));
+const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && finite(+v)).map(([c, v]) => [c, +v]));
 
 function addressOf() {
   const names = (list) => list.map((c) => c.name).join(",");

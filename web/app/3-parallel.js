@@ -102,13 +102,13 @@ function parallelCoordinates(host) {
       pen.setLineDash(o.dash);
       pen.beginPath();
       at.forEach((y, k) => {
-        if (k && Number.isFinite(at[k - 1])) pen.lineTo(axes[k].at, y);
+        if (k && finite(at[k - 1])) pen.lineTo(axes[k].at, y);
         else pen.moveTo(axes[k].at, y);
       });
       pen.stroke();
     });
     pen.fillStyle = pen.strokeStyle = o.colour;
-    at.forEach((y, k) => Number.isFinite(y) && drawSymbol(pen, o, axes[k].at, y, 55));
+    at.forEach((y, k) => finite(y) && drawSymbol(pen, o, axes[k].at, y, 55));
   }
 
   function drawOver() {
@@ -256,7 +256,7 @@ const drawSymbol = (pen, o, x, y, size) => {
   pen.save();
   pen.translate(x, y);
   pen.beginPath();
-  charts.symbol(o.path, size).context(pen)();
+  charts.symbol(charts[`symbol${capital(o.symbol)}`], size).context(pen)();
   pen.lineWidth = 1.4;
   pen.strokeStyle = PAPER;
   pen.stroke();

@@ -41,10 +41,10 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     for (const o of shownOverlays())
       for (const p of panels) {
         const at = [p.x(o.value.get(p.cx) ?? NaN), p.y(o.value.get(p.cy) ?? NaN)];
-        if (at.every(Number.isFinite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
+        if (at.every(finite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
       }
     for (const [row, colour, size] of [[state.marked, INK, 64], [state.hovered, ORANGE, 95]])
-      if (row !== undefined) for (const { dots } of panels) drawSymbol(pen, { path: charts.symbolCircle, colour }, dots[2 * row], dots[2 * row + 1], size);
+      if (row !== undefined) for (const { dots } of panels) drawSymbol(pen, { symbol: "circle", colour }, dots[2 * row], dots[2 * row + 1], size);
   }
 
   function drawFront() {
@@ -194,8 +194,8 @@ function scatterMatrix(host) {
   }, () => { // sign and strength: blue together, orange against each other
     for (const { a, b, box, text } of cells) {
       const r = rankCorrelation(a, b);
-      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", Number.isFinite(r) ? 0.55 * Math.abs(r) : 0);
-      text.text(Number.isFinite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
+      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", finite(r) ? 0.55 * Math.abs(r) : 0);
+      text.text(finite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
     }
   });
 }

@@ -4,7 +4,7 @@ const PAGE = 12;
 
 // A cell that a spreadsheet would run as a formula is given an apostrophe; numbers stay as they are.
 function cell(text) {
-  const s = /^[\s\u2000-\u200f]*[=+\-@\uff1d\uff0b\uff0d\uff20]/.test(text) && !Number.isFinite(+text) ? `'${text}` : text;
+  const s = /^[\s\u2000-\u200f]*[=+\-@\uff1d\uff0b\uff0d\uff20]/.test(text) && !finite(+text) ? `'${text}` : text;
   return /[",\r\n]/.test(s) ? `"${s.replaceAll('"', '""')}"` : s;
 }
 

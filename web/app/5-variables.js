@@ -22,7 +22,7 @@ function heatFigure(host, family) {
     groups = groupsInOrder();
     const values = new Float64Array(groups.length * m);
     family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = words ? c.value[rows[rows.length >> 1]] : meanOf(c, rows))));
-    const marked = groups.findIndex((rows) => rows.includes(state.marked)), ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
+    const marked = groups.findIndex((rows) => rows.includes(state.marked)), ends = [0, 1].map((s) => (finite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
     return chart({
       width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
       x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
@@ -49,7 +49,7 @@ function heatFigure(host, family) {
     const rows = isInside && groups[Math.floor((groups.length * (event.clientX - image.left)) / image.width)];
     return rows ? rows[rows.length >> 1] : undefined;
   });
-  follow(f, () => resting === undefined && document.documentElement.dataset.ready && f.redraw()); // not while a range is dragged
+  follow(f, () => resting === undefined && root.dataset.ready && f.redraw()); // not while a range is dragged
   return f;
 }
 
@@ -140,7 +140,7 @@ function typesPart(host) {
     const key = element("span", { class: "key", style: `background: ${PALETTE[k]}` }, String(k + 1));
     return line([[key, name], count(t.rows.length), String(ids[t.typical]), ...objectives.map((c) => digits(c.value[t.typical]))]);
   };
-  part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
+  part.append(note("Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
   const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));

@@ -97,16 +97,16 @@ function selectionBar() {
 }
 
 function frontPart() {
-  const host = document.getElementById("front");
+  const host = byId("front");
   host.append(
-    element("p", { class: "note" }, "Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
+    note("Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
       "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design." +
       (run.front > n ? ` Here are ${count(n)} of ${count(run.front)} designs of the front: those with the lowest and the highest value of every objective and variable, ` +
         "the knee, the chosen design and polished ones, and the others evenly in the order of their evaluation; imtet export has all." : "")),
     selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), columnSelect("colour", "Colour", "colour"), colourBar()), overlayLegend());
   parallelCoordinates(host.appendChild(element("figure", { class: "scroll" })));
   host.append(rangeInputs());
-  const grid = host.appendChild(element("div", { class: "grid2" }));
+  const grid = gridOf(host, 2);
   if (columns.length > 1) {
     const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Scatter plot of two columns"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
     pairPlot(pair);
@@ -116,7 +116,7 @@ function frontPart() {
   if (objectives.length > 1) {
     weightsPart(folded(host, "Choose by weights or a reference point"));
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
-    matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
+    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);
@@ -124,6 +124,6 @@ function frontPart() {
   matters.hidden = !run.importance; // imtet serve finds it when it is wanted
   if (run.importance) importanceFigure(matters);
   const list = folded(host, "Selected designs as a table", true);
-  list.append(element("p", { class: "note" }, "Click a heading to sort, a number to mark that design in the pictures."));
+  list.append(note("Click a heading to sort, a number to mark that design in the pictures."));
   designTable(list.appendChild(element("div")));
 }

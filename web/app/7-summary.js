@@ -161,34 +161,37 @@ function standoutTable() {
 const skeleton = (height) => element("div", { class: "skeleton", "aria-hidden": "true", style: `height: ${height}px` });
 
 function summaryPart() {
-  const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
+  const d = run.detail, waits = run.tower && !d, host = byId("summary");
   document.title = `${run.name} \u2013 imtet report`;
-  document.getElementById("title").textContent = `Study ${run.name}`;
+  byId("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
-  if (run.notes_fault) host.append(element("p", { class: "warn" }, `Notes: ${run.notes_fault}`));
-  if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
+  if (run.notes_fault) host.append(warn(`Notes: ${run.notes_fault}`));
+  if (d && run.rule) host.append(note(`The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(252));
   const more = folded(host, "The best designs of the front, beside the baselines");
-  more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
-  if (d && run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
+  more.append(note("The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
+  if (d && run.robust) more.append(note("Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
     `${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`));
 }
 
 let drawGrowth = () => {}; // anew, while a run goes on
+function growthRows() {
+  const c = run.convergence;
+  return c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * (c.error[i] ?? 0), colour: BLUE }));
+}
 function growthPart() {
-  const host = document.getElementById("growth"), c = run.convergence;
-  if (c.simulated.length < 2) return host.remove();
-  const rows = () => c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * (c.error[i] ?? 0), colour: BLUE })), last = rows().at(-1);
+  const host = byId("growth"), last = growthRows().at(-1);
+  if (run.convergence.simulated.length < 2) return host.remove();
   const figure = host.appendChild(element("figure"));
-  drawGrowth = drawn(figure, (width) => growthChart(width, 200, rows()));
+  drawGrowth = drawn(figure, (width) => growthChart(width, 200, growthRows()));
   figure.append(element("figcaption", {}, "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
     `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that). ` +
     "A curve that still climbs asks for a longer run."));
 }
 
 function provenancePart() {
-  const host = document.getElementById("provenance");
+  const host = byId("provenance");
   const made = run.provenance ? JSON.parse(run.provenance) : {};
   const facts = [["program", `imtet ${made.version ?? "?"} (${made.revision ?? "?"})`], ["started", made.machine?.started],
     ["machine", made.machine && `${made.machine.host}, ${made.machine.system}, ${made.machine.threads} threads`],
@@ -203,13 +206,13 @@ function provenancePart() {
 // Links to the parts that this run has; the address keeps the state of the pictures.
 function contents() {
   const names = [["summary", `Study ${run.name}`], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  const skip = linkTo(document.getElementById("front"), "Skip to the front"), theme = plainButton("", () => {
+  const skip = linkTo(byId("front"), "Skip to the front"), theme = plainButton("", () => {
     state.theme = state.theme === "dark" ? "light" : "dark";
     showTheme(state.theme);
   }, { id: "theme" });
   skip.className = "skip";
   views.layout.push(() => (theme.textContent = state.theme === "dark" ? "Light" : "Dark"));
-  document.getElementById("parts").append(skip, ...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)), theme);
+  byId("parts").append(skip, ...names.filter(([id]) => byId(id)).map(([id, text]) => linkTo(byId(id), text)), theme);
 }
 
 // The focus goes along.

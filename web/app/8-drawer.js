@@ -19,7 +19,7 @@ function showDrawer(isOpen) {
   if (isOpen === !drawer.hidden) return;
   keepInPlace(() => {
     drawer.hidden = !isOpen;
-    document.documentElement.classList.toggle("beside", isOpen);
+    root.classList.toggle("beside", isOpen);
     layoutChanged();
     drawAll();
   });
@@ -38,7 +38,7 @@ document.addEventListener("keydown", (event) => {
 
 function difference(value, before) {
   const pct = (100 * (value - before)) / Math.abs(before);
-  return element("small", { class: "difference" }, Number.isFinite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
+  return element("small", { class: "difference" }, finite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
 }
 
 function numbersOf(row) {
@@ -64,7 +64,7 @@ function commandsOf(id) {
 const noteOf = (id) => {
   const text = run.notes[id] ?? "";
   return drawerMore.takeNote ? element("label", { class: "note" }, "Note ", element("textarea", { name: "note", rows: 2, onchange: (event) => drawerMore.takeNote(id, event.target) }, text))
-    : text ? element("p", { class: "note" }, `Note: ${text}`) : "";
+    : text ? note(`Note: ${text}`) : "";
 };
 
 function fillDrawer(row, d) {
@@ -72,7 +72,7 @@ function fillDrawer(row, d) {
   refill(drawer, (host) => {
     host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
       element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
-    if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
+    if (d?.reason) host.append(warn(`Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);
     else for (const family of families) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);

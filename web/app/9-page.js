@@ -1,24 +1,29 @@
-// In order; what is on the first screen is drawn first.
+// In order; what is on the first screen is drawn first. On paper there are drawings alone.
 
-document.getElementById("first").remove();
 findKept();
-summaryPart();
-frontPart();
-growthPart();
-designPart();
-provenancePart();
-contents();
-standard = Object.fromEntries(new URLSearchParams(addressOf()));
-readAddress();
-takeTheme(state.theme);
-layoutChanged();
-performance.mark("front drawn");
+if (run.paper) drawPaper();
+else drawPage();
+
+function drawPage() {
+  byId("first").remove();
+  summaryPart();
+  frontPart();
+  growthPart();
+  designPart();
+  provenancePart();
+  contents();
+  standard = Object.fromEntries(new URLSearchParams(addressOf()));
+  readAddress();
+  takeTheme(state.theme);
+  layoutChanged();
+  performance.mark("front drawn");
+}
 
 function drawDesign() {
   drawAll();
   if (/[#&]mark=/.test(location.hash) && drawer.hidden) openDrawer(state.marked);
   performance.mark("all drawn");
-  document.documentElement.dataset.ready = "yes";
+  root.dataset.ready = "yes";
 }
 requestAnimationFrame(() => setTimeout(drawDesign));
 

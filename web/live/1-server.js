@@ -11,7 +11,7 @@ async function ask(where, body) {
 
 // A section of its own before that of the given id, with its link in the same place.
 function livePart(id, title, before) {
-  const part = element("section", { id }, element("h2", {}, title)), next = document.getElementById(before) ?? document.getElementById("provenance");
+  const part = element("section", { id }, element("h2", {}, title)), next = byId(before) ?? byId("provenance");
   next.before(part);
   document.querySelector(`#parts a[href="#${next.id}"]`).before(linkTo(part, title));
   return part;

@@ -29,21 +29,21 @@ async function completeSummary() {
   const { detail } = await detailOf(run.knee);
   run.detail = detail;
   overlays.push(...overlaysOf(detail));
-  refill(document.getElementById("summary"), (host) => {
+  refill(byId("summary"), (host) => {
     host.append(element("h1", { id: "title" }));
     summaryPart();
   });
-  document.getElementById("overlays").replaceWith(overlayLegend());
+  byId("overlays").replaceWith(overlayLegend());
   layoutChanged();
 }
 
 // Which variables matter is found when its part is opened.
-const matters = document.getElementById("which-variables-matter");
+const matters = byId("which-variables-matter");
 matters.hidden = false;
 matters.addEventListener("toggle", async () => {
   if (!run.importance) run.importance = await ask("importance").catch(() => null);
   if (run.importance) importanceFigure(matters);
-  else matters.append(element("p", { class: "note" }, "Too few designs succeeded to say so."));
+  else matters.append(note("Too few designs succeeded to say so."));
   drawAll();
 }, { once: true });
 
@@ -73,7 +73,7 @@ function showCompared() {
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
     host.append(element("h2", {}, "Side by side"), compareTable());
-    const grid = host.appendChild(element("div", { class: "grid3" }));
+    const grid = gridOf(host, 3);
     for (const [key, title, label] of [["gap_mm", "Gaps", "gap [mm]"], ...PEAKS]) {
       const lines = compared.map((one, i) => ({ name: one.name, values: one.peaks[key] ?? one.gap_m.map((g) => 1e3 * g), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
       figure(grid, title, null, (width) => heightChart(width, 300, label, lines));

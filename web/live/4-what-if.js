@@ -9,8 +9,8 @@ function whatIfPart() {
   const part = livePart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
-  part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), element("div", { class: "what-if" }, sliders, pictures));
-  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
+  part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), element("div", { class: "what-if" }, sliders, pictures));
+  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
@@ -113,7 +113,7 @@ function whatIfPart() {
   const draw = frontStrip(pictures, "The design in the front");
   pictures.prepend(said);
   pictures.append(legend([["what if", TRIAL], ["where it began", "var(--ink)"], ["front", "var(--pale)"], ...Object.values(SCENES).slice(1).map(({ words, colour }) => [words, colour])]), board);
-  const peaks = pictures.appendChild(element("div", { class: "grid3" }));
+  const peaks = gridOf(pictures, 3);
   const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
 
   // Baselines of the run itself: under another motion only the building without core is simulated anew, for its peaks.
@@ -145,7 +145,7 @@ function whatIfPart() {
     for (const [, , host] of places) host.replaceChildren();
     const at = overlays.indexOf(trial);
     if (at >= 0) overlays.splice(at, 1);
-    document.getElementById("overlays").replaceWith(overlayLegend());
+    byId("overlays").replaceWith(overlayLegend());
     layoutChanged();
   }
 
@@ -161,7 +161,7 @@ function whatIfPart() {
     trial.value = new Map([...objectives.map((c, k) => [c, (trial.raw[k] ?? NaN) * c.factor]), ...variables.map((c, j) => [c, x[j] * c.factor])]);
     if (!overlays.includes(trial)) {
       overlays.push(trial);
-      document.getElementById("overlays").replaceWith(overlayLegend());
+      byId("overlays").replaceWith(overlayLegend());
     }
     clearTimeout(resting_);
     resting_ = setTimeout(layoutChanged, 400);

@@ -24,9 +24,9 @@ async function against(body, others) {
     const { runs, differences } = await ask(`against/${others}`), colours = SIDES.map(({ colour }) => colour);
     if (body.dataset.wanted !== wanted) return;
     refill(body, (host) => {
-      if (differences.length) host.append(element("p", { class: "warn" }, `Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));
+      if (differences.length) host.append(warn(`Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));
       host.append(legend(runs.map((r, i) => [`${r.name}: ${count(r.f.length)} on the front`, colours[i]])));
-      const grid = host.appendChild(element("div", { class: "grid2" }));
+      const grid = gridOf(host, 2);
       const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The fronts")));
       frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 280)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i], alpha: 0.5 * paleFront(r.f).alpha })));
       const rows = runs.flatMap((r, i) => r.simulated.map((x, k) => ({ x, y: 100 * r.volume[k], colour: colours[i] })));
@@ -34,11 +34,11 @@ async function against(body, others) {
       const points = runs.flatMap((r, i) => r.f.map((f) => ({ x: f[objectives.indexOf(state.x)] * state.x.factor, y: f[objectives.indexOf(state.y)] * state.y.factor, colour: colours[i] })));
       if (objectives.includes(state.x) && objectives.includes(state.y))
         figure(grid, `${state.x.title} and ${state.y.title}`, "The axes are those of the scatter plot of two columns.", (width) => chart({
-          width, height: 300, ariaLabel: "The fronts", x: { label: titleUnit(state.x), grid: true }, y: { label: titleUnit(state.y), grid: true }, color: { type: "identity" },
+          width, height: 300, ariaLabel: "The fronts", x: { label: titleUnit(state.x), grid: true }, y: { label: titleUnit(state.y), grid: true },
           marks: [charts.dot(points, { x: "x", y: "y", stroke: "colour", r: 2.5 })] }));
     });
   } catch (error) {
-    refill(body, (host) => host.append(element("p", { class: "warn" }, error.message)));
+    refill(body, (host) => host.append(warn(error.message)));
   }
   body.classList.remove("stale");
 }

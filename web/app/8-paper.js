@@ -1,0 +1,61 @@
+// On paper: pictures of a run, drawings of a dossier, curves that a command asks for. What draws them is what the page has.
+
+// A panel as the program gives it: { title, x, y: axes, marks: [{ mark: line, dot or text, x, y, ... }], ... } by the library's names.
+const panelChart = (width, height, { x, y, marks, ...options }) => chart({
+  width, height: options.aspectRatio ? undefined : height, marginRight: 20, ...options, x: { grid: true, ...x }, y: { grid: true, ...y }, marks: marks.map((m) => charts[m.mark](m.y, m)) });
+
+// Columns of panels below the names of what is in all of them.
+function panels(host, { title, names, columns, height }) {
+  host.append(element("h3", {}, title), legend(names));
+  const grid = gridOf(host, columns.length);
+  for (const list of columns) {
+    const column = grid.appendChild(element("div"));
+    for (const panel of list) figure(column, panel.title ?? "", null, (width) => panelChart(width, height / list.length, panel));
+  }
+}
+
+const DRAWINGS = {
+  growth: (host) => drawn(host, (width) => growthChart(width, 400, growthRows())), gaps: shapeFigures, peaks: (host, d) => peakPart(host, d, 400), modes: modePart, energies: energyPair, displacement: spectrumPair,
+  elsewhere: otherPart, forces: forceFigures,
+};
+const drawOnPaper = (host, name) => (DRAWINGS[name] ?? panels)(host, run.drawings?.[name] ?? run.detail);
+
+// ---- a place of the page as SVG: charts, titles and legends, without the style sheet
+
+function svgOf(host) {
+  const box = host.getBoundingClientRect(), svg = charts.select("body").append("svg"), attributes = (g, all) => Object.entries(all).reduce((one, [key, v]) => one.attr(key, v), g);
+  attributes(svg, { width: box.width, height: box.height, color: INK, fill: INK, "font-family": "DejaVu Sans, sans-serif" }).append("rect").attr("width", "100%").attr("height", "100%").attr("fill", PAPER);
+  for (const part of host.querySelectorAll("div > svg, figure > svg, h3, .legend span")) {
+    const { left, top, bottom } = part.getBoundingClientRect(), isChart = part.tagName === "svg";
+    const g = attributes(svg.append(isChart ? "g" : "text"), { transform: `translate(${left - box.left},${(isChart ? top : bottom - 5) - box.top})`, "font-size": 13, "text-anchor": part.getAttribute("text-anchor") ?? "start" });
+    if (isChart) g.node().append(...[...part.children].filter((e) => e.tagName !== "style"));
+    else {
+      g.append("tspan").attr("fill", part.style.getPropertyValue("--key")).text(part.dataset.mark ?? "");
+      g.append("tspan").text(` ${part.textContent}`);
+    }
+  }
+  return new XMLSerializer().serializeToString(svg.node());
+}
+
+// The drawings of a dossier stand in its text; pictures that the program asks for take the place of the page: [[name, width]].
+function drawPaper() {
+  for (const place of document.querySelectorAll("[data-draw]")) drawOnPaper(place, place.dataset.draw);
+  drawAll();
+  if (!run.paper.length) return;
+  const all = element("body");
+  const give = (name, data) => all.append(element("pre", { id: name }, data.replace(/.*,/, "")));
+  for (const [name, width] of run.paper) {
+    const host = document.body.appendChild(element("div", { style: `width: ${width}px; padding: 14px` }));
+    drawOnPaper(host, name);
+    for (const e of host.querySelectorAll("p, figcaption, .scroll")) e.remove();
+    drawAll();
+    const image = new Image(host.offsetWidth * 1.5, host.offsetHeight * 1.5), canvas = prepare(element("canvas"), image.width, image.height);
+    image.src = `data:image/svg+xml;base64,${btoa(unescape(encodeURIComponent(svgOf(host))))}`;
+    give(`${name}.svg`, image.src);
+    image.onload = () => {
+      canvas.drawImage(image, 0, 0, image.width, image.height);
+      give(`${name}.png`, canvas.canvas.toDataURL());
+    };
+  }
+  root.replaceChildren(all);
+}
