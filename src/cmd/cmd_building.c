@@ -215,9 +215,8 @@ static Status print_json(const Model *m, Err *err)
 static Status write_svg(const Model *m, const char *path, Err *err)
 {
     json_t *drawn;
-    int width;
-    TRY(draw_building(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, &drawn, &width, err));
-    return drawing_save(drawn, width, path, err);
+    TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, &drawn, err));
+    return drawing_save(drawn, "building", 1000, path, err);
 }
 
 static Status show(const Args *args, const Model *m, Err *err)

@@ -260,13 +260,12 @@ static void write_building(const Dossier *o)
     Err e = {0};
     const int has_frame = frame_is(o->s->building.model);
     json_t *table = json_array(), *drawn = NULL;
-    int width;
     heading(o, "Building, core and ground motion");
     Status status = building_load(&b, &o->s->building, &e);
     if (status == STATUS_OK && has_frame)
         status = frame_read(&frame, &o->s->building, &e);
     if (status == STATUS_OK)
-        status = draw_building(&b, has_frame ? &frame : NULL, &drawn, &width, &e);
+        status = building_drawing(&b, has_frame ? &frame : NULL, &drawn, &e);
     if (status == STATUS_OK) {
         put_lines(table, "floors", "%.0f", b.n);
         put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));
@@ -340,10 +339,7 @@ static void write_design(const Dossier *o)
     Design design;
     design_of(&schema->design, o->x, &design);
     heading(o, "The design");
-    json_object_set_new(o->drawings, "section", draw_section(o->d, &design));
-    draw(o, "section",
-         "Section: tower, core and what is between them. Heights to scale, gaps and walls each in proportion to their "
-         "largest. Orange: a stop (thick: with a bumper); green: a dashpot.");
+    draw(o, "gaps", "");
     list_devices(o, &design);
 }
 
@@ -404,8 +400,7 @@ static void write_response(const Dossier *o)
     say(o, "CVODE integrates the equations of motion without the study's engine. Contacts that graze may separate two "
            "calculations: J3 is then the least certain figure.");
     draw(o, "peaks", "Peaks over the height.");
-    json_object_set_new(o->drawings, "history", draw_history(o->d));
-    draw(o, "history", "Displacement over time.");
+    draw(o, "displacement", "Below each history its wavelet amplitude; dashed: natural frequencies of the building.");
 }
 
 /* ---- what it has to bear --------------------------------------------------------------------------------------- */

@@ -28,14 +28,5 @@ json_t *panel(const char *title, json_t *x, json_t *y, json_t *marks);
 json_t *curve(size_t n, const double x[], const double y[], const char *colour, double width);
 json_t *dashed(json_t *curve);
 
-/* Pairs of objectives against each other, coloured by the last one; the knee and the baselines. */
-json_t *draw_front(const Report *r);
-
-/* A frame, or storeys as a stick (frame NULL), to scale beside the first mode shapes; *width: of all of it [px]. */
-Status draw_building(const Building *b, const Frame *frame, json_t **out, int *width, Err *err);
-
-/* Section through tower and core, heights to scale, gaps and walls each in proportion to the largest. */
-json_t *draw_section(const Detail *d, const Design *design);
-
-/* Displacement of the detail's floor over time, with core and without. */
-json_t *draw_history(const Detail *d);
+/* A frame, or storeys as a stick (frame NULL), with its first mode shapes. */
+Status building_drawing(const Building *b, const Frame *frame, json_t **out, Err *err);

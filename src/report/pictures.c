@@ -135,16 +135,18 @@ static Status save(const char *drawn, const char *name, const char *path, int in
 
 /* ---- pictures -------------------------------------------------------------------------------------------------- */
 
-Status drawing_save(json_t *drawing, int width, const char *path, Err *err)
+Status drawing_save(json_t *drawing, const char *name, int width, const char *path, Err *err)
 {
-    char *drawn = NULL;
+    char *drawn = NULL, file[64];
     json_t *none = json_of("objectives=%p variables=%p words=%p limited=%p", json_array(), json_array(), json_array(),
                            json_array());
-    json_t *run =
-        json_of("schema=%p drawings=%p paper=%p", none, json_of("one=%p", drawing), json_pack("[[si]]", "one", width));
+    json_t *drawings = json_object();
+    snprintf(file, sizeof file, "%s.svg", name);
+    json_object_set_new(drawings, name, drawing);
+    json_t *run = json_of("schema=%p drawings=%p paper=%p", none, drawings, json_pack("[[si]]", name, width));
     Status status = draw(run, NULL, "", path, &drawn, err);
     if (status == STATUS_OK)
-        status = save(drawn, "one.svg", path, 0, err);
+        status = save(drawn, file, path, 0, err);
     free(drawn);
     return status;
 }
@@ -207,9 +209,7 @@ Status pictures_of(const Report *r, const char *folder, Err *err)
         return fail_errno(err, folder, "cannot be made a folder");
     }
     snprintf(path, sizeof path, "%.4000s/page", folder);
-    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", names,
-                           r->run->schema.n_obj > 1 ? json_of("front=%p", draw_front(r)) : NULL);
-    Status status = draw(run, r, "", path, &drawn, err);
+    Status status = draw(json_put(report_json(r), "paper=%p", names), r, "", path, &drawn, err);
     if (status == STATUS_OK)
         status = save_all(drawn, r, folder, err);
     free(drawn);
