@@ -216,7 +216,7 @@ static Status write_svg(const Model *m, const char *path, Err *err)
 {
     json_t *drawn;
     TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, &drawn, err));
-    return drawing_save(drawn, "building", 1000, path, err);
+    return drawing_save(drawn, 1100, path, err);
 }
 
 static Status show(const Args *args, const Model *m, Err *err)

@@ -117,7 +117,7 @@ static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const ch
         snprintf(text, sizeof text, "%s: median, 16 and 84 %%", EVALUATION_CASES[c].word);
         json_array_append_new(names, name_of(text, evaluation_look(c)->colour, "\u25a0"));
     }
-    return drawing_save(drawing("", names, 440, columns), "panels", 1300, path, err);
+    return drawing_save(drawing("", names, 440, columns), 1300, path, err);
 }
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */

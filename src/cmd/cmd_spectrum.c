@@ -272,7 +272,7 @@ static Status draw_one(const Spectrum *s, const Curve c[CURVES_MAX], const char 
     snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
              m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
              is_corrected(s) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
-    return drawing_save(drawing(title, json_array(), 840, json_pack("[oo]", left, right)), "panels", 1100, path, err);
+    return drawing_save(drawing(title, json_array(), 840, json_pack("[oo]", left, right)), 1100, path, err);
 }
 
 static Status draw_all(size_t n, const Spectrum s[], const Curve c[], const char *path, Err *err)
@@ -290,7 +290,7 @@ static Status draw_all(size_t n, const Spectrum s[], const Curve c[], const char
     if (c[2].x)
         json_array_append_new(names, name_of("target", VERMILLION, "\u25a0"));
     json_t *one = spectrum_panel("pseudo-acceleration [g], 5 % damping", lines);
-    return drawing_save(drawing("", names, 560, json_pack("[[o]]", one)), "panels", 1000, path, err);
+    return drawing_save(drawing("", names, 560, json_pack("[[o]]", one)), 1000, path, err);
 }
 
 /* ---- one motion -------------------------------------------------------------------------------------------------- */

@@ -283,8 +283,8 @@ static void write_building(const Dossier *o)
         add_line(table, "foundation of the core", o->s->core.foundation);
         add_line(table, "ground motion", o->record);
         figures_html(o->out, table);
-        json_object_set_new(o->drawings, "building", drawn);
-        draw(o, "building", "The building to scale; its first mode shapes with period and share of the mass.");
+        json_object_set_new(o->drawings, "panels", drawn);
+        draw(o, "panels", "The building to scale; its first mode shapes with period and share of the mass.");
     } else {
         json_decref(table);
     }

@@ -308,5 +308,5 @@ Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *
                                              evaluation_look(CASES[k])->mark));
     json_decref(panels);
     const int rows = (int)((n + across - 1) / across);
-    return drawing_save(drawing("", names, 380 * rows, columns), "panels", 30 + 400 * (int)across, path, err);
+    return drawing_save(drawing("", names, 380 * rows, columns), 30 + 400 * (int)across, path, err);
 }

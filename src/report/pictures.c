@@ -135,18 +135,16 @@ static Status save(const char *drawn, const char *name, const char *path, int in
 
 /* ---- pictures -------------------------------------------------------------------------------------------------- */
 
-Status drawing_save(json_t *drawing, const char *name, int width, const char *path, Err *err)
+Status drawing_save(json_t *drawing, int width, const char *path, Err *err)
 {
-    char *drawn = NULL, file[64];
+    char *drawn = NULL;
     json_t *none = json_of("objectives=%p variables=%p words=%p limited=%p", json_array(), json_array(), json_array(),
                            json_array());
-    json_t *drawings = json_object();
-    snprintf(file, sizeof file, "%s.svg", name);
-    json_object_set_new(drawings, name, drawing);
-    json_t *run = json_of("schema=%p drawings=%p paper=%p", none, drawings, json_pack("[[si]]", name, width));
+    json_t *run = json_of("schema=%p drawings=%p paper=%p", none, json_of("panels=%p", drawing),
+                          json_pack("[[si]]", "panels", width));
     Status status = draw(run, NULL, "", path, &drawn, err);
     if (status == STATUS_OK)
-        status = save(drawn, file, path, 0, err);
+        status = save(drawn, "panels.svg", path, 0, err);
     free(drawn);
     return status;
 }

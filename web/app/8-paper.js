@@ -1,8 +1,11 @@
 // On paper: pictures of a run, drawings of a dossier, curves that a command asks for. What draws them is what the page has.
 
-// A panel as the program gives it: { title, x, y: axes, marks: [{ mark: line, dot or text, x, y, ... }], ... } by the library's names.
-const panelChart = (width, height, { x, y, marks, ...options }) => chart({
-  width, height: options.aspectRatio ? undefined : height, marginRight: 20, ...options, x: { grid: true, ...x }, y: { grid: true, ...y }, marks: marks.map((m) => charts[m.mark](m.y, m)) });
+// A panel as the program gives it: { title, x, y: axes, marks: [{ mark: line or dot, x, y, ... }] } by the library's names;
+// `around`: the middle of an axis that has the scale of y.
+function panelChart(width, height, { x, y, marks, title, ...options }) {
+  const half = finite(x.around) && ((width - 78) * (y.domain[1] - y.domain[0])) / (height - 56) / 2, domain = half ? [x.around - half, x.around + half] : x.domain;
+  return chart({ width, height, marginRight: 20, ...options, x: { grid: true, ...x, domain }, y: { grid: true, ...y }, marks: marks.map((m) => charts[m.mark](m.y, m)) });
+}
 
 // Columns of panels below the names of what is in all of them.
 function panels(host, { title, names, columns, height }) {
@@ -27,28 +30,9 @@ function frontPicture(host) {
       charts.dot([state.marked], { x: (i) => x.value[i], y: (i) => y.value[i], fill: INK, r: 6 })] }));
 }
 
-// A frame to scale, beside it the heights of its floors and its mode shapes; u: a px [m].
-function buildingDrawing(host, { nodes, elements, heights, modes }) {
-  const [[x0, x1], [z0, z1]] = ["x", "y"].map((k) => charts.extent(nodes, (n) => n[k])), u = Math.max((z1 - z0) / 640, (x1 - x0) / 520), ground = z1 - heights.at(-1), middle = (k) => x1 + (127 + 64 * k) * u;
-  const texts = (rows, textAnchor) => charts.text(rows, { x: "x", y: "y", text: "text", textAnchor, fill: INK });
-  const support = (held, fill, more) => charts.dot(nodes.filter((n) => n.held === held), { x: "x", y: "y", symbol: "triangle", r: 5, fill, stroke: INK, title: "title", ...more });
-  const pins = elements.flatMap(({ ends, pins: is }) => [0, 1].filter((k) => is[k]).map((k) => {
-    const [a, b] = [ends[k], ends[1 - k]].map((i) => nodes[i]), share = (6 * u) / Math.max(Math.hypot(b.x - a.x, b.y - a.y), 12 * u);
-    return { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y) };
-  }));
-  drawn(host, (width) => chart({ width, aspectRatio: 1, margin: 0, x: { axis: null, domain: [x0 - 12 * u, middle(modes.length)] }, y: { axis: null, domain: [z0 - 14 * u, z1 + 30 * u] }, marks: [
-    charts.line(elements.flatMap(({ ends, title }, z) => ends.map((i) => ({ ...nodes[i], title, z }))), { x: "x", y: "y", z: "z", title: "title", stroke: INK, strokeWidth: 1.2 }),
-    charts.dot(pins, { x: "x", y: "y", r: 2.5, fill: PAPER, stroke: INK }), support("all", INK, { dy: 5 }), support("z", PAPER, { dy: 5 }), support("x", PAPER, { dx: -5, rotate: 90 }),
-    charts.dot(nodes.filter((n) => n.floor), { x: "x", y: "y", fill: VERMILLION, title: "title" }),
-    texts(heights.map((z, j) => ({ x: x1 + 12 * u, y: ground + z, text: `${j}: ${show(z)} m` })).filter((_, j) => j % Math.ceil(heights.length / 26) === 0), "start"),
-    ...modes.flatMap(({ shape, period_s: period, mass_pct: mass }, k) => [
-      charts.line(heights, { x: (z, j) => middle(k) + (27 * u * (shape[j - 1] ?? 0)) / Math.max(...shape.map(Math.abs)), y: (z) => ground + z, stroke: BLUE }),
-      charts.ruleX([middle(k)], { y1: ground, y2: z1, stroke: PALE }), texts([[22, `${show(period)} s`], [8, `${show(mass)} %`]].map(([up, text]) => ({ x: middle(k), y: z1 + up * u, text })))])] }));
-}
-
 const DRAWINGS = {
   front: frontPicture, growth: (host) => drawn(host, (width) => growthChart(width, 400, growthRows())), gaps: shapeFigures, peaks: (host, d) => peakPart(host, d, 400), modes: modePart,
-  energies: energyPair, displacement: spectrumPair, elsewhere: otherPart, forces: forceFigures, building: buildingDrawing, panels,
+  energies: energyPair, displacement: spectrumPair, elsewhere: otherPart, forces: forceFigures, panels,
 };
 const drawOnPaper = (host, name) => DRAWINGS[name](host, run.drawings?.[name] ?? run.detail);
 
