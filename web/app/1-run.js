@@ -7,7 +7,6 @@ const lines = byId("rows").textContent.trim().split("\n").filter((line) => line)
 const n = lines.length;
 
 // ---- columns: titles and units of objectives come with the run, those of the tower's variables follow from their names
-
 const SINGLE = {
   t_base_m: ["t base", "mm", 1e3, "thickness of the core, first storey"],
   t_top_m: ["t top", "mm", 1e3, "thickness of the core, last storey"],
@@ -74,7 +73,6 @@ function atBound(c, v) {
 }
 
 // ---- words and numbers
-
 // A tick of a column's axis.
 const tickText = (c) => (v) => (c.words ? (c.words[v] ?? "") : show(v));
 
@@ -98,7 +96,8 @@ const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
 const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");
 
-function element(tag, attributes = {}, ...children) {
+function element(tag, first, ...rest) {
+  const [attributes, ...children] = first?.constructor === Object ? [first, ...rest] : [{}, first, ...rest];
   const e = document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) e.addEventListener(key.slice(2), value);
@@ -110,11 +109,11 @@ function element(tag, attributes = {}, ...children) {
   return e;
 }
 
+const div = (name, ...inside) => element("div", { class: name }, ...inside);
 const note = (...words) => element("p", { class: "note" }, ...words), warn = (...words) => element("p", { class: "warn" }, ...words);
-const heading = (c) => [c.title, ...(c.unit ? [element("small", {}, c.unit)] : [])];
+const heading = (c) => [c.title, ...(c.unit ? [element("small", c.unit)] : [])];
 
 // ---- colours: Okabe and Ito's, and viridis without its palest end
-
 const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e69f00", SKY = "#56b4e9", GREEN = "#009e73",
   PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32, PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, GREY];
 
@@ -131,7 +130,6 @@ function takeTheme(name) {
 takeTheme(ownTheme);
 
 // ---- the chosen design and what it is compared with
-
 const SCENES = {
   with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", dash: [] },
   no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", dash: [8, 4] },

@@ -30,14 +30,14 @@ function refill(part, fill) {
 }
 
 function drawn(host, plot) {
-  const place = host.appendChild(element("div", { class: "chart" }));
+  const place = host.appendChild(div("chart"));
   return addDrawing(place, (width) => place.replaceChildren(plot(Math.max(240, width))));
 }
 
 function figure(host, title, caption, plot, ...above) {
-  const f = host.appendChild(element("figure", {}, element("h3", {}, title), ...above));
+  const f = host.appendChild(element("figure", element("h3", title), ...above));
   f.redraw = drawn(f, plot);
-  if (caption) f.append(element("figcaption", {}, caption));
+  if (caption) f.append(element("figcaption", caption));
   return f;
 }
 
@@ -48,19 +48,19 @@ function chart(options) {
 }
 
 function legend(entries) {
-  return element("div", { class: "legend" }, ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
+  return div("legend", ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
 }
 const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]));
 
-const gridOf = (host, columns) => host.appendChild(element("div", { class: `grid${columns}` }));
+const gridOf = (host, columns) => host.appendChild(div(`grid${columns}`));
 
 // Heads: words or columns; rows: of line().
-const table = (id, heads, rows) => element("div", { class: "scroll" }, element("table", { id },
-  element("thead", {}, element("tr", {}, ...heads.map((h) => (typeof h === "string" ? element("th", { scope: "col" }, h) : element("th", { scope: "col", title: h.what }, ...heading(h)))))),
-  element("tbody", {}, ...rows)));
+const table = (id, heads, rows) => div("scroll", element("table", { id },
+  element("thead", element("tr", ...heads.map((h) => (typeof h === "string" ? element("th", { scope: "col" }, h) : element("th", { scope: "col", title: h.what }, ...heading(h)))))),
+  element("tbody", ...rows)));
 
 // Cells: words, or a list of what is in one.
-const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", {}, ...[inside].flat())));
+const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", ...[inside].flat())));
 
 // What holds rows anew, the focus on the button of the same design.
 function refillRows(host, ...inside) {
@@ -71,8 +71,8 @@ function refillRows(host, ...inside) {
 
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
-  const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));
-  part.addEventListener("toggle", () => part.open && root.dataset.ready && drawAll());
+  const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", element("h3", title))));
+  part.ontoggle = () => part.open && root.dataset.ready && drawAll();
   return part;
 }
 // Everything is drawn again in its colours.
@@ -89,10 +89,10 @@ window.addEventListener("beforeprint", () => {
   for (const part of openedForPaper) part.open = true;
   showTheme("light");
 });
-window.addEventListener("afterprint", () => {
+window.onafterprint = () => {
   for (const part of openedForPaper.splice(0)) part.open = false;
   showTheme(state.theme);
-});
+};
 
 // Bars over the height: { place: floor or zone, v, title, colour, from, to: where it is not the middle of its place }; marks: behind and over them.
 const barChart = (width, height, rows, places, label, options = {}, marks = []) => chart({

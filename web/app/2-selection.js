@@ -141,7 +141,7 @@ function byKeys(layers) {
     else hover(rows[clamp(to, [0, rows.length - 1])], { clientX: box.left, clientY: box.bottom }, box);
     event.preventDefault();
   });
-  layers.addEventListener("blur", () => hover(undefined));
+  layers.onblur = () => hover(undefined);
 }
 
 // The pointer over a picture: rowAt (x, y, event) is the design there.
@@ -152,8 +152,11 @@ function pointed(place, rowAt, isBelow = false) {
     if (event.type === "click" && state.hovered !== undefined) mark(state.hovered);
   };
   for (const type of ["mousemove", "click"]) place.addEventListener(type, look); // a finger does not move before
-  place.addEventListener("pointerleave", () => hover(undefined));
+  place.onpointerleave = () => hover(undefined);
 }
+
+// An element of an SVG.
+const put = (parent, name, attributes = {}) => Object.entries(attributes).reduce((g, [key, v]) => g.attr(key, v), parent.append(name));
 
 // Three canvases below an SVG: all designs, those that are selected, and what stands out of them.
 function layered(host, label, rowAt, isBelow) {
@@ -170,7 +173,6 @@ function layered(host, label, rowAt, isBelow) {
 }
 
 // ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
-
 const byName = (name) => columns.find((c) => c.name === name);
 const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (finite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
 const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
@@ -242,7 +244,6 @@ function readAddress() {
 }
 
 // ---- colours and canvases
-
 // Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.
 let shade = new Uint8Array(n), byShade = [], shadeColours = RAMP;
 function findShades() {
@@ -276,7 +277,7 @@ function showTip(row, event, at) {
   if (tip.hidden) return;
   if (+tip.dataset.row !== row) {
     tip.dataset.row = row;
-    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
+    tip.replaceChildren(element("strong", designName(row)), element("dl", ...results.flatMap((c) => [element("dt", c.title), element("dd", known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
   }
   tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
   tip.style.top = `${Math.max(4, Math.min(at ? at.bottom + 4 : event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;

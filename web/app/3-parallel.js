@@ -32,7 +32,7 @@ function actOnAxis(c, act) {
 }
 
 function openAxisMenu(c, box) {
-  axisMenu.replaceChildren(...axisActions(c).map(([words, can, act, key]) => element("button", { type: "button", role: "menuitem", disabled: !can, onclick: () => actOnAxis(c, act) }, words, element("kbd", {}, key.replace("Arrow", "").replace("Delete", "Del")))));
+  axisMenu.replaceChildren(...axisActions(c).map(([words, can, act, key]) => element("button", { type: "button", role: "menuitem", disabled: !can, onclick: () => actOnAxis(c, act) }, words, element("kbd", key.replace("Arrow", "").replace("Delete", "Del")))));
   axisMenu.hidden = false;
   axisMenu.style.left = `${clamp(box.left, [4, window.innerWidth - axisMenu.offsetWidth - 4])}px`;
   axisMenu.style.top = `${box.bottom + 4}px`;
@@ -130,7 +130,6 @@ function parallelCoordinates(host) {
   }
 
   // ---- the pointer
-
   function rowAt(px, py) {
     const k = axes.findIndex((axis, i) => i + 1 < axes.length && px >= axis.at && px <= axes[i + 1].at);
     if (k < 0) return undefined;
@@ -144,7 +143,6 @@ function parallelCoordinates(host) {
   }
 
   // ---- axes
-
   function brushed({ sourceEvent, selection }, axis) {
     if (!sourceEvent) return; // moved by us
     const range = selection ? selection.map(axis.y.invert).sort((a, b) => a - b) : null;
@@ -162,13 +160,13 @@ function parallelCoordinates(host) {
 
   function headAxis(group, axis, room) {
     const { c } = axis, wide = Math.min(room, 2 * margin.left), rows = wrapped(c.title, Math.max(4, wide / 7.5), 3); // in as many lines as its place needs
-    const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
-      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu`);
-    g.append("rect").attr("x", -wide / 2 + 2).attr("y", 0).attr("width", wide - 4).attr("height", margin.top - 2);
-    const text = g.append("text").attr("class", "title").attr("text-anchor", "middle");
-    rows.forEach((row, k) => text.append("tspan").attr("x", 0).attr("y", 39 - 14 * (rows.length - 1 - k)).text(row));
-    if (c.unit) g.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("y", 53).text(c.unit);
-    g.append("title").text(`${c.what}. Drag sideways to move, down to turn over, up to hide; click for more.`);
+    const g = put(group, "g", { class: "heading", tabindex: 0, role: "button", "aria-haspopup": "menu", "data-name": c.name,
+      "aria-label": "Axis " + titleUnit(c) + ": arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu" });
+    put(g, "rect", { x: -wide / 2 + 2, y: 0, width: wide - 4, height: margin.top - 2 });
+    const text = put(g, "text", { class: "title" });
+    rows.forEach((row, k) => put(text, "tspan", { x: 0, y: 39 - 14 * (rows.length - 1 - k) }).text(row));
+    if (c.unit) put(g, "text", { class: "unit", y: 53 }).text(c.unit);
+    g.append("title").text(c.what + ". Drag sideways to move, down to turn over, up to hide; click for more.");
     g.call(dragging(axis));
     g.on("keydown", (event) => {
       const action = axisActions(c).find(([, can, , key]) => can && (key === event.key || key === event.key.toLowerCase()));
@@ -217,7 +215,7 @@ function parallelCoordinates(host) {
       axis.brush = charts.brushY().extent([[-10, margin.top - 2], [10, height - margin.bottom + 4]])
         .on("brush end", (event) => brushed(event, axis));
       group.append("g").call(charts.axisLeft(axis.y).tickValues(ticksOf(axis.y, 6)).tickSize(4).tickFormat(hasNumbers ? tickText(axis.c) : () => ""));
-      group.append("g").attr("class", "brush").call(axis.brush);
+      put(group, "g", { class: "brush" }).call(axis.brush);
       headAxis(group, axis, room);
     });
   }

@@ -27,7 +27,7 @@ function designTable(host) {
   const head = element("tr"), body = element("tbody");
   const back = plainButton("Previous", () => draw(page - 1)), next = plainButton("Next", () => draw(page + 1)), where = element("span");
   host.append(element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Selected designs" },
-    element("table", { id: "designs" }, element("thead", {}, head), body)), element("div", { class: "pages" }, back, where, next));
+    element("table", { id: "designs" }, element("thead", head), body)), div("pages", back, where, next));
 
   head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what, class: !c.sense && "variable" },
     element("button", { type: "button", onclick: () => sortBy(c) }, c.title), ...heading(c).slice(1))));
@@ -38,7 +38,7 @@ function designTable(host) {
     const words = (isKnee ? " knee" : "") + (id === run.chosen && !isKnee ? " chosen" : "") + (isBeyond ? " \u26a0" : "") + (note ? " \u270e" : "");
     return element("tr", { "data-id": id, class: [i === state.marked && "marked", isKnee && "knee"].filter(Boolean).join(" "), onpointerenter: () => hover(i), onpointerleave: () => hover(undefined),
       title: [isBeyond && "maximum indentation beyond what the contact law is meant for", note].filter(Boolean).join("; ") },
-    element("td", {}, name, words), ...shown.map((c) => element("td", { class: !c.sense && "variable" }, known(c, i))));
+    element("td", name, words), ...shown.map((c) => element("td", { class: !c.sense && "variable" }, known(c, i))));
   }
 
   function sortBy(c) {

@@ -2,7 +2,6 @@
 // a few typical designs.
 
 // ---- heat map: a column of pixels per design, or per few of them
-
 const COLUMNS_MAX = 480;
 
 // The selected designs from the least to the largest value of the colour's column, in at most COLUMNS_MAX groups.
@@ -54,7 +53,6 @@ function heatFigure(host, family) {
 }
 
 // ---- importance
-
 const KNOWN_R2 = 0.5; // below it the surrogate explains too little to say what matters
 
 function importanceFigure(host) {
@@ -66,8 +64,8 @@ function importanceFigure(host) {
   const largest = Math.max(...rows.filter((r) => r.known).map((r) => r.total), 0.1), isCrowded = variables.length > 26;
   const below = 16 + 7 * Math.max(...variables.map((c) => c.title.length));
   figure(host, "Which variables matter for which objective",
-    `Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of ${count(m.centres)} of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. ` +
-    `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
+    "Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of " + count(m.centres) +
+    " of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. " + `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
       width, height: 30 * objectives.length + below + 20, marginLeft: Math.min(230, 0.4 * width), marginBottom: below, ariaLabel: "Total Sobol indices of variables for objectives",
       x: { label: null, domain: variables.map((c) => c.title), tickRotate: -90, tickSize: 0 }, y: { label: null, domain: named, tickSize: 0 },
       color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
@@ -79,7 +77,6 @@ function importanceFigure(host) {
 }
 
 // ---- typical designs
-
 const TYPES_MAX = 4;
 const DISTINCT = 0.35; // of the standard deviation over the front: by that much a type differs in an objective
 

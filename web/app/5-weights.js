@@ -22,15 +22,15 @@ function weightsPart(host) {
   const list = element("div"), fields = objectives.map((c) => {
     const weight = element("input", { type: "range", min: 0, max: 10, step: 0.5, name: `${c.name} weight`, "aria-label": `weight of ${c.title}` }), told = element("output");
     const point = element("input", { type: "text", inputmode: "decimal", name: `${c.name} reference`, "aria-label": `${titleUnit(c)} of the reference point`, placeholder: `${show(c.min)} to ${show(c.max)}` });
-    weight.addEventListener("input", () => take(state.weights.set(c, +weight.value)));
-    point.addEventListener("change", () => {
+    weight.oninput = () => take(state.weights.set(c, +weight.value));
+    point.onchange = () => {
       const v = point.value.trim() === "" ? null : +point.value;
       point.classList.toggle("bad", Number.isNaN(v));
       if (v === null) state.reference.delete(c);
       else if (!Number.isNaN(v)) state.reference.set(c, v);
       take();
-    });
-    return { c, weight, told, point, row: element("div", { class: "weight" }, element("span", { title: c.what }, titleUnit(c)), weight, told, point) };
+    };
+    return { c, weight, told, point, row: div("weight", element("span", { title: c.what }, titleUnit(c)), weight, told, point) };
   });
 
   function take() {
@@ -50,8 +50,8 @@ function weightsPart(host) {
   }
 
   host.append(note("Weights of the objectives over their ranges on the front; with a value of the reference point in any objective, the design nearest to it. The pictures are coloured by the score; the best of the selected designs:"),
-    element("div", { class: "weights" }, ...fields.map(({ row }) => row)),
-    element("div", { class: "bar" }, plainButton("Equal weights, no reference point", () => {
+    div("weights", ...fields.map(({ row }) => row)),
+    div("bar", plainButton("Equal weights, no reference point", () => {
       state.weights.clear();
       state.reference.clear();
       take();

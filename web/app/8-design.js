@@ -1,7 +1,6 @@
 // The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
 
 // ---- heights
-
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
 // A gap as wide as this stands for no stop at all (src/study/simplify.h).
 const NO_STOP_M = 10;
@@ -62,7 +61,6 @@ function peakPart(host, d, height) {
 }
 
 // ---- where the energy goes
-
 // A dot per mode and scene, logarithmic: the first mode has a hundred times the share of the tenth.
 function modeFigure(host, scenes, title, caption) {
   const modes = Math.min(10, scenes[0][1].modes.length);
@@ -113,7 +111,6 @@ function leftPart(host, scenes, d) {
 }
 
 // ---- over time
-
 const ENERGIES = [["damped_building", "damping of the building", BLUE], ["damped_core", "damping of the core", GREEN],
   ["contacts", "impacts", ORANGE], ["core", "kinetic and strain energy of the core", PURPLE], ["strain", "strain energy of the building", SKY], ["kinetic", "kinetic energy of the building", GREY]];
 
@@ -174,7 +171,6 @@ function spectrumPair(part, d) {
 }
 
 // ---- other earthquakes
-
 function otherTable(d) {
   const all = [{ record: d.record, pga_g: d.pga_g, scale: d.scale, stretch: d.stretch, with_core: d.with_core, no_core: d.no_core }, ...d.elsewhere];
   const kept = objectives.map((c, k) => [c, k]).filter(([c]) => c.name !== "mcore_kg");
@@ -204,7 +200,6 @@ function otherPart(host, d) {
 }
 
 // ---- which effects it needs
-
 const signed = (v) => (v === null ? "failed" : `${v > 0 ? "+" : v < 0 ? "\u2212" : ""}${show(Math.abs(v) < 0.005 ? 0 : Math.abs(v))}`);
 
 function ladderPart(host, d) {
@@ -213,23 +208,21 @@ function ladderPart(host, d) {
   const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
   const scene = (key) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits((l.by_the_set[key][name] ?? NaN) * factor))]);
   host.append(
-    note(`Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ${keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", ")} %, which is 2 % or the scatter as built. ` +
-      "imtet check --ladder repeats it with the steps, and says what each costs." +
-      (l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : "")),
+    note("Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ", keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", "), " %, which is 2 % or the scatter as built. imtet check --ladder repeats it with the steps, and says what each costs.",
+      l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : ""),
     table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
-    element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
+    element("p", `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
     table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], ["with_core", "rigid", "no_core"].map(scene)));
 }
 
 // ---- all of it
-
 // Of any design: `d` as report_json.h describes it, into `host`; isBeside: its gaps are shown already.
 function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
   const notes = d.baselines.filter((b) => b.objectives && SCENES[b.key].note).map((b) => `${SCENES[b.key].note}${b.device && ` (${b.device})`}.`).join(" ");
-  if (r.objectives) host.append(element("p", {}, `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
+  if (r.objectives) host.append(element("p", `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
   host.append(loadTable(d), note(notes));
   shapeFigures(host, d, isBeside);
   forceFigures(host, d);
@@ -259,7 +252,7 @@ function designPart() {
   const host = byId("design"), d = run.detail;
   if (!d) return host.remove();
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
-  host.append(note(`Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ${run.id_step ? run.folder.replaceAll(" + ", " ") : run.folder} --design ID`));
+  host.append(note("Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ", run.id_step ? run.folder.replaceAll(" + ", " ") : run.folder, " --design ID"));
   if (run.pair) folded(host, "As found and to be built", true).append(pairTable(run.pair));
   detailParts(host, d);
 }

@@ -44,7 +44,7 @@ function difference(value, before) {
 function numbersOf(row) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
       ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other])])]))]);
 }
 
@@ -70,14 +70,14 @@ const noteOf = (id) => {
 function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
-    host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
+    host.append(div("bar", element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
+      div("bar", ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
     if (d?.reason) host.append(warn(`Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);
     else for (const family of families) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
     if (d?.with_core) peakPart(host, d, 240);
-    host.append(element("details", {}, element("summary", {}, "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
+    host.append(element("details", element("summary", "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
     if (d?.with_core) drawerMore.rest(host, d);
   });
   drawer.dataset.id = d?.waits ? "" : id;

@@ -9,7 +9,7 @@ function panelChart(width, height, { x, y, marks, title, ...options }) {
 
 // Columns of panels below the names of what is in all of them.
 function panels(host, { title, names, columns, height }) {
-  host.append(element("h3", {}, title), legend(names));
+  host.append(element("h3", title), legend(names));
   const grid = gridOf(host, columns.length);
   for (const list of columns) {
     const column = grid.appendChild(element("div"));
@@ -37,17 +37,16 @@ const DRAWINGS = {
 const drawOnPaper = (host, name) => DRAWINGS[name](host, run.drawings?.[name] ?? run.detail);
 
 // ---- a place of the page as SVG: charts, titles and legends, without the style sheet
-
 function svgOf(host) {
-  const box = host.getBoundingClientRect(), svg = charts.select("body").append("svg"), attributes = (g, all) => Object.entries(all).reduce((one, [key, v]) => one.attr(key, v), g);
-  attributes(svg, { width: box.width, height: box.height, color: INK, fill: INK, "font-family": "DejaVu Sans, sans-serif" }).append("rect").attr("width", "100%").attr("height", "100%").attr("fill", PAPER);
+  const box = host.getBoundingClientRect(), { width, height } = box, svg = put(charts.select("body"), "svg", { width, height, color: INK, fill: INK, "font-family": "DejaVu Sans, sans-serif" });
+  put(svg, "rect", { width, height, fill: PAPER });
   for (const part of host.querySelectorAll("div > svg, figure > svg, h3, .legend span")) {
     const { left, top, bottom } = part.getBoundingClientRect(), isChart = part.tagName === "svg";
-    const g = attributes(svg.append(isChart ? "g" : "text"), { transform: `translate(${left - box.left},${(isChart ? top : bottom - 5) - box.top})`, "font-size": 13, "text-anchor": part.getAttribute("text-anchor") ?? "start" });
-    if (isChart) g.node().append(...[...part.children].filter((e) => e.tagName !== "style"));
+    const g = put(svg, isChart ? "g" : "text", { transform: `translate(${left - box.left},${(isChart ? top : bottom - 5) - box.top})`, "font-size": 13, "text-anchor": part.getAttribute("text-anchor") ?? "start" });
+    if (isChart) g.node().append(...part.querySelectorAll(":scope > :not(style)"));
     else {
-      g.append("tspan").attr("fill", part.style.getPropertyValue("--key")).text(part.dataset.mark ?? "");
-      g.append("tspan").text(` ${part.textContent}`);
+      put(g, "tspan", { fill: part.style.getPropertyValue("--key") }).text(part.dataset.mark);
+      put(g, "tspan", { dx: 6 }).text(part.textContent);
     }
   }
   return new XMLSerializer().serializeToString(svg.node());
@@ -58,8 +57,7 @@ function drawPaper() {
   for (const place of document.querySelectorAll("[data-draw]")) drawOnPaper(place, place.dataset.draw);
   drawAll();
   if (!run.paper.length) return;
-  const all = element("body");
-  const give = (name, data) => all.append(element("pre", { id: name }, data.replace(/.*,/, "")));
+  const all = element("body"), give = (name, data) => all.append(element("pre", { id: name }, data.replace(/.*,/, "")));
   for (const [name, width] of run.paper) {
     const host = document.body.appendChild(element("div", { style: `width: ${width}px; padding: 14px` }));
     drawOnPaper(host, name);

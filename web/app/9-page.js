@@ -27,10 +27,10 @@ function drawDesign() {
 }
 requestAnimationFrame(() => setTimeout(drawDesign));
 
-window.addEventListener("hashchange", takeAddress);
+window.onhashchange = takeAddress;
 
 let width = window.innerWidth, timer;
-window.addEventListener("resize", () => {
+window.onresize = () => {
   clearTimeout(timer);
   timer = setTimeout(() => {
     if (window.innerWidth === width) return;
@@ -38,4 +38,4 @@ window.addEventListener("resize", () => {
     layoutChanged();
     drawDesign();
   }, 150);
-});
+};

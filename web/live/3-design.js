@@ -48,7 +48,6 @@ matters.addEventListener("toggle", async () => {
 }, { once: true });
 
 // ---- two to four side by side
-
 const compared = []; // { name, raw, gap_m, peaks }
 const SIDES = Object.values(SCENES); // their colours and symbols
 let comparePart;
@@ -60,11 +59,14 @@ function compare(one) {
   if (compared.length > 1) goTo(comparePart);
 }
 
+// Objectives, and how far they are from those of another design.
+const besides = (raw, before) => objectives.map((c, k) => (raw ? [digits(raw[k] * c.factor), before ? difference(raw[k], before[k]) : ""] : "\u2013"));
+
 function compareTable() {
   const row = (one, i) => line([[legend([[one.name, SIDES[i].colour, SIDES[i].mark]]), plainButton("Remove", () => {
     compared.splice(i, 1);
     showCompared();
-  }, { "aria-label": `remove ${one.name}` })], ...objectives.map((c, k) => [digits(one.raw[k] * c.factor), i ? difference(one.raw[k], compared[0].raw[k]) : ""])]);
+  }, { "aria-label": `remove ${one.name}` })], ...besides(one.raw, i && compared[0].raw)]);
   return table("compared", ["differences from the first", ...objectives], compared.map(row));
 }
 
@@ -72,7 +74,7 @@ function showCompared() {
   comparePart ??= livePart("compare", "Side by side", "provenance");
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
-    host.append(element("h2", {}, "Side by side"), compareTable());
+    host.append(element("h2", "Side by side"), compareTable());
     const grid = gridOf(host, 3);
     for (const [key, title, label] of [["gap_mm", "Gaps", "gap [mm]"], ...PEAKS]) {
       const lines = compared.map((one, i) => ({ name: one.name, values: one.peaks[key] ?? one.gap_m.map((g) => 1e3 * g), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));

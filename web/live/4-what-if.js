@@ -8,14 +8,13 @@ let startWhatIf = () => {};
 function whatIfPart() {
   const part = livePart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
-  const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
-  part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), element("div", { class: "what-if" }, sliders, pictures));
+  const sliders = div("sliders"), pictures = div("beside");
+  part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), div("what-if", sliders, pictures));
   const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
   // ---- sliders
-
   function choice(key, title, words, value, take) {
     const buttons = words.map((word, i) => plainButton(word, (event) => {
       take(i);
@@ -24,7 +23,7 @@ function whatIfPart() {
     }));
     const set = (v) => buttons.forEach((b, i) => b.setAttribute("aria-pressed", i === Math.round(v)));
     set(value);
-    return { key, set, row: element("div", { class: "bar", role: "group", "aria-label": title }, element("span", {}, title), ...buttons) };
+    return { key, set, row: element("div", { class: "bar", role: "group", "aria-label": title }, element("span", title), ...buttons) };
   }
 
   // Of values that are sold the slider has their numbers.
@@ -46,16 +45,16 @@ function whatIfPart() {
       set(rounded);
       moved(event.timeStamp);
     };
-    input.addEventListener("input", (event) => change(shown(), event));
-    number.addEventListener("change", (event) => {
+    input.oninput = (event) => change(shown(), event);
+    number.onchange = (event) => {
       const v = number.value === "" ? NaN : +number.value / factor, isGood = v >= low - 1e-9 * high && v <= high + 1e-9 * high;
       number.classList.toggle("bad", !isGood);
       number.title = isGood ? "" : `from ${show(low * factor)} to ${show(high * factor)}`;
       if (isGood) change(v, event);
-    });
-    number.addEventListener("blur", () => number.classList.contains("bad") || (number.value = digits(shown() * factor)));
+    };
+    number.onblur = () => number.classList.contains("bad") || (number.value = digits(shown() * factor));
     set(value);
-    return { key, set, row: element("div", { class: "slider" }, element("span", {}, title), input, number, element("small", {}, unit)) };
+    return { key, set, row: div("slider", element("span", title), input, number, element("small", unit)) };
   }
 
   const moving = { variables: [], ground: [] };
@@ -68,8 +67,8 @@ function whatIfPart() {
       if (whole.checked) ground.whole = 1;
       moved(event.timeStamp);
     } });
-    if (bounds.simulations > 1) moving.ground.push({ key: "whole", set: (v) => (whole.checked = v), row: element("label", {}, whole, ` all ${bounds.simulations} simulations by which the run judges a design`) });
-    const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", {}, element("legend", {}, title), ...list.map(({ row }) => row)) : "");
+    if (bounds.simulations > 1) moving.ground.push({ key: "whole", set: (v) => (whole.checked = v), row: element("label", whole, ` all ${bounds.simulations} simulations by which the run judges a design`) });
+    const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", element("legend", title), ...list.map(({ row }) => row)) : "");
     sliders.replaceChildren(
       group("Motion and contact", moving.ground), group("Core and others", moving.variables.filter((_, j) => !isGap(variables[j]))),
       group("Gaps, from the roof down", moving.variables.filter((_, j) => isGap(variables[j])).reverse()));
@@ -101,11 +100,10 @@ function whatIfPart() {
   }
 
   // ---- what came of it
-
   function place() {
     if (!answer.objectives) return `This design could not be simulated: ${answer.reason}`;
     const law = answer.beyond_law ? " The indentation is beyond what the contact law is meant for." : "";
-    if (answer.dominated_by === undefined) return `Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations.${law}`;
+    if (answer.dominated_by === undefined) return "Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations." + law;
     if (answer.dominated_by) return `Dominated by ${count(answer.dominated_by)} of ${count(n)} designs of the front.${law}`;
     return `Nondominated${answer.dominates ? `: it dominates ${count(answer.dominates)} ${answer.dominates === 1 ? "design" : "designs"} of the front` : ""}.${law}`;
   }
@@ -114,7 +112,7 @@ function whatIfPart() {
   pictures.prepend(said);
   pictures.append(legend([["what if", TRIAL], ["where it began", "var(--ink)"], ["front", "var(--pale)"], ...Object.values(SCENES).slice(1).map(({ words, colour }) => [words, colour])]), board);
   const peaks = gridOf(pictures, 3);
-  const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
+  const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(div("chart"))]);
 
   // Baselines of the run itself: under another motion only the building without core is simulated anew, for its peaks.
   const beside = () => overlays.filter((o) => run.detail?.[o.key] && !GROUND.some(([key]) => key in answer.ground));
@@ -133,8 +131,7 @@ function whatIfPart() {
   }
 
   function drawTable() {
-    const row = (label, raw, before) => line([label, ...objectives.map((c, k) => (raw ? [digits(raw[k] * c.factor), before ? difference(raw[k], before[k]) : ""] : "\u2013"))]);
-    board.replaceChildren(table("trial", ["", ...objectives], [row(start.name, start.raw), row("what if", answer.objectives, start.raw)]));
+    board.replaceChildren(table("trial", ["", ...objectives], [line([start.name, ...besides(start.raw)]), line(["what if", ...besides(answer.objectives, start.raw)])]));
   }
 
   // No old number stands beside a slider that has moved.
@@ -168,7 +165,6 @@ function whatIfPart() {
   }
 
   // ---- designs that are kept
-
   let shownKept = "";
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
@@ -177,7 +173,7 @@ function whatIfPart() {
   function showKept() {
     state.trials = shownKept = keptText();
     saveAddress();
-    list.replaceChildren(...kept.map((one, i) => element("li", {}, `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
+    list.replaceChildren(...kept.map((one, i) => element("li", `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
       plainButton("Compare", () => compare(one)), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", plainButton("Drop", () => {
         kept.splice(i, 1);
         showKept();
@@ -214,11 +210,10 @@ function whatIfPart() {
 
   const csv = () => [run.schema.variables.map(cell).join(","), ...kept.map((one) => one.x.join(","))].join("\n") + "\n";
   const save = plainButton("Download as a design file", () => saveFile(`${run.name}-kept.csv`, csv()), { id: "save-kept", disabled: true });
-  pictures.append(element("div", { class: "bar" }, plainButton("Keep", keep, { id: "keep-trial" }), save,
+  pictures.append(div("bar", plainButton("Keep", keep, { id: "keep-trial" }), save,
     plainButton("Back to where it began", () => set(start.x, {}), { id: "back" })), list, command);
 
   // ---- from a design of the front
-
   function set(values, on) {
     x.set(values);
     for (const key of Object.keys(ground)) delete ground[key];

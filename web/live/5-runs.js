@@ -27,7 +27,7 @@ async function against(body, others) {
       if (differences.length) host.append(warn(`Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));
       host.append(legend(runs.map((r, i) => [`${r.name}: ${count(r.f.length)} on the front`, colours[i]])));
       const grid = gridOf(host, 2);
-      const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The fronts")));
+      const strip = grid.appendChild(element("figure", element("h3", "The fronts")));
       frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 280)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i], alpha: 0.5 * paleFront(r.f).alpha })));
       const rows = runs.flatMap((r, i) => r.simulated.map((x, k) => ({ x, y: 100 * r.volume[k], colour: colours[i] })));
       figure(grid, "Hypervolume over the number of designs", "In one box for all: from a fifth of their range below the best of all fronts to the worst.", (width) => growthChart(width, 260, rows));
