@@ -1,6 +1,5 @@
 "use strict";
 // The run as the page holds it: columns of numbers, and what each is called and measured in.
-
 const byId = (id) => document.getElementById(id), finite = Number.isFinite, root = document.documentElement;
 const run = JSON.parse(byId("run").textContent);
 const lines = byId("rows").textContent.trim().split("\n").filter((line) => line);
@@ -31,10 +30,7 @@ function variableWords(name) {
   return [title, unit, factor, `${what}${side ? ` ${side}` : ""} at ${where}${side ? `: how far the floor may go to the ${side}` : ""}`];
 }
 
-function columnOf(name, place, sense, [title, unit, factor, what]) {
-  return { name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) };
-}
-
+const columnOf = (name, place, sense, [title, unit, factor, what]) => ({ name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) });
 const nVar = run.schema.variables.length;
 const variables = run.schema.variables.map((name, j) => ({ ...columnOf(name, 1 + j, 0, variableWords(name)), words: run.schema.words[j] })); // words of a choice
 const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
@@ -55,7 +51,6 @@ for (let i = 0; i < n; i++) {
 }
 const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);
-
 // Columns that are numbered, as the gaps are, share one scale.
 const families = [...charts.group(columns, (c) => c.name.replace(/\d+/g, "#")).values()];
 for (const family of families) for (const c of family) c.family = family;
@@ -86,10 +81,7 @@ function show(v) {
 }
 
 // The same with all its digits, for columns.
-function digits(v) {
-  return v === null || !finite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
-}
-
+const digits = (v) => v === null || !finite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
 // A value of design i with its likely error, where one is known.
 const known = (c, i) => (c.words ? c.words[c.value[i]] : finite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
@@ -149,9 +141,7 @@ const shownOverlays = () => overlays.filter((o) => o.isShown);
 
 // Ends of a column's scale: of the designs that are kept (c.low, c.high; of all numbered columns alike together), and of what
 // is shown beside them.
-function extent(c, beside = shownOverlays()) {
-  return charts.extent([...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c))]);
-}
+const extent = (c, beside = shownOverlays()) => charts.extent([...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c))]);
 
 // Values of a column that as many designs lie between, from one end of its scale to the other.
 function percentiles(c, low, high) {

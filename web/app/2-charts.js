@@ -1,5 +1,4 @@
 // What all charts by Observable Plot have in common.
-
 // What is as wide as its place: drawn when the page is, when its part is opened and when the window has another width.
 let drawings = []; // { place, draw (width), width: as last drawn }
 
@@ -47,11 +46,8 @@ function chart(options) {
   return charts.plot({ marginLeft: 58, marginBottom: 44, marginTop: 12, color: { type: "identity" }, symbol: { type: "identity" }, ...options, x: titled(options.x), y: titled(options.y) });
 }
 
-function legend(entries) {
-  return div("legend", ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
-}
+const legend = (entries) => div("legend", ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
 const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]));
-
 const gridOf = (host, columns) => host.appendChild(div(`grid${columns}`));
 
 // Heads: words or columns; rows: of line().
@@ -106,7 +102,7 @@ const barChart = (width, height, rows, places, label, options = {}, marks = []) 
 function heightChart(width, height, label, lines, floor = "floor", band = null) {
   const rows = lines.flatMap(({ values, ...one }) => values.map((v, j) => ({ ...one, v, floor: j + 1 })));
   return chart({
-    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: Math.max(2, Math.min(4, Math.floor((width - 72) / 75))) }, y: { ...floorAxis(lines[0].values.length), label: floor },
+    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: clamp(Math.floor((width - 72) / 75), [2, 4]) }, y: { ...floorAxis(lines[0].values.length), label: floor },
     marks: [
       band ? charts.rectX(band[0].map((low, j) => ({ low, high: band[1][j], floor: j + 1 })), { x1: "low", x2: "high", y1: (r) => r.floor - 0.5, y2: (r) => r.floor + 0.5, fill: lines[0].colour, fillOpacity: 0.18, title: (r) => `all records, ${floor} ${r.floor}: ${show(r.low)} to ${show(r.high)}` }) : null,
       ...lines.map(({ name, dash, thick = 1.8 }) => charts.line(rows.filter((r) => r.name === name), { x: "v", y: "floor", stroke: "colour", strokeWidth: thick, strokeDasharray: dash })),

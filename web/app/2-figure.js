@@ -1,8 +1,5 @@
 // A number with the digits that are known of it: "13 ± 2", by the rule of src/base/figure.h.
-
-function firstPlace(x, many) {
-  return +Math.abs(x).toExponential(many - 1).split("e")[1];
-}
+const firstPlace = (x, many) => +Math.abs(x).toExponential(many - 1).split("e")[1];
 
 // x rounded to 10^place, never -0.
 function decimal(x, place) {

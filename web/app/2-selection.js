@@ -1,5 +1,4 @@
 // Which designs are looked at and how: one state for all pictures, in the page's address too; one frame for every change.
-
 const state = {
   axes: [...results], // of the parallel coordinates, from left to right
   inverted: new Set(), // columns with their better, or larger, side up
@@ -220,9 +219,7 @@ function takeAddress() {
   showTheme(state.theme);
   layoutChanged();
 }
-document.addEventListener("keydown", (event) => {
-  if ((event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input[type=text], input[type=number], textarea")) undo();
-});
+document.addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input[type=text], input[type=number], textarea") && undo());
 
 function readAddress() {
   const given = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
@@ -250,7 +247,7 @@ function findShades() {
   const { value, words } = state.colour, [low, high] = extent(state.colour, []);
   const scale = high > low ? (SHADES - 1) / (high - low) : 0;
   shadeColours = words ? PALETTE : RAMP;
-  for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : Math.max(0, Math.min(SHADES - 1, Math.round((value[i] - low) * scale)));
+  for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : clamp(Math.round((value[i] - low) * scale), [0, SHADES - 1]);
   byShade = charts.range(n).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
 }
 views.layout.push(findShades);
@@ -269,7 +266,6 @@ function prepare(canvas, w, h) {
 
 // A range may be open; its ends on a picture are not.
 const clamp = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
-
 // The design under the pointer, in words, beside it.
 const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, role: "status" }));
 function showTip(row, event, at) {

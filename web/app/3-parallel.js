@@ -1,6 +1,5 @@
 // Parallel coordinates: a line per design, an axis per column; a brush on an axis is a range of its column. A title is
 // dragged: sideways to another place, down to turn the axis over, up to take it away; the same by keys and by a menu.
-
 const SEGMENTS_PER_FRAME = 4000;
 const INVERT_PX = 45, HIDE_PX = -32; // of a dragged title
 const NEAR_PX = 8; // of a line under the pointer
@@ -45,9 +44,7 @@ function openAxisMenu(c, box) {
     if (to !== undefined) event.preventDefault();
   };
 }
-document.addEventListener("pointerdown", (event) => {
-  if (!axisMenu.contains(event.target)) axisMenu.hidden = true;
-});
+document.addEventListener("pointerdown", (event) => axisMenu.contains(event.target) || (axisMenu.hidden = true));
 window.addEventListener("scroll", () => (axisMenu.hidden = true), { passive: true });
 
 function parallelCoordinates(host) {

@@ -1,6 +1,5 @@
 // Scatter plots: two columns against each other, chosen freely, and a matrix of all objectives with their rank correlations;
 // a brushed box is two ranges.
-
 // Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] }, `decorate`
 // (svg, width, panels) what else is on it, `follows` what of that follows the selection. Dots are put into the pixels.
 function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
@@ -84,7 +83,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
 
   // ---- axes
   function drawAxes(group, p) {
-    const bottom = p.top + p.h, many = Math.max(2, Math.min(6, Math.floor(p.w / 60)));
+    const bottom = p.top + p.h, many = clamp(Math.floor(p.w / 60), [2, 6]);
     put(group, "rect", { class: "cell", x: p.left, y: p.top, width: p.w, height: p.h });
     if (p.hasY)
       put(group, "g", { transform: `translate(${p.left},0)` }).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(tickText(p.cy))).call((g) => g.select(".domain").remove());
@@ -162,7 +161,7 @@ function scatterMatrix(host) {
   const margin = { top: 4, right: 4, bottom: 22, left: 52 }, gap = 6, m = objectives.length;
   const size = (width) => {
     const w = (width - margin.left - margin.right - gap * (m - 1)) / m;
-    return { w, h: Math.max(44, Math.min(0.66 * w, 150)) };
+    return { w, h: clamp(0.66 * w, [44, 150]) };
   };
   const at = ({ w, h }, row, col) => ({ left: margin.left + col * (w + gap), top: margin.top + row * (h + gap) });
   let cells = [];

@@ -1,5 +1,4 @@
 // The selected designs as a table and as a file.
-
 const PAGE = 12;
 
 // A cell that a spreadsheet would run as a formula is given an apostrophe; numbers stay as they are.

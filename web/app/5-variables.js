@@ -1,6 +1,5 @@
 // The variables of the front: a heat map of those that are numbered (gaps by floor), what matters for which objective, and
 // a few typical designs.
-
 // ---- heat map: a column of pixels per design, or per few of them
 const COLUMNS_MAX = 480;
 

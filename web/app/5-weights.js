@@ -1,5 +1,4 @@
 // Designs ranked by weights, or by how far they are from a reference point: the costs of imtet choose --weights and --reference.
-
 const RANKED = 8;
 const score = Object.assign(columnOf("score", -1, 0, ["score of the choice", "", 1, "weighted sum of the objectives over their ranges, or distance from the reference point: lower is better"]), { sense: 1, bounds: [NaN, NaN] });
 score.family = [score];

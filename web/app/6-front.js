@@ -1,5 +1,4 @@
 // The part on the front: what is shown, ranges by hand, all pictures of it, the table.
-
 function presetChoice() {
   const presets = [["objectives", run.schema.limited.length ? "objectives and limited results" : "objectives", results], ["variables", "variables", variables], ["all", "both", [...results, ...variables]]];
   return element("fieldset", element("legend", "Axes"), ...presets.map(([value, label, axes]) => {

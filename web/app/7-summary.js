@@ -1,5 +1,4 @@
 // The first screen: what was studied and found, in a sentence, a picture and warnings; then growth and provenance.
-
 // As in the program's own output: the peak, and what the record was multiplied by.
 const peakText = (d) => `peak ${show(d.pga_g)} g` +
   (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
@@ -13,7 +12,6 @@ function change(value, before) {
 
 // The likely errors of the chosen design.
 const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.error);
-
 // 1: more than before, -1: less, 0: neither, within a thousandth and its error.
 const compareTo = (before, v, error) => (Math.abs(v - before) <= Math.max(1e-3 * Math.abs(before), error ?? 0) ? 0 : Math.sign(v - before));
 
@@ -84,7 +82,6 @@ function boundWarning(d) {
 }
 
 const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
-
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 

@@ -1,5 +1,4 @@
 // The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
-
 // ---- heights
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
 // A gap as wide as this stands for no stop at all (src/study/simplify.h).

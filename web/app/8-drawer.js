@@ -1,9 +1,7 @@
 // The design that was clicked, in a drawer beside the pictures, which stay where they are: its numbers, gaps and peaks, and
 // what can be done with it.
-
 const drawer = document.body.appendChild(element("aside", { id: "drawer", tabindex: "-1", hidden: true, "aria-labelledby": "drawer-title" }));
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
-
 // What imtet serve adds: buttons, and a promise of the design in detail with what follows the peaks.
 const drawerMore = { buttons: () => [], detail: () => null, rest: () => {} };
 
@@ -32,9 +30,7 @@ function closeDrawer() {
   again.find((e) => e.getClientRects().length)?.focus({ preventScroll: true });
 }
 
-document.addEventListener("keydown", (event) => {
-  if (event.key === "Escape" && axisMenu.hidden && !drawer.hidden) closeDrawer();
-});
+document.addEventListener("keydown", (event) => event.key === "Escape" && axisMenu.hidden && !drawer.hidden && closeDrawer());
 
 function difference(value, before) {
   const pct = (100 * (value - before)) / Math.abs(before);

@@ -1,5 +1,4 @@
 // On paper: pictures of a run, drawings of a dossier, curves that a command asks for. What draws them is what the page has.
-
 // A panel as the program gives it: { title, x, y: axes, marks: [{ mark: line or dot, x, y, ... }] } by the library's names;
 // `around`: the middle of an axis that has the scale of y.
 function panelChart(width, height, { x, y, marks, title, ...options }) {
@@ -13,7 +12,7 @@ function panels(host, { title, names, columns, height }) {
   const grid = gridOf(host, columns.length);
   for (const list of columns) {
     const column = grid.appendChild(element("div"));
-    for (const panel of list) figure(column, panel.title ?? "", null, (width) => panelChart(width, height / list.length, panel));
+    for (const panel of list) figure(column, panel.title, null, (width) => panelChart(width, height / list.length, panel));
   }
 }
 
@@ -44,10 +43,7 @@ function svgOf(host) {
     const { left, top, bottom } = part.getBoundingClientRect(), isChart = part.tagName === "svg";
     const g = put(svg, isChart ? "g" : "text", { transform: `translate(${left - box.left},${(isChart ? top : bottom - 5) - box.top})`, "font-size": 13, "text-anchor": part.getAttribute("text-anchor") ?? "start" });
     if (isChart) g.node().append(...part.querySelectorAll(":scope > :not(style)"));
-    else {
-      put(g, "tspan", { fill: part.style.getPropertyValue("--key") }).text(part.dataset.mark);
-      put(g, "tspan", { dx: 6 }).text(part.textContent);
-    }
+    else for (const [more, text] of [[{ fill: part.style.getPropertyValue("--key") }, part.dataset.mark], [{ dx: 6 }, part.textContent]]) put(g, "tspan", more).text(text);
   }
   return new XMLSerializer().serializeToString(svg.node());
 }

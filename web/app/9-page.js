@@ -1,8 +1,6 @@
 // In order; what is on the first screen is drawn first. On paper there are drawings alone.
-
 findKept();
-if (run.paper) drawPaper();
-else drawPage();
+(run.paper ? drawPaper : drawPage)();
 
 function drawPage() {
   byId("first").remove();

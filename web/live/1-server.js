@@ -85,4 +85,4 @@ function frontStrip(host, label, height = 208) {
 }
 
 const frontRows = charts.range(n).map((i) => objectives.map((c) => c.raw[i]));
-const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });
+const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: clamp(12 / Math.sqrt(rows.length + 1), [0.2, 0.8]) });

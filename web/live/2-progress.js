@@ -1,5 +1,4 @@
 // A run under way: how far it is, failures and the front as it grows.
-
 function progressPart() {
   const part = livePart("live", "Progress", "front");
   const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });

@@ -1,5 +1,4 @@
 // Any design at a click on its line, dot or row: simulated by the server, once, for the drawer.
-
 const details = new Map(); // id -> promise
 function detailOf(id) {
   if (!details.has(id)) {

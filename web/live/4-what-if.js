@@ -1,6 +1,5 @@
 // What if: sliders for every variable, the motion and the restitution; each change is one simulation. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
-
 const GROUND = [["pga_g", "peak", "g", "--pga "], ["stretch", "time \u00d7", "", "--set motion.stretch="], ["restitution", "restitution", "", "--set contact.restitution="]];
 const TRIAL = "#c2185b";
 let startWhatIf = () => {};
@@ -130,9 +129,7 @@ function whatIfPart() {
     }
   }
 
-  function drawTable() {
-    board.replaceChildren(table("trial", ["", ...objectives], [line([start.name, ...besides(start.raw)]), line(["what if", ...besides(answer.objectives, start.raw)])]));
-  }
+  const drawTable = () => board.replaceChildren(table("trial", ["", ...objectives], [line([start.name, ...besides(start.raw)]), line(["what if", ...besides(answer.objectives, start.raw)])]));
 
   // No old number stands beside a slider that has moved.
   function showNothing() {

@@ -1,5 +1,4 @@
 // The runs of the folder that is served, and some of them over each other.
-
 const RUNS_BESIDE = 3; // this one
 
 async function runsPart() {
