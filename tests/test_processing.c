@@ -348,7 +348,7 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
         assert_less(0, row[2]);
     }
     table_free(&t);
-    if (system("command -v gnuplot >/dev/null") == 0) {
+    if (has_browser()) {
         free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL));
         char *svg = read_in_place("all.svg");
         static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};

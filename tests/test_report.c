@@ -599,7 +599,12 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     assert_close(first_cell(page, PARTS[2], "accuracy fine"), wanted, 5e-3); /* three digits */
     assert_close(first_cell(page, PARTS[2], "by CVODE (SUNDIALS)"), wanted, 5e-3);
     assert_close(first_cell(page, "<h1>", "no core"), report.detail.result[SCENE_NO_CORE].j1_m, 5e-3);
-    assert_null(strstr(page, "<script"));
+    static const char *const DRAWN[] = {"panels", "gaps", "peaks", "displacement", "forces"};
+    for (size_t i = 0; i < N_OF(DRAWN); i++) {
+        char place_of[40];
+        snprintf(place_of, sizeof place_of, "data-draw=\"%s\"", DRAWN[i]);
+        assert_non_null(strstr(page, place_of));
+    }
     json_decref(fine);
     free(page);
 }
@@ -691,7 +696,7 @@ TEST(a_dossier_that_cannot_be_made_is_refused_before_anything_is_simulated)
     expect(65, "is of a design of the tower", "report @/dtlz --dossier @/d.html");
     expect(2, "do not go together", "report @/tower --dossier @/d.html --out @/page.html");
     snprintf(place.under, sizeof place.under, "env PATH=/nowhere");
-    expect(66, "neither chromium nor weasyprint", "report @/tower --dossier @/d.pdf");
+    expect(66, "Chromium, which draws it, cannot be started", "report @/tower --dossier @/d.pdf");
     place.under[0] = 0;
 }
 
@@ -703,61 +708,128 @@ static long size_of(const char *run, const char *name)
     return stat(path, &s) == 0 ? (long)s.st_size : -1;
 }
 
-TEST(pictures_are_drawn_as_svg_and_png_each)
+static size_t times(const char *text, const char *words)
 {
-    static const char *const NAMES[] = {"front", "growth",   "gaps",         "peaks",
-                                        "modes", "energies", "displacement", "elsewhere"};
-    /* The front has short titles, units for people and every baseline. */
-    static const char *const WORDS[] = {"J1 displacement [m]", "contact force [MN]", "without core",
-                                        "rigidly connected",   "tuned mass damper",  "viscous links"};
-    if (system("command -v gnuplot >/dev/null") != 0) {
-        print_message("gnuplot is not installed: no pictures to look at\n");
-        skip();
-    }
-    expect_openings(1, "run.sqlite\"", "report @/tower --pictures @/tower/pictures");
-    expect(0, "", "report @/names --pictures @/names/pictures");
-    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
-        char svg[32], png[32];
-        snprintf(svg, sizeof svg, "%s.svg", NAMES[i]);
-        snprintf(png, sizeof png, "%s.png", NAMES[i]);
-        assert_true(size_of("tower", svg) > 4000 && size_of("tower", png) > 4000);
-        assert_true((size_of("names", svg) > 0) == (i < 2) && (size_of("names", png) > 0) == (i < 2));
-    }
-    char *svg = read_in_place("tower/pictures/front.svg");
-    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
-        if (!strstr(svg, WORDS[i]))
-            fail_msg("front.svg lacks %s", WORDS[i]);
-    free(svg);
-    svg = read_in_place("names/pictures/front.svg"); /* one begins like a formula of gnuplot and is a label */
-    assert_non_null(strstr(svg, ">-d<"));
-    free(svg);
+    size_t n = 0;
+    for (const char *at = text; (at = strstr(at, words)); at += strlen(words))
+        n++;
+    return n;
 }
 
-/* What gnuplot is told, by a program of its name that keeps it: [mm] gap and thickness, floor by floor. */
-TEST(the_picture_of_gaps_has_those_of_the_design_in_millimetres)
+/* Across and down, of the head of a PNG. */
+static void expect_size(const char *name, int width, int least)
 {
-    char line[PATH_MAX + 64], path[PATH_MAX], *before = strdup(getenv("PATH"));
-    snprintf(line, sizeof line, "#!/bin/sh\ncat >> %s/told.txt\n", place.folder);
-    write_in_place("gnuplot", line);
-    assert_int_equal(chmod(path_of("gnuplot", path), 0700), 0);
-    snprintf(line, sizeof line, "%s:%s", place.folder, before);
-    setenv("PATH", line, 1);
-    expect(0, "", "report @/tower --pictures @/tower/none");
-    setenv("PATH", before, 1);
-    free(before);
-    char *told = read_in_place("told.txt"), *at = strstr(told, "; LOW = ");
-    assert_non_null(at);
-    *at = 0;
-    while (strncmp(at, "$D << EOD\n", 10) != 0)
-        at--;
-    at = strchr(at, '\n');
+    char path[256];
+    unsigned char head[24] = {0};
+    snprintf(path, sizeof path, "%s/tower/pictures/%s.png", place.folder, name);
+    FILE *f = fopen(path, "rb");
+    assert_true(f && fread(head, 1, sizeof head, f) == sizeof head);
+    fclose(f);
+    assert_memory_equal(head, "\x89PNG\r\n\x1a\n", 8);
+    assert_int_equal(head[18] << 8 | head[19], width);
+    assert_at_most(least, head[22] << 8 | head[23]);
+}
+
+/* The numbers behind a word of the titles in a picture, floor by floor: "floor 3: 41.2 mm". */
+static void expect_floors(const char *svg, const char *format, double factor, const double values[])
+{
+    char head[64];
     for (int j = 0; j < report.detail.n_floors; j++) {
-        assert_int_equal(strtol(at, &at, 10), j + 1);
-        assert_close(strtod(at, &at), 1e3 * report.detail.gap_side_m[0][j], 1e-5);
-        assert_close(strtod(at, &at), 1e3 * report.detail.thickness_m[j], 1e-5);
-        at = strchr(at, '\n');
+        snprintf(head, sizeof head, format, j + 1);
+        const char *at = strstr(svg, head);
+        if (!at)
+            fail_msg("no %s", head);
+        else
+            assert_close(atof(at + strlen(head)), factor * values[j], 5e-3); /* three digits */
     }
-    free(told);
+}
+
+TEST(pictures_are_drawn_as_svg_and_png_each)
+{
+    static const struct {
+        const char *name;
+        int width; /* [px] of the SVG; the PNG has half as many again */
+        const char *words;
+    } PICTURES[] = {{"front", 1200, ">contact force [MN]<"},
+                    {"growth", 700, ">hypervolume [%]<"},
+                    {"gaps", 900, ">thickness [mm]<"},
+                    {"peaks", 1200, ">viscous links<"},
+                    {"modes", 1200, ">share of the input energy [%]<"},
+                    {"energies", 1200, ">damping of the core<"},
+                    {"displacement", 1200, ">frequency [Hz]<"},
+                    {"elsewhere", 1000, ">Modes under sylmar-like (synthetic)<"}};
+    /* The front has short titles, units for people and every baseline. */
+    static const char *const WORDS[] = {"J1 displacement [m]", "without core", "rigidly connected", "tuned mass damper",
+                                        "viscous links"};
+    char name[32];
+    if (!has_browser())
+        skip();
+    expect_openings(1, "run.sqlite\"", "report @/tower --pictures @/tower/pictures");
+    expect(0, "", "report @/names --pictures @/names/pictures");
+    for (size_t i = 0; i < N_OF(PICTURES); i++) {
+        snprintf(name, sizeof name, "tower/pictures/%s.svg", PICTURES[i].name);
+        char *svg = read_in_place(name), wide[32];
+        snprintf(wide, sizeof wide, " width=\"%d\"", PICTURES[i].width);
+        if (!strstr(svg, PICTURES[i].words) || !strstr(svg, wide) || strstr(svg, "<foreignObject"))
+            fail_msg("%s lacks %s", name, PICTURES[i].words);
+        expect_size(PICTURES[i].name, PICTURES[i].width * 3 / 2, 300);
+        for (int k = 0; k < 2; k++) {
+            snprintf(name, sizeof name, "%s.%s", PICTURES[i].name, k ? "svg" : "png");
+            assert_true((size_of("names", name) > 0) == (i < 2));
+        }
+        free(svg);
+    }
+    char *svg = read_in_place("tower/pictures/front.svg");
+    for (size_t i = 0; i < N_OF(WORDS); i++)
+        if (!strstr(svg, WORDS[i]))
+            fail_msg("front.svg lacks %s", WORDS[i]);
+    assert_int_equal(times(svg, "<circle "), 3 * (tower.n_front + 1)); /* in three panels, the knee twice */
+    free(svg);
+    svg = read_in_place("names/pictures/front.svg"); /* names that could be tags are labels */
+    assert_non_null(strstr(svg, ">&lt;/script&gt;&lt;b&gt;<"));
+    free(svg);
+    svg = read_in_place("tower/pictures/gaps.svg");
+    expect_floors(svg, "<title>floor %d: ", 1e3, report.detail.gap_side_m[0]);
+    expect_floors(svg, "<title>thickness, floor %d: ", 1e3, report.detail.thickness_m);
+    free(svg);
+    assert_int_equal(size_of("tower", "page"), -1);
+    char command[300];
+    snprintf(command, sizeof command, "test $(ls '%s/tower/pictures' | wc -l) = 16", place.folder);
+    assert_int_equal(system(command), 0); /* the page that was drawn is gone */
+}
+
+TEST(without_a_browser_a_picture_is_refused_before_anything_is_simulated)
+{
+    snprintf(place.under, sizeof place.under, "env PATH=/nowhere");
+    expect(66, "Chromium, which draws it, cannot be started; install it", "report @/tower --pictures @/tower/none");
+    place.under[0] = 0;
+    assert_int_equal(access(in_place("tower/none"), F_OK), -1);
+}
+
+/* Whose names come from elsewhere: of the folder, and of the design's run in it. */
+TEST(a_dossier_of_a_hostile_folder_shows_its_name_as_text_and_runs_no_scripts_but_its_own)
+{
+    char command[600];
+    snprintf(command, sizeof command, "cp -r '%s/tower' '%s/r<img src=x onerror=alert(1)>'", place.folder,
+             place.folder);
+    assert_int_equal(system(command), 0);
+    expect(0, "", "report '@/r<img src=x onerror=alert(1)>' --dossier @/hostile.html");
+    char *page = read_in_place("hostile.html"), *report_of = read_in_place("tower/report.html");
+    char *policy = between(page, "Content-Security-Policy\" content=\"", "\"");
+    char *wanted = between(report_of, "Content-Security-Policy\" content=\"", "\"");
+    assert_null(strstr(page, "<img"));
+    assert_non_null(strstr(page, "r&#60;img src=x onerror=alert(1)&#62;"));
+    assert_string_equal(policy, wanted);
+    free(wanted);
+    free(policy);
+    free(report_of);
+    free(page);
+    if (!has_browser())
+        skip();
+    expect(0, "", "report '@/r<img src=x onerror=alert(1)>' --dossier '@/r<img src=x onerror=alert(1)>/d.pdf'");
+    snprintf(command, sizeof command, "head -c 5 '%s/r<img src=x onerror=alert(1)>/d.pdf' | grep -q '^%%PDF-'",
+             place.folder);
+    assert_int_equal(system(command), 0);
 }
 
 /* The bundle is what its sources make of the libraries; they are there after `make web`. */

@@ -234,6 +234,8 @@ TEST(every_command_follows_gaps_by_side)
     free(front);
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         Said s;
+        if (strstr(COMMANDS[i], "--pictures") && !has_browser())
+            continue;
         run(&s, "%s", COMMANDS[i]);
         if (s.code != 0)
             fail_msg("%s: %s", COMMANDS[i], s.err);

@@ -89,7 +89,7 @@ static void tag(const Dossier *o, const char *element)
     fprintf(o->out, "<%s>\n", element);
 }
 
-/* An element with its words: the one place where words, of whoever they are, come into the page. Tables have their own
+/* An element (empty: none) with its words: the one place where words, of whoever they are, come into the page. Tables have their own
  * (figures_html). */
 __attribute__((format(printf, 3, 4))) static void put(const Dossier *o, const char *element, const char *format, ...)
 {
@@ -99,9 +99,11 @@ __attribute__((format(printf, 3, 4))) static void put(const Dossier *o, const ch
     if (vasprintf(&words, format, list) < 0)
         words = NULL;
     va_end(list);
-    fprintf(o->out, "<%s>", element);
+    if (*element)
+        fprintf(o->out, "<%s>", element);
     text_html(o->out, words ? words : "");
-    fprintf(o->out, "</%.*s>", (int)strcspn(element, " "), element);
+    if (*element)
+        fprintf(o->out, "</%.*s>", (int)strcspn(element, " "), element);
     free(words);
 }
 
@@ -160,9 +162,9 @@ static void print_exceeded(const Dossier *o, int k, double bound, const char *wh
     for (size_t i = 0; i < o->n_records; i++)
         n += demand_of(&o->by_record[i], k) > bound;
     if (n > 0)
-        put(o, "span", ", which %s exceeds", what);
+        put(o, "", ", which %s exceeds", what);
     if (n > 0 && o->n_records > 1)
-        put(o, "span", " under %zu of %zu records", n, o->n_records);
+        put(o, "", " under %zu of %zu records", n, o->n_records);
 }
 
 static void put_lines(json_t *table, const char *what, const char *format, double value)
@@ -240,16 +242,16 @@ static void write_summary(const Dossier *o)
     put(o, "p class=\"lines\"", "%s", verdicts ? verdicts : "");
     free(verdicts);
     tag(o, "p");
-    put(o, "span", "Largest force of a contact: ");
+    put(o, "", "Largest force of a contact: ");
     put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_CONTACT_FORCE));
-    put(o, "span", ", of a link or tuned mass: ");
+    put(o, "", ", of a link or tuned mass: ");
     put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_DEVICE_FORCE));
-    put(o, "span", ". Largest bending stress of the core: ");
+    put(o, "", ". Largest bending stress of the core: ");
     put(o, "b", "%.3g MPa", 1e-6 * largest(o, MEASURE_CORE_STRESS));
-    put(o, "span", ", %.3g times the buckling stress of its bare wall", largest(o, MEASURE_CORE_BUCKLING));
+    put(o, "", ", %.3g times the buckling stress of its bare wall", largest(o, MEASURE_CORE_BUCKLING));
     if (o->n_records > 1)
-        put(o, "span", ", each over %zu records", o->n_records);
-    put(o, "span", ". Nothing here is designed for them.");
+        put(o, "", ", each over %zu records", o->n_records);
+    put(o, "", ". Nothing here is designed for them.");
     tag(o, "/p");
 }
 
@@ -467,16 +469,16 @@ static void write_demand(const Dossier *o)
     figures_html(o->out, table);
     write_limits(o);
     tag(o, "p");
-    put(o, "span", "For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
+    put(o, "", "For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
     print_exceeded(o, MEASURE_CORE_STRESS, YIELD_PA, "the core");
-    put(o, "span", ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
+    put(o, "", ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
     print_exceeded(o, N_MEASURES, YIELD_PA / sqrt(3), "its shear stress");
-    put(o, "span", ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
+    put(o, "", ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
     int n = 0;
     for (int j = 0; j < o->d->n_floors; j++)
         if (!has_closed(o, j) && o->d->gap_m[j] < INFINITY)
-            put(o, "span", "%s%d", n++ ? ", " : "", j + 1);
-    put(o, "span", n ? "." : "none.");
+            put(o, "", "%s%d", n++ ? ", " : "", j + 1);
+    put(o, "", n ? "." : "none.");
     tag(o, "/p");
     draw(o, "forces", "");
     say_under(o, "Both");
