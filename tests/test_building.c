@@ -818,14 +818,6 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
 
 /* ---- imtet building ------------------------------------------------------------------------------------------- */
 
-static int count(const char *text, const char *word)
-{
-    int n = 0;
-    for (; (text = strstr(text, word)); text += strlen(word))
-        n++;
-    return n;
-}
-
 TEST(a_building_is_summed_up_and_drawn)
 {
     json_t *o = json_of("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
