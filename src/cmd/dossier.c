@@ -89,8 +89,7 @@ static void tag(const Dossier *o, const char *element)
     fprintf(o->out, "<%s>\n", element);
 }
 
-/* An element (empty: none) with its words: the one place where words, of whoever they are, come into the page. Tables have their own
- * (figures_html). */
+/* An element (empty: none) with its words: the one place where words come into the page. Tables have their own. */
 __attribute__((format(printf, 3, 4))) static void put(const Dossier *o, const char *element, const char *format, ...)
 {
     va_list list;

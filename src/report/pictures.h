@@ -1,7 +1,7 @@
 /* report/pictures.h -- what a browser makes of a page: its charts as SVG and PNG, or all of it as a PDF.
  *
- * Chromium, found on PATH and started without a shell, opens a page like that of the report, which nobody sees. It stands
- * beside what is made of it until then. A picture replaces a file only when it is whole (store/output.h).
+ * Chromium, found on PATH and started without a shell, opens a page like that of the report, which stands beside what
+ * is made of it until then. A picture replaces a file only when it is whole (store/output.h).
  *
  * Errors     no Chromium: STATUS_MISSING, and nothing is written; it may be asked before (browser_check)
  * Ownership  json_t are taken over */
