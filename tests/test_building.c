@@ -659,7 +659,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
                  "sim.accuracy=fine --json "
                  "--design @/columns/%s",
                  CASES[i]);
-        r[i] = json_of(command);
+        r[i] = json_of("%s", command);
     }
     assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 0.02);
     assert_at_most(2, number(r[2], "impacts"));
@@ -675,7 +675,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
         char command[256];
         snprintf(command, sizeof command, "check configs/quick.ini --set building.model=@/columns --json --set %s",
                  strstr(CASES[i], "building.modes"));
-        json_t *all = json_of(command), *b = json_object_get(all, "building");
+        json_t *all = json_of("%s", command), *b = json_object_get(all, "building");
         assert_close(number(b, "mass_kg"), mass, 1e-9);
         shear[i] = number(b, "base_shear_share");
         json_decref(all);

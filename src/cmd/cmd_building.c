@@ -215,7 +215,7 @@ static Status print_json(const Model *m, Err *err)
 static Status write_svg(const Model *m, const char *path, Err *err)
 {
     json_t *drawn;
-    TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, &drawn, err));
+    TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, 10, &drawn, err));
     return drawing_save(drawn, 1100, path, err);
 }
 

@@ -266,7 +266,7 @@ static void write_building(const Dossier *o)
     if (status == STATUS_OK && has_frame)
         status = frame_read(&frame, &o->s->building, &e);
     if (status == STATUS_OK)
-        status = building_drawing(&b, has_frame ? &frame : NULL, &drawn, &e);
+        status = building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e);
     if (status == STATUS_OK) {
         put_lines(table, "floors", "%.0f", b.n);
         put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));

@@ -28,5 +28,5 @@ json_t *panel(const char *title, json_t *x, json_t *y, json_t *marks);
 json_t *curve(size_t n, const double x[], const double y[], const char *colour, double width);
 json_t *dashed(json_t *curve);
 
-/* A frame, or storeys as a stick (frame NULL), with its first mode shapes. */
-Status building_drawing(const Building *b, const Frame *frame, json_t **out, Err *err);
+/* A frame, or storeys as a stick (frame NULL), with its first mode shapes; an error leaves no *out. */
+Status building_drawing(const Building *b, const Frame *frame, int modes, json_t **out, Err *err);
