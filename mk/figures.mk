@@ -57,7 +57,7 @@ pages: promise study paper ## every page that names designs, of one study and on
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
 
-setup-figures: ## packages for the tables of the search
+setup-figures: ## packages for the tables of the search and the figures of docs
 	@scripts/setup packages-figures.txt
 
 setup-browser: ## packages for the report's tests in a browser, its bundle of charts and its times

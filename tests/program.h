@@ -186,6 +186,16 @@ static inline void write_in_place(const char *name, const char *text)
     free(path);
 }
 
+static inline int count(const char *text, const char *word)
+{
+    int n = 0;
+    for (; (text = strstr(text, word)); text += strlen(word))
+        n++;
+    return n;
+}
+
+#define has_browser() (system("command -v chromium >/dev/null") == 0)
+
 static inline char *read_in_place(const char *name)
 {
     char *path = in_place(name), *text = text_of(path);

@@ -652,7 +652,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
                  "sim.accuracy=fine --json "
                  "--design @/columns/%s",
                  CASES[i]);
-        r[i] = json_of(command);
+        r[i] = json_of("%s", command);
     }
     assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 0.02);
     assert_at_most(2, number(r[2], "impacts"));
@@ -668,7 +668,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
         char command[256];
         snprintf(command, sizeof command, "check configs/quick.ini --set building.model=@/columns --json --set %s",
                  strstr(CASES[i], "building.modes"));
-        json_t *all = json_of(command), *b = json_object_get(all, "building");
+        json_t *all = json_of("%s", command), *b = json_object_get(all, "building");
         assert_close(number(b, "mass_kg"), mass, 1e-9);
         shear[i] = number(b, "base_shear_share");
         json_decref(all);
@@ -811,17 +811,9 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
 
 /* ---- imtet building ------------------------------------------------------------------------------------------- */
 
-static int count(const char *text, const char *word)
-{
-    int n = 0;
-    for (; (text = strstr(text, word)); text += strlen(word))
-        n++;
-    return n;
-}
-
 TEST(a_building_is_summed_up_and_drawn)
 {
-    json_t *o = json_of("building configs/sac20/frame --svg @/frame.svg --json");
+    json_t *o = json_of("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
     const BuildingOptions options = scene_defaults().building;
     Building b = load(&options);
     assert_int_equal((int)number(o, "nodes"), 180);
@@ -835,12 +827,14 @@ TEST(a_building_is_summed_up_and_drawn)
     for (size_t i = 0; i < 20; i++)
         shares += number(json_array_get(json_object_get(o, "modes"), i), "mass_share");
     assert_close(shares, 1, 1e-9);
-    char *svg = read_in_place("frame.svg");
-    assert_int_equal(count(svg, "<line class=\"e\""), 284);
-    assert_int_equal(count(svg, "<circle class=\"n\""), 20 * 6);
-    assert_int_equal(count(svg, "<circle class=\"p\""), 2 * 5);
-    assert_int_equal(count(svg, "<polyline"), 10);
-    free(svg);
+    if (has_browser()) {
+        char *svg = read_in_place("frame.svg");
+        assert_int_equal(count(svg, "<title>floor "), 20 * 6);
+        assert_int_equal(count(svg, "<title>"), 284 + 20 * 6 + 2 * 5 + 18); /* elements, floors, pins, supports */
+        assert_int_equal(count(svg, " fill=\"white\""), 2 * 5 + 18);
+        assert_int_equal(count(svg, " stroke=\"#0072b2\""), 10); /* modes */
+        free(svg);
+    }
     json_decref(o);
     building_free(&b);
 }
@@ -849,13 +843,15 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
 {
     const BuildingOptions o = write_portal("named", 1e-4, "1", "0,0");
     write_file(&o, "elements.csv", "element,node_i,node_j,section\n<b>,A,C,column\n2,B,D,column\n3,C,D,beam\n");
+    if (!has_browser())
+        skip();
     free(output_of("building @/named --svg @/named.svg"));
     char *svg = read_in_place("named.svg");
-    assert_non_null(strstr(svg, "<title>&#60;b&#62;: column</title>"));
+    assert_non_null(strstr(svg, "<title>&lt;b&gt;: column</title>"));
     free(svg);
     expect_output("20 floors", "building appendix --svg @/stick.svg --set building.p_delta=on");
     svg = read_in_place("stick.svg");
-    assert_int_equal(count(svg, "<circle class=\"n\""), 20);
+    assert_int_equal(count(svg, "<title>floor "), 20);
     free(svg);
     expect(66, "nowhere: there is no such file", "building nowhere");
 }

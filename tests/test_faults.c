@@ -134,7 +134,8 @@ static void sweep_memory(const Deed *deed)
 TEST(without_memory_the_program_says_so_or_gives_the_same_result)
 {
     for (int i = 0; i < N_DEEDS; i++)
-        sweep_memory(&DEEDS[i]);
+        if (!strstr(DEEDS[i].command, "--pictures") || has_browser())
+            sweep_memory(&DEEDS[i]);
 }
 
 /* A sanitizer needs more for itself. */

@@ -136,7 +136,7 @@ TEST(the_table_and_the_picture_show_the_three_scenes)
     for (int i = 0; i < 3; i++)
         assert_non_null(strstr(table, WORDS[i]));
     free(table);
-    if (system("command -v gnuplot >/dev/null") == 0) {
+    if (has_browser()) {
         free(output_of(RANGE "--svg @/ida.svg"));
         char *svg = read_in_place("ida.svg");
         assert_non_null(strstr(svg, "rigidly connected: median, 16 and 84 %"));

@@ -6,9 +6,9 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "scene/building_svg.h"
+#include "report/panels.h"
+#include "report/pictures.h"
 #include "settings/settings.h"
-#include "store/output.h"
 #include "scene/neighbour.h"
 
 /* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */
@@ -214,9 +214,9 @@ static Status print_json(const Model *m, Err *err)
 
 static Status write_svg(const Model *m, const char *path, Err *err)
 {
-    Output o;
-    TRY(output_open(&o, path, err));
-    return output_end(&o, building_svg(o.stream, &m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, err), err);
+    json_t *drawn;
+    TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, 10, &drawn, err));
+    return drawing_save(drawn, 1100, path, err);
 }
 
 static Status show(const Args *args, const Model *m, Err *err)

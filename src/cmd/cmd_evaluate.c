@@ -14,7 +14,8 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
-#include "report/gnuplot.h"
+#include "report/panels.h"
+#include "report/pictures.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
 
@@ -82,76 +83,41 @@ static json_t *ida_json(const Evaluations *e)
     return o;
 }
 
-typedef struct {
-    const Evaluations *e;
-    const MeasureOrder *order;
-} Picture;
-
-/* Intensity and objectives, of record r (fractile < 0) or of a fractile of a case. */
-static void write_block(FILE *script, const Picture *p, size_t r, int which, int fractile)
+/* Intensity over measure k, of record r (fractile < 0) or of a fractile of a case. */
+static json_t *ida_line(const Evaluations *e, int k, size_t r, SceneKind which, int fractile)
 {
-    const Evaluations *e = p->e;
-    for (size_t l = 0; l < e->n_levels; l++) {
-        fprintf(script, "%.6g ", e->level[l]);
-        for (int k = 0; k < MIN_OF(p->order->n_obj, IDA_SHOWN); k++)
-            gnuplot_number(script, fractile < 0 ? ida_value(&e->run[r * e->n_levels + l], SCENE_IMPACT, p->order->of[k])
-                                                : ida_fractile(e, l, which, p->order->of[k], IDA_FRACTILE[fractile]));
-        fputc('\n', script);
+    double x[IDA_LEVELS_MAX];
+    for (size_t l = 0; l < e->n_levels; l++)
+        x[l] = fractile < 0 ? ida_value(&e->run[r * e->n_levels + l], which, k)
+                            : ida_fractile(e, l, which, k, IDA_FRACTILE[fractile]);
+    json_t *line =
+        curve(e->n_levels, x, e->level, fractile < 0 ? "#b8c8d8" : CASE_LOOK[which].colour, fractile == 1 ? 2.5 : 1.2);
+    return fractile == 0 || fractile == 2 ? dashed(line) : line;
+}
+
+/* A panel for each of the first objectives: the records pale, the fractiles of every case over them. */
+static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const char *path, Err *err)
+{
+    json_t *columns = json_array(), *names = json_array();
+    char text[160];
+    for (int k = 0; k < MIN_OF(order->n_obj, IDA_SHOWN); k++) {
+        const Measure *of = measure(order->of[k]);
+        json_t *lines = json_array();
+        for (size_t r = 0; r < e->n_records; r++)
+            if (e->record[r].readable == STATUS_OK)
+                json_array_append_new(lines, ida_line(e, order->of[k], r, SCENE_IMPACT, -1));
+        for (int c = 0; c < IDA_CASES; c++)
+            for (int i = 0; i < IDA_FRACTILES; i++)
+                json_array_append_new(lines, ida_line(e, order->of[k], 0, c, i));
+        snprintf(text, sizeof text, "%s [%s]", of->what, of->unit);
+        json_t *x = json_of("label=%s zero=%c ticks=%d", text, 1, 5);
+        json_array_append_new(columns, json_pack("[o]", panel("", x, intensity_axis(e), lines)));
     }
-    fputs("EOD\n", script);
-}
-
-/* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. */
-static void write_blocks(FILE *script, const Picture *p)
-{
-    for (size_t r = 0; r < p->e->n_records; r++)
-        if (p->e->record[r].readable == STATUS_OK) {
-            fprintf(script, "$R%zu << EOD\n", r);
-            write_block(script, p, r, 0, -1);
-        }
-    for (int c = 0; c < IDA_CASES; c++)
-        for (int i = 0; i < IDA_FRACTILES; i++) {
-            fprintf(script, "$F%d%d << EOD\n", c, i);
-            write_block(script, p, 0, c, i);
-        }
-}
-
-static void write_panel(FILE *script, const Picture *p, int k)
-{
-    static const char *const COLOURS[IDA_CASES] = {"#0072b2", "#d55e00", "#8a6d00"};
-    const Evaluations *e = p->e;
-    const Measure *of = measure(p->order->of[k]);
-    fprintf(script, "set xlabel '%s [%s]'\nset %s\nplot ", of->what, of->unit, k == 0 ? "key" : "key off");
-    for (size_t r = 0; r < e->n_records; r++)
-        if (e->record[r].readable == STATUS_OK)
-            fprintf(script, "$R%zu using %d:1 with lines lc '#b8c8d8' notitle, ", r, k + 2);
-    for (int c = 0; c < IDA_CASES; c++)
-        for (int i = 0; i < IDA_FRACTILES; i++) {
-            fprintf(script, "$F%d%d using %d:1 with lines lc '%s' %s ", c, i, k + 2, COLOURS[c],
-                    i == 1 ? "lw 2.5" : "lw 1.2 dt (6,4)");
-            if (i == 1)
-                fprintf(script, "title '%s: median, 16 and 84 %%'", SCENES[c].words);
-            else
-                fputs("notitle", script);
-            fputs(c + 1 < IDA_CASES || i + 1 < IDA_FRACTILES ? ", " : "\n", script);
-        }
-}
-
-static void write_script(FILE *script, const void *user)
-{
-    const Picture *p = user;
-    write_blocks(script, p);
-    fprintf(script,
-            "set terminal svg size 1300,520 font 'sans,13' noenhanced background '#ffffff'\n"
-            "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:*]\nset yrange [0:*]\n"
-            "set ylabel '%s'\n"
-            "set multiplot layout 1,%d margins 0.06,0.98,0.13,0.82 spacing 0.07,0\n"
-            "set key at screen 0.5,0.98 center top horizontal\n",
-            is_spectral(p->e) ? "spectral acceleration [g]" : "peak ground acceleration [g]",
-            MIN_OF(p->order->n_obj, IDA_SHOWN));
-    for (int k = 0; k < MIN_OF(p->order->n_obj, IDA_SHOWN); k++)
-        write_panel(script, p, k);
-    fputs("unset multiplot\n", script);
+    for (int c = 0; c < IDA_CASES; c++) {
+        snprintf(text, sizeof text, "%s: median, 16 and 84 %%", SCENES[c].words);
+        json_array_append_new(names, name_of(text, CASE_LOOK[c].colour, "\u25a0"));
+    }
+    return drawing_save(drawing("", names, 440, columns), 1300, path, err);
 }
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
@@ -336,7 +302,7 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
     if (svg && c->fragilities.limits.n > 0)
         TRY(fragilities_draw(&c->fragilities, e, svg, err));
     else if (svg)
-        TRY(gnuplot_draw(svg, write_script, &(Picture){e, &c->schema->order}, err));
+        TRY(ida_draw(e, &c->schema->order, svg, err));
     if (args_has(args, "--pelicun"))
         TRY(demands_write(e, args_value(args, "--pelicun"), err));
     if (args_has(args, "--json"))
@@ -573,7 +539,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--pelicun", "FILE",
           "peaks of every floor, a row per record: demand CSV of pelicun; named response.csv: of EE-UQ"),
     VALUE("--svg", "FILE",
-          "of FROM:STEP:TO, drawn by gnuplot: response against intensity with 16 %, median and 84 %, or fragilities"),
+          "of FROM:STEP:TO, drawn by Chromium: response against intensity with 16 %, median and 84 %, or fragilities"),
     SWITCH("--full-model", "on all degrees of freedom of the building's frame, beside the reduced model"),
     OPTION_END,
 };

@@ -6,6 +6,7 @@
 #include "cmd/designs.h"
 #include "cmd/dossier.h"
 #include "report/elsewhere.h"
+#include "report/pictures.h"
 #include "report/report.h"
 #include "settings/options.h"
 #include "store/notes.h"
@@ -93,7 +94,9 @@ static Status report(const Args *args, const Run *run, Err *err)
     json_decref(notes);
     TRY(status); /* notes that cannot be shown are not left out in silence */
     TRY(take_target(args, path, err));
-    TRY(is_dossier ? check_dossier(run, path, err) : STATUS_OK);
+    TRY(is_dossier                                         ? check_dossier(run, path, err)
+        : args_has(args, "--pictures") && run->n_front > 0 ? browser_check(path, err)
+                                                           : STATUS_OK);
     status = open_report(args, run, &records, &r, err);
     if (status == STATUS_OK)
         status = is_dossier                     ? dossier(args, run, &r, &records, path, err)
@@ -107,7 +110,7 @@ static Status report(const Args *args, const Run *run, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
-    VALUE("--pictures", "DIR", "instead of the page pictures for a paper into DIR, SVG and PNG, by gnuplot"),
+    VALUE("--pictures", "DIR", "instead of the page pictures for a paper into DIR, SVG and PNG, by Chromium"),
     VALUE("--dossier", "FILE", "instead of the page all that a checker of the design needs, .html to print or .pdf"),
     VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
     VALUES("--record", "FILE",
@@ -143,8 +146,7 @@ const Command CMD_REPORT = {
         "accuracy\n"
         "fine, by CVODE and on the full model; forces with limits, ladder, every record, intensities, as built,\n"
         "sensitivities, what is not covered, provenance. CVODE takes minutes under a long record. A PDF takes "
-        "chromium\n"
-        "or weasyprint.",
+        "Chromium.",
     .options = OPTIONS,
     .is_alone = 1,
     .run_of = report,

@@ -10,7 +10,8 @@
 #include "motion/motion.h"
 #include "motion/suite.h"
 #include "motion/spectrum.h"
-#include "report/gnuplot.h"
+#include "report/panels.h"
+#include "report/pictures.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
@@ -197,34 +198,21 @@ static void print_curves(size_t n, const Curve c[])
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
+#define BLUE       CASE_LOOK[SCENE_IMPACT].colour
+#define VERMILLION CASE_LOOK[SCENE_NO_CORE].colour
 enum { BINS = 4000 }; /* of a history: more samples are drawn as the least and the largest of each bin */
 
-/* Four histories on the left, under each other; on the right the spectra of acceleration and displacement. */
-static const char PANELS[] =
-    "set terminal svg size 1100,900 font 'sans,13' noenhanced background '#ffffff'\n"
-    "set grid lc '#d0d0d0'\nunset key\nset lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
-    "set multiplot\nset size 0.46,0.19\nset xrange [0:END]\nset format x ''\nset ytics nomirror\n"
-    "set origin 0.09,0.74\nset ylabel 'acceleration [g]' offset 0\n"
-    "plot $H using 1:2 with lines lc '#0072b2'\n"
-    "unset label 1\nset origin 0.09,0.52\nset ylabel 'velocity [m/s]'\nplot $H using 1:3 with lines lc '#0072b2'\n"
-    "set origin 0.09,0.30\nset ylabel 'displacement [m]'\nplot $H using 1:4 with lines lc '#0072b2'\n"
-    "set origin 0.09,0.08\nset format x '%g'\nset xlabel 'time [s]'\nset ylabel 'share of Arias (Husid)'\n"
-    "set yrange [0:1]\nplot $H using 1:5 with lines lc '#d55e00'\n"
-    "set autoscale y\nset logscale x\nset xrange [0.02:20]\nset size 0.33,0.41\n"
-    "set origin 0.65,0.52\nset format x ''\nunset xlabel\nset ylabel 'pseudo-acceleration [g], 5 % damping'\n"
-    "set yrange [0:*]\nplot $S using 1:2 with lines lw 2 lc '#0072b2', "
-    "'' using 1:($6 > 0 ? $6 : NaN) with lines dt (6,4) lc '#d55e00'\n"
-    "set origin 0.65,0.08\nset format x '%g'\nset xlabel 'period [s]'\nset ylabel 'displacement [m], 5 % damping'\n"
-    "plot $S using 1:4 with lines lw 2 lc '#0072b2'\nunset multiplot\n";
-
-static void write_sample(FILE *script, const Spectrum *s, size_t i)
+/* The times as well, in the units of the eye. */
+static void add_sample(const Spectrum *s, size_t i, json_t *history[N_HISTORIES])
 {
-    fprintf(script, "%.7g %.6g %.6g %.6g %.6g\n", (double)i * s->motion.dt_s, s->motion.accel[i] / GRAVITY,
-            s->velocity[i], s->displacement[i], s->husid[i]);
+    const double values[] = {(double)i * s->motion.dt_s, s->motion.accel[i] / GRAVITY, s->velocity[i],
+                             s->displacement[i], s->husid[i]};
+    for (size_t k = 0; k < N_HISTORIES; k++)
+        json_array_append_new(history[k], json_number(values[k]));
 }
 
 /* Of a long history two samples of each bin, the ones of the least and of the largest acceleration, in their order. */
-static void write_history(FILE *script, const Spectrum *s)
+static void add_samples(const Spectrum *s, json_t *history[N_HISTORIES])
 {
     const size_t n = s->motion.n, bin = n > 4 * BINS ? n / BINS : 1;
     for (size_t begin = 0; begin < n; begin += bin) {
@@ -233,61 +221,76 @@ static void write_history(FILE *script, const Spectrum *s)
             low = s->motion.accel[i] < s->motion.accel[low] ? i : low;
             high = s->motion.accel[i] > s->motion.accel[high] ? i : high;
         }
-        write_sample(script, s, low < high ? low : high);
+        add_sample(s, MIN_OF(low, high), history);
         if (low != high)
-            write_sample(script, s, low < high ? high : low);
+            add_sample(s, low < high ? high : low, history);
     }
 }
 
-typedef struct {
-    const Spectrum *s;
-    size_t n;
-    const Curve *c; /* (n) over the periods */
-} Picture;
-
-/* $S: the curves in the units of the table, 0 where one is not asked for. */
-static void write_spectra(FILE *script, const Picture *p)
+/* Over the periods, logarithmic; a curve that is not asked for is left out. */
+static void add_spectrum(json_t *lines, const Spectrum *s, const Curve *c, const char *colour, double thick)
 {
-    fprintf(script, "$S << EOD\n");
-    for (int i = 0; i < N_PERIODS; i++)
-        for (size_t k = 0; k < p->n; k++)
-            fprintf(script, "%.6g%c", p->c[k].x ? p->c[k].x[i] / p->c[k].unit : 0, k + 1 < p->n ? ' ' : '\n');
-    fprintf(script, "EOD\n");
+    double values[N_PERIODS];
+    for (int i = 0; c->x && i < N_PERIODS; i++)
+        values[i] = c->x[i] / c->unit;
+    json_t *line = c->x ? curve(N_PERIODS, s->T, values, colour, thick) : NULL;
+    if (line)
+        json_array_append_new(lines, c->x == s->target ? dashed(line) : line);
 }
 
-static void draw_one(FILE *script, const void *user)
+static json_t *spectrum_panel(const char *label, json_t *lines)
 {
-    const Picture *p = user;
-    const Spectrum *s = p->s;
+    json_t *axis = json_of("label=%s type=%s tickFormat=%s domain=%p ticks=%p", "period [s]", "log", "~g",
+                           json_numbers(2, (double[]){SHORTEST_S, LONGEST_S}),
+                           json_numbers(8, (double[]){0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10}));
+    return panel("", axis, json_of("label=%s zero=%c", label, 1), lines);
+}
+
+/* Four histories on the left, under each other; on the right the spectra of acceleration and displacement. */
+static Status draw_one(const Spectrum *s, const Curve c[CURVES_MAX], const char *path, Err *err)
+{
+    static const char *const LABELS[] = {"", "acceleration [g]", "velocity [m/s]", "displacement [m]",
+                                         "share of Arias (Husid)"};
     const Motion *m = &s->motion;
     const MotionFigures *f = &s->figures;
     char title[512];
-    write_spectra(script, p);
-    fprintf(script, "$H << EOD\n");
-    write_history(script, s);
+    json_t *history[N_HISTORIES], *left = json_array(), *right = json_array(), *psa = json_array(), *sd = json_array();
+    for (size_t k = 0; k < N_HISTORIES; k++)
+        history[k] = json_array();
+    add_samples(s, history);
+    for (size_t k = 1; k < N_HISTORIES; k++)
+        json_array_append_new(left,
+                              panel("", json_of("label=%s", "time [s]"), json_of("label=%s ticks=%d", LABELS[k], 5),
+                                    json_pack("[o]", json_of("mark=%s x=%p y=%p stroke=%s strokeWidth=%g", "line",
+                                                             json_incref(history[0]), history[k], BLUE, 1.0))));
+    json_decref(history[0]);
+    add_spectrum(psa, s, &c[1], BLUE, 2);
+    add_spectrum(psa, s, &c[5], VERMILLION, 1.5);
+    add_spectrum(sd, s, &c[3], BLUE, 2);
+    json_array_append_new(right, spectrum_panel("pseudo-acceleration [g], 5 % damping", psa));
+    json_array_append_new(right, spectrum_panel("displacement [m], 5 % damping", sd));
     snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
              m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
              is_corrected(s) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
-    fprintf(script, "EOD\nEND = %.7g\nset label 1 ", f->duration_s);
-    gnuplot_quote(script, title);
-    fprintf(script, " at screen 0.5,0.965 center noenhanced\n%s", PANELS);
+    return drawing_save(drawing(title, json_array(), 840, json_pack("[oo]", left, right)), 1100, path, err);
 }
 
-static void draw_all(FILE *script, const void *user)
+static Status draw_all(size_t n, const Spectrum s[], const Curve c[], const char *path, Err *err)
 {
-    const Picture *p = user;
-    write_spectra(script, p);
-    fprintf(script, "set terminal svg size 1000,600 font 'sans,13' noenhanced background '#ffffff'\n"
-                    "set grid lc '#d0d0d0'\nset logscale x\nset xrange [0.02:20]\nset yrange [0:*]\nset tics nomirror\n"
-                    "set xlabel 'period [s]'\nset ylabel 'pseudo-acceleration [g], 5 %% damping'\n"
-                    "set key outside right top noenhanced\nplot ");
-    for (size_t k = 3; k < p->n; k++) {
-        fprintf(script, "$S using 1:%zu with lines title ", k + 1);
-        gnuplot_quote(script, basename(p->s[k - 3].motion.name));
-        fputs(", ", script);
+    static const char *const HUES[] = {"#56b4e9", "#009e73", "#cc79a7", "#e69f00", "#0072b2", "#8a6d00", "#9aa4af"};
+    json_t *lines = json_array(), *names = json_array();
+    for (size_t k = 0; k < n; k++) {
+        const char *colour = HUES[k % N_OF(HUES)];
+        add_spectrum(lines, s, &c[3 + k], colour, 1.2);
+        json_array_append_new(names, name_of(basename(s[k].motion.name), colour, "\u25a0"));
     }
-    fprintf(script, "$S using 1:2 with lines lw 3 lc 'black' title 'mean'%s\n",
-            p->s->code.kind ? ", $S using 1:3 with lines lw 3 dt (6,4) lc '#d55e00' title 'target'" : "");
+    add_spectrum(lines, s, &c[1], "#000000", 3);
+    add_spectrum(lines, s, &c[2], VERMILLION, 3);
+    json_array_append_new(names, name_of("mean", "#000000", "\u25a0"));
+    if (c[2].x)
+        json_array_append_new(names, name_of("target", VERMILLION, "\u25a0"));
+    json_t *one = spectrum_panel("pseudo-acceleration [g], 5 % damping", lines);
+    return drawing_save(drawing("", names, 560, json_pack("[[o]]", one)), 1000, path, err);
 }
 
 /* ---- one motion -------------------------------------------------------------------------------------------------- */
@@ -359,7 +362,7 @@ static Status give_one(const Args *args, const Spectrum *s, Err *err)
     if (times)
         TRY(text_ends(times, ".json") ? write_event(&s->motion, times, err)
                                       : write_curves(times, s->motion.n, N_HISTORIES, history, err));
-    TRY(svg ? gnuplot_draw(svg, draw_one, &(Picture){s, CURVES_MAX, c}, err) : STATUS_OK);
+    TRY(svg ? draw_one(s, c, svg, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_json(s, err);
     if (csv || times || svg)
@@ -400,7 +403,7 @@ static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[]
     average(n, s, mean);
     curves_of_all(n, s, mean, c);
     TRY(csv ? write_curves(csv, N_PERIODS, n + 3, c, err) : STATUS_OK);
-    TRY(svg ? gnuplot_draw(svg, draw_all, &(Picture){s, n + 3, c}, err) : STATUS_OK);
+    TRY(svg ? draw_all(n, s, c, svg, err) : STATUS_OK);
     if (args_has(args, "--json"))
         return print_all_json(n, s, c, err);
     if (csv || svg)
@@ -477,7 +480,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--history", "FILE",
           "acceleration, velocity, displacement and Husid's curve as CSV (NAME.json: a SimCenter event); -: standard "
           "output"),
-    VALUE("--svg", "FILE", "a picture of all of it, drawn by gnuplot"),
+    VALUE("--svg", "FILE", "a picture of all of it, drawn by Chromium"),
     OPTION_END,
 };
 

@@ -1,7 +1,6 @@
 #include "cmd/dossier.h"
 
-#include <limits.h>
-#include <unistd.h>
+#include <stdarg.h>
 
 #include "analysis/evaluations.h"
 #include "analysis/fragility.h"
@@ -10,10 +9,11 @@
 #include "base/text.h"
 #include "cmd/show.h"
 #include "evaluate/limits.h"
-#include "report/drawings.h"
-#include "report/program.h"
+#include "report/panels.h"
+#include "report/pictures.h"
+#include "report/report_json.h"
 #include "report/words.h"
-#include "scene/building_svg.h"
+#include "scene/building.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 #include "store/output.h"
@@ -30,6 +30,7 @@ typedef struct {
     const Settings *s;
     const double *x;
     FILE *out;
+    json_t *drawings; /* by name, what the report's page does not have */
     size_t n_records;
     const SimResult *by_record; /* (n_records) the design under every record of the study */
     char record[200];           /* of the figures in detail: "builtin:kobe-like, the first of 22 records" */
@@ -75,9 +76,41 @@ static void add_response(json_t *table, const char *label, const SimResult *r, c
         put_text(row, " ", r->reason);
 }
 
+/* The tags of the page itself, "p" or "/p". */
+static void tag(const Dossier *o, const char *element)
+{
+    fprintf(o->out, "<%s>\n", element);
+}
+
+/* An element (empty: none) with its words: the one place where words come into the page. Tables have their own. */
+__attribute__((format(printf, 3, 4))) static void put(const Dossier *o, const char *element, const char *format, ...)
+{
+    va_list list;
+    char *words = NULL;
+    va_start(list, format);
+    if (vasprintf(&words, format, list) < 0)
+        words = NULL;
+    va_end(list);
+    if (*element)
+        fprintf(o->out, "<%s>", element);
+    text_html(o->out, words ? words : "");
+    if (*element)
+        fprintf(o->out, "</%.*s>", (int)strcspn(element, " "), element);
+    free(words);
+}
+
 static void heading(const Dossier *o, const char *title)
 {
-    fprintf(o->out, "<h2>%s</h2>\n", title);
+    put(o, "h2", "%s", title);
+}
+
+/* Where the page draws what it calls by that name (web/app/8-paper.js). */
+static void draw(const Dossier *o, const char *name, const char *caption)
+{
+    tag(o, "figure");
+    fprintf(o->out, "<div data-draw=\"%s\"></div>", name);
+    put(o, "figcaption", "%s", caption);
+    tag(o, "/figure");
 }
 
 /* A table that may have no rows: nothing then. */
@@ -90,17 +123,13 @@ static void show_any(const Dossier *o, json_t *table)
 
 static void say(const Dossier *o, const char *text)
 {
-    fputs("<p>", o->out);
-    text_html(o->out, text);
-    fputs("</p>\n", o->out);
+    put(o, "p", "%s", text);
 }
 
 /* What is of one record, which it names. */
 static void say_under(const Dossier *o, const char *text)
 {
-    char all[400];
-    snprintf(all, sizeof all, "%s under %s.", text, o->record);
-    say(o, all);
+    put(o, "p", "%s under %s.", text, o->record);
 }
 
 /* Of a record; N_MEASURES: the shear stress of the core, which is no measure. NAN: the simulation failed. */
@@ -125,9 +154,9 @@ static void print_exceeded(const Dossier *o, int k, double bound, const char *wh
     for (size_t i = 0; i < o->n_records; i++)
         n += demand_of(&o->by_record[i], k) > bound;
     if (n > 0)
-        fprintf(o->out, ", which %s exceeds", what);
+        put(o, "", ", which %s exceeds", what);
     if (n > 0 && o->n_records > 1)
-        fprintf(o->out, " under %zu of %zu records", n, o->n_records);
+        put(o, "", " under %zu of %zu records", n, o->n_records);
 }
 
 static void put_lines(json_t *table, const char *what, const char *format, double value)
@@ -178,39 +207,45 @@ static void write_summary(const Dossier *o)
 {
     const Detail *d = o->d;
     json_t *table = json_array();
-    char now[24], rule[RULE_WORDS_MAX];
+    char now[24], rule[RULE_WORDS_MAX], *verdicts;
+    size_t length;
+    FILE *verdict = text_open(&verdicts, &length);
     utc_now(now);
     words_of_rule(o->s, rule);
-    fprintf(o->out, "<h1>Design %ld of ", o->r->run->table.row[o->r->chosen].id);
-    text_html(o->out, o->r->run->folder);
-    fprintf(o->out,
-            "</h1>\n<p class=\"sub\">imtet %s (%s), %s. Found in %zu simulated designs%s%s, %zu of them "
-            "nondominated.</p>\n",
-            program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
-            o->r->run->n_front);
+    put(o, "h1", "Design %ld of %s", o->r->run->table.row[o->r->chosen].id, o->r->run->folder);
+    put(o, "p class=\"note\"", "imtet %s (%s), %s. Found in %zu simulated designs%s%s, %zu of them nondominated.",
+        program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
+        o->r->run->n_front);
     (o->r->is_robust ? add_judged : add_single)(o, table);
     figures_html(o->out, table);
     if (o->r->is_robust)
-        fprintf(o->out, "<p>By what the study judges: %s%s.</p>\n", rule,
-                o->r->run->table.row[o->r->chosen].kind == KIND_SCREENED
-                    ? ", of which this design, screened only, has had a part"
-                    : "");
+        put(o, "p", "By what the study judges: %s%s.", rule,
+            o->r->run->table.row[o->r->chosen].kind == KIND_SCREENED
+                ? ", of which this design, screened only, has had a part"
+                : "");
     else
         say_under(o, "All");
     say(o, "Behind the sign stands the error of the integration, which 95 % of such figures keep. The other "
            "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
            "dashpot on every floor (one constant, optimized).");
-    fputs("<p class=\"lines\">", o->out);
-    show_verdicts(o->out, o->r->run, o->r->chosen, d->baseline);
-    fprintf(
-        o->out,
-        "</p>\n<p>Largest force of a contact: <b>%.3g MN</b>, of a link or tuned mass: <b>%.3g MN</b>. Largest bending "
-        "stress of the core: <b>%.3g MPa</b>, %.3g times the buckling stress of its bare wall",
-        1e-6 * largest(o, MEASURE_CONTACT_FORCE), 1e-6 * largest(o, MEASURE_DEVICE_FORCE),
-        1e-6 * largest(o, MEASURE_CORE_STRESS), largest(o, MEASURE_CORE_BUCKLING));
+    if (verdict) {
+        show_verdicts(verdict, o->r->run, o->r->chosen, d->baseline);
+        text_close(verdict);
+    }
+    put(o, "p class=\"lines\"", "%s", verdicts ? verdicts : "");
+    free(verdicts);
+    tag(o, "p");
+    put(o, "", "Largest force of a contact: ");
+    put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_CONTACT_FORCE));
+    put(o, "", ", of a link or tuned mass: ");
+    put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_DEVICE_FORCE));
+    put(o, "", ". Largest bending stress of the core: ");
+    put(o, "b", "%.3g MPa", 1e-6 * largest(o, MEASURE_CORE_STRESS));
+    put(o, "", ", %.3g times the buckling stress of its bare wall", largest(o, MEASURE_CORE_BUCKLING));
     if (o->n_records > 1)
-        fprintf(o->out, ", each over %zu records", o->n_records);
-    fputs(". Nothing here is designed for them.</p>\n", o->out);
+        put(o, "", ", each over %zu records", o->n_records);
+    put(o, "", ". Nothing here is designed for them.");
+    tag(o, "/p");
 }
 
 static void write_building(const Dossier *o)
@@ -219,11 +254,13 @@ static void write_building(const Dossier *o)
     Frame frame = {0};
     Err e = {0};
     const int has_frame = frame_is(o->s->building.model);
-    json_t *table = json_array();
+    json_t *table = json_array(), *drawn = NULL;
     heading(o, "Building, core and ground motion");
     Status status = building_load(&b, &o->s->building, &e);
     if (status == STATUS_OK && has_frame)
         status = frame_read(&frame, &o->s->building, &e);
+    if (status == STATUS_OK)
+        status = building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e);
     if (status == STATUS_OK) {
         put_lines(table, "floors", "%.0f", b.n);
         put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));
@@ -241,11 +278,8 @@ static void write_building(const Dossier *o)
         add_line(table, "foundation of the core", o->s->core.foundation);
         add_line(table, "ground motion", o->record);
         figures_html(o->out, table);
-        fputs("<figure class=\"wide\">", o->out);
-        status = building_svg(o->out, &b, has_frame ? &frame : NULL, &e);
-        fputs("<figcaption>The building to scale; its first mode shapes with period and share of the mass.</figcaption>"
-              "</figure>\n",
-              o->out);
+        json_object_set_new(o->drawings, "panels", drawn);
+        draw(o, "panels", "The building to scale; its first mode shapes with period and share of the mass.");
     } else {
         json_decref(table);
     }
@@ -289,8 +323,8 @@ static void list_devices(const Dossier *o, const Design *design)
     }
     figures_html(o->out, table);
     if (design->mass_kg > 0)
-        fprintf(o->out, "<p>Tuned mass: force %.3g MN, stroke %.3g mm.</p>\n", 1e-6 * r->device[FLOORS_MAX].force,
-                1e3 * r->device[FLOORS_MAX].stroke);
+        put(o, "p", "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
+            1e3 * r->device[FLOORS_MAX].stroke);
     say_under(o, "Forces and strokes");
 }
 
@@ -300,12 +334,7 @@ static void write_design(const Dossier *o)
     Design design;
     design_of(&schema->design, o->x, &design);
     heading(o, "The design");
-    fputs("<figure>", o->out);
-    draw_devices(o->out, o->d, &design);
-    fputs("<figcaption>Section: tower, core and what is between them. Heights to scale, gaps and walls each in "
-          "proportion to their largest. Orange: a stop (thick: with a bumper); green: a dashpot."
-          "</figcaption></figure>\n",
-          o->out);
+    draw(o, "gaps", "");
     list_devices(o, &design);
 }
 
@@ -354,12 +383,7 @@ static void add_full_model(const Dossier *o, json_t *table)
 
 static void write_response(const Dossier *o)
 {
-    static const char *const NAMES[CURVES_SHOWN] = {"this design", "no core", "rigidly connected", "viscous links"};
-    const SimResult *r = o->d->result,
-                    *curve[CURVES_SHOWN] = {&r[SCENE_IMPACT], &r[SCENE_NO_CORE], &r[SCENE_RIGID], &r[SCENE_LINKS]};
-    Panel panels[] = {{.title = "displacement [m]", .factor = 1},
-                      {.title = "drift ratio [%]", .factor = 100},
-                      {.title = "acceleration [g]", .factor = 1}};
+    const SimResult *r = o->d->result;
     json_t *table = json_array();
     heading(o, "The response, by four calculations");
     add_response(table, "as the study knows it", &r[SCENE_IMPACT], o->d->error);
@@ -370,17 +394,8 @@ static void write_response(const Dossier *o)
     say_under(o, "All");
     say(o, "CVODE integrates the equations of motion without the study's engine. Contacts that graze may separate two "
            "calculations: J3 is then the least certain figure.");
-    for (int c = 0; c < CURVES_SHOWN; c++)
-        if (curve[c]->outcome == RUN_OK) {
-            panels[0].curve[c] = curve[c]->peak_displacement_m;
-            panels[1].curve[c] = curve[c]->drift_ratio;
-            panels[2].curve[c] = curve[c]->peak_acceleration_g;
-        }
-    fputs("<figure>", o->out);
-    draw_profiles(o->out, o->d, NAMES, N_OF(panels), panels);
-    fputs("<figcaption>Peaks over the height.</figcaption></figure>\n<figure>", o->out);
-    draw_history(o->out, o->d);
-    fprintf(o->out, "<figcaption>Displacement of floor %d.</figcaption></figure>\n", o->d->floor + 1);
+    draw(o, "peaks", "Peaks over the height.");
+    draw(o, "displacement", "Below each history its wavelet amplitude; dashed: natural frequencies of the building.");
 }
 
 /* ---- what it has to bear --------------------------------------------------------------------------------------- */
@@ -439,12 +454,6 @@ static int has_closed(const Dossier *o, int j)
 
 static void write_demand(const Dossier *o)
 {
-    const SimResult *r = &o->d->result[SCENE_IMPACT];
-    const SimForces *f = &r->forces;
-    const Panel panels[] = {{"contact force, right [MN]", 1e-6, 1, {f->contact_force_n[0]}},
-                            {"contact force, left [MN]", 1e-6, 1, {f->contact_force_n[1]}},
-                            {"stress of the core [MPa]", 1e-6, 0, {f->core_storey_stress_pa}}};
-    static const char *const NAMES[CURVES_SHOWN] = {"this design"};
     int borne[MEASURES_LISTED];
     json_t *table = json_array();
     heading(o, "Forces and stresses, with their limits");
@@ -453,24 +462,20 @@ static void write_demand(const Dossier *o)
     add_demand(o, table, N_MEASURES, (Words){"core shear stress", "MPa", 1e-6}, NAN);
     figures_html(o->out, table);
     write_limits(o);
-    fprintf(o->out, "<p>For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
+    tag(o, "p");
+    put(o, "", "For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
     print_exceeded(o, MEASURE_CORE_STRESS, YIELD_PA, "the core");
-    fprintf(o->out, ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
+    put(o, "", ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
     print_exceeded(o, N_MEASURES, YIELD_PA / sqrt(3), "its shear stress");
-    fprintf(o->out, ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
+    put(o, "", ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
     int n = 0;
     for (int j = 0; j < o->d->n_floors; j++)
         if (!has_closed(o, j) && o->d->gap_m[j] < INFINITY)
-            fprintf(o->out, "%s%d", n++ ? ", " : "", j + 1);
-    fprintf(o->out, "%s.</p>\n<figure>", n ? "" : "none");
-    const size_t first = f->contact_force_max_n > 0 ? 0 : SIDES;
-    if (r->forces_known)
-        draw_profiles(o->out, o->d, NAMES, N_OF(panels) - !f->stress_known - first, panels + first);
-    fputs("<figcaption>Largest forces of contacts by side of the core, where there are any; largest bending stress by "
-          "storey: under ",
-          o->out);
-    text_html(o->out, o->record);
-    fputs(".</figcaption></figure>\n", o->out);
+            put(o, "", "%s%d", n++ ? ", " : "", j + 1);
+    put(o, "", n ? "." : "none.");
+    tag(o, "/p");
+    draw(o, "forces", "");
+    say_under(o, "Both");
 }
 
 static void write_ladder(const Dossier *o)
@@ -635,8 +640,7 @@ static void write_as_built(const Dossier *o)
 /* Gaps that move nothing are left out: they never close. */
 static void write_sensitivities(const Dossier *o)
 {
-    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3, MEASURE_CONTACT_FORCE,
-                                      MEASURE_CORE_STRESS};
+    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_CONTACT_FORCE, MEASURE_CORE_STRESS};
     Sensitivity *list = NULL;
     size_t n = 0;
     Err e = {0};
@@ -644,7 +648,7 @@ static void write_sensitivities(const Dossier *o)
     if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) != STATUS_OK)
         say(o, e.text);
     for (size_t i = 0; i < n; i++) {
-        if (list[i].slope[MEASURE_J1] == 0 && list[i].slope[MEASURE_J3] == 0)
+        if (list[i].slope[MEASURE_J1] == 0 && list[i].slope[MEASURE_DRIFT_RATIO] == 0)
             continue;
         json_t *row =
             json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
@@ -664,28 +668,26 @@ static void write_not_covered(const Dossier *o)
 {
     const Settings *s = o->s;
     heading(o, "What is not covered");
-    fputs("<ul>\n<li>Torsion, friction and the vertical motion. One contact per floor and side.</li>\n", o->out);
-    fprintf(o->out,
-            "<li>The mass of the core, %.0f t, is that of its bare walls. It has <b>no stiffeners</b>, diaphragms or "
-            "connections%s.</li>\n",
-            1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
-            largest(o, MEASURE_CORE_BUCKLING) > 1 ? ", and the bare wall would buckle: stiffeners are needed, "
-                                                    "and their mass is missing here and in every objective"
-                                                  : "");
-    fputs("<li>Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
-          "floors as diaphragms, local stresses and fatigue are not designed.</li>\n",
-          o->out);
+    tag(o, "ul");
+    put(o, "li", "Torsion, friction and the vertical motion. One contact per floor and side.");
+    put(o, "li",
+        "The mass of the core, %.0f t, is that of its bare walls. It has no stiffeners, diaphragms or connections%s.",
+        1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
+        largest(o, MEASURE_CORE_BUCKLING) > 1 ? ", and the bare wall would buckle: stiffeners are needed, "
+                                                "and their mass is missing here and in every objective"
+                                              : "");
+    put(o, "li",
+        "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, floors as "
+        "diaphragms, local stresses and fatigue are not designed.");
     if (strcmp(s->core.foundation, "fixed") == 0)
-        fprintf(o->out,
-                "<li>The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.</li>\n",
-                1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
+        put(o, "li", "The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.",
+            1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
-        fputs("<li>The tower is linear: nothing yields, whatever its drift.</li>\n", o->out);
+        put(o, "li", "The tower is linear: nothing yields, whatever its drift.");
     if (!s->building.p_delta)
-        fputs("<li>P-delta is left out.</li>\n", o->out);
-    fputs(
-        "<li>Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.</li>\n</ul>\n",
-        o->out);
+        put(o, "li", "P-delta is left out.");
+    put(o, "li", "Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.");
+    tag(o, "/ul");
 }
 
 static void put_setting(const char *key, unsigned flags, const char *was, const char *is, void *user)
@@ -721,37 +723,29 @@ static void write_provenance(const Dossier *o)
     settings_compare(&none, o->r->run->settings, put_setting, settings);
     say(o, "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
     figures_html(o->out, settings);
-    fputs("<p>The same figures again: <code>imtet simulate ", o->out);
-    text_html(o->out, o->r->run->folder);
-    fprintf(o->out, "/settings.ini --design %s:%ld --set sim.accuracy=fine --json</code></p>\n", o->r->run->folder,
-            o->r->run->table.row[o->r->chosen].id);
+    say(o, "The same figures again:");
+    put(o, "code", "imtet simulate %s/settings.ini --design %s:%ld --set sim.accuracy=fine --json", o->r->run->folder,
+        o->r->run->folder, o->r->run->table.row[o->r->chosen].id);
     json_decref(from);
 }
 
 /* ---- the page -------------------------------------------------------------------------------------------------- */
 
-static const char STYLE[] =
-    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Design dossier</title>\n<style>\n"
-    "@page{size:A4;margin:16mm 14mm}\n"
-    "body{font:13px/1.45 'DejaVu Sans',Verdana,sans-serif;color:#1b2430;max-width:182mm;margin:2em auto;padding:0 "
-    "1em}\n"
-    "h1{font-size:22px;margin:0}h2{font-size:17px;margin:1.8em 0 .5em;border-bottom:1px solid #9ab;break-after:avoid}\n"
-    ".sub{color:#566}table{border-collapse:collapse;width:100%;font-size:10.5px;margin:.6em 0}\n"
-    "td,th{padding:2px 5px;text-align:right;border-bottom:1px solid #dde3ea;vertical-align:baseline}\n"
-    "th{font-weight:600}tr:first-child th{vertical-align:bottom}td:first-child,th:first-child,.words{text-align:left}\n"
-    "tr{break-inside:avoid}\n"
-    "figure{margin:1em 0;break-inside:avoid}figcaption{color:#566;font-size:12px}svg{max-width:100%;height:auto}\n"
-    ".lines{white-space:pre-line}.wide svg{max-height:92mm}code{font-size:11px;overflow-wrap:anywhere}\n"
-    "@media print{body{margin:0;padding:0;max-width:none}}\n</style></head><body>\n";
-
-static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n, const char *const records[])
+/* body: the caller's. */
+static Status write_body(char **body, json_t *drawings, const Report *r, const Settings *s, size_t n,
+                         const char *const records[], Err *err)
 {
     const Detail *d = &r->detail;
-    Dossier o = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .out = out, .n_records = d->n_records};
+    size_t length;
+    Dossier o = {
+        .r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .drawings = drawings, .n_records = d->n_records};
     o.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
     snprintf(o.record, sizeof o.record, o.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
              o.n_records);
-    fputs(STYLE, out);
+    o.out = text_open(body, &length);
+    if (!o.out)
+        return fail_memory(err, 1, "a dossier");
+    tag(&o, "main class=\"paper\"");
     write_summary(&o);
     write_building(&o);
     write_design(&o);
@@ -764,80 +758,44 @@ static Status write_page(FILE *out, const Report *r, const Settings *s, size_t n
     write_sensitivities(&o);
     write_not_covered(&o);
     write_provenance(&o);
-    fputs("</body></html>\n", out);
-    return STATUS_OK;
+    tag(&o, "/main");
+    return text_close(o.out) ? fail_memory(err, 1, "a dossier") : STATUS_OK;
 }
 
 /* ---- the file -------------------------------------------------------------------------------------------------- */
-
-enum { N_PRINTERS = 2 };
 
 static int is_pdf(const char *path)
 {
     return text_ends(path, ".pdf");
 }
 
-/* page, pdf: paths. */
-static int print_by(int printer, char *page, char *pdf, FILE *faults)
-{
-    char option[PATH_MAX + 32];
-    snprintf(option, sizeof option, "--print-to-pdf=%s", pdf);
-    char *const chromium[] = {
-        "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer", option, page, NULL};
-    char *const weasyprint[] = {"weasyprint", page, pdf, NULL};
-    return program_run(printer ? weasyprint : chromium, faults, NULL, faults);
-}
-
-static int first_printer(FILE *faults)
-{
-    char chromium[] = "chromium", weasyprint[] = "weasyprint", option[] = "--version";
-    char *const version[N_PRINTERS][3] = {{chromium, option, NULL}, {weasyprint, option, NULL}};
-    int i = 0;
-    while (i < N_PRINTERS && program_run(version[i], faults, NULL, faults) != 0)
-        i++;
-    return i;
-}
-
 Status dossier_check(const char *path, Err *err)
 {
     if (!is_pdf(path) && !text_ends(path, ".html"))
         return misused(err, "--dossier %s: it is written as a page or a PDF; name the file .html or .pdf", path);
-    FILE *faults = is_pdf(path) ? tmpfile() : NULL;
-    const int is_there = !faults || first_printer(faults) < N_PRINTERS;
-    if (faults)
-        fclose(faults);
-    return is_there ? STATUS_OK
-                    : fail(err, STATUS_MISSING,
-                           "%s: neither chromium nor weasyprint, which make a PDF, is installed (Debian: apt install "
-                           "chromium); name a file .html and print it from a browser",
-                           path);
+    return is_pdf(path) ? browser_check(path, err) : STATUS_OK;
 }
 
-static Status print_pdf(const char *page, const char *path, Err *err)
+static Status write_html(json_t *run, const char *body, const char *path, Err *err)
 {
-    FILE *faults = tmpfile();
-    char from[PATH_MAX], to[PATH_MAX];
-    snprintf(from, sizeof from, "%s", page);
-    snprintf(to, sizeof to, "%s", path);
-    const int status = faults ? print_by(first_printer(faults), from, to, faults) : -1;
-    if (faults)
-        fclose(faults);
-    return status == 0 ? STATUS_OK
-                       : fail(err, STATUS_IO, "%s: the page could not be printed as PDF (status %d); %s holds it", path,
-                              status, page);
+    Output o;
+    Status status = output_open(&o, path, err);
+    if (status != STATUS_OK)
+        json_decref(run);
+    return status == STATUS_OK ? output_end(&o, page_write(o.stream, run, NULL, body, err), err) : status;
 }
 
 Status dossier_write(const Report *r, const Settings *s, size_t n, const char *const records[], const char *path,
                      Err *err)
 {
-    char page[PATH_MAX];
-    Output o;
-    snprintf(page, sizeof page, is_pdf(path) ? "%.4000s.html" : "%s", path);
-    TRY(output_open(&o, page, err));
-    TRY(output_end(&o, write_page(o.stream, r, s, n, records), err));
-    if (!is_pdf(path))
-        return STATUS_OK;
-    TRY(print_pdf(page, path, err));
-    unlink(page);
-    return STATUS_OK;
+    char *body = NULL;
+    json_t *drawings = json_object();
+    Status status = write_body(&body, drawings, r, s, n, records, err);
+    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), drawings);
+    if (status == STATUS_OK)
+        status = (is_pdf(path) ? page_print : write_html)(run, body, path, err);
+    else
+        json_decref(run);
+    free(body);
+    return status;
 }

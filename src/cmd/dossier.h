@@ -1,5 +1,5 @@
-/* cmd/dossier.h -- the one document about a design for who has to check it: HTML without scripts that prints on some
- * ten pages of A4, or a PDF of it by chromium or weasyprint.
+/* cmd/dossier.h -- the one document about a design for who has to check it: HTML that prints on some ten pages of
+ * A4, or a PDF of it by Chromium. Its charts are drawn by the scripts of the report, under the same policy.
  *
  *   what is there from the report   the design beside its baselines, its ladder, other earthquakes (report/detail.h)
  *   what is simulated for it        at accuracy fine, by CVODE, on the full model; sensitivities; replicates as
@@ -7,7 +7,7 @@
  *
  * A part that cannot be had (a building without a full model, a simulation that failed) says why in its place.
  *
- * Errors  those of the file; neither program for a PDF: STATUS_MISSING, before anything is simulated */
+ * Errors  those of the file; no Chromium for a PDF: STATUS_MISSING, before anything is simulated */
 #pragma once
 
 #include "report/report.h"

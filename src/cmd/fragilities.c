@@ -2,7 +2,7 @@
 
 #include "base/figure.h"
 #include "cmd/show.h"
-#include "report/gnuplot.h"
+#include "report/pictures.h"
 
 static const SceneKind CASES[] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID, SCENE_LINKS};
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
@@ -252,66 +252,56 @@ json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people
 
 /* ---- picture ----------------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    const Fragilities *f;
-    const Evaluations *e;
-} Picture;
-
-static size_t number_of(const Fragilities *f, const Curve *c)
+json_t *intensity_axis(const Evaluations *e)
 {
-    return (size_t)(c->limit - f->limits.limit) * N_SCENES + c->which;
+    return json_of("label=%s zero=%c ticks=%d",
+                   e->intensity[0] == 's' ? "spectral acceleration [g]" : "peak ground acceleration [g]", 1, 5);
 }
 
-/* Intensity and share that exceeded it. */
-static void write_block(const Fragilities *f, const Evaluations *e, const Curve *c, void *script)
+/* The share of every intensity that exceeded the limit, and the curve through them, where there is one. */
+static void draw_curve(const Fragilities *f, const Evaluations *e, const Curve *c, void *user)
 {
-    fprintf(script, "$S%zu << EOD\n", number_of(f, c));
-    for (size_t l = 0; l < e->n_levels; l++) {
-        fprintf(script, "%.6g ", e->level[l]);
-        gnuplot_number(script, (double)c->exceeded[l] / (double)c->n_at[l]);
-        fputc('\n', script);
-    }
-    fputs("EOD\n", script);
-}
-
-/* Its panel, where it is the first, shares and curve. */
-static void write_curve(const Fragilities *f, const Evaluations *e, const Curve *c, void *script)
-{
-    static const char *const COLOURS[N_SCENES] = {"#0072b2", "#d55e00", "#8a6d00", "", "#009e73"};
-    const Fragility *fit = &c->fit;
-    (void)e;
+    enum { POINTS = 200 };
+    json_t *panels = user, *marks;
+    double x[POINTS], y[POINTS], share[IDA_LEVELS_MAX];
+    const double most = e->level[e->n_levels - 1] * 1.05;
+    const CaseLook *look = &CASE_LOOK[c->which];
+    char title[200];
+    (void)f;
+    snprintf(title, sizeof title, "%s %s %g", c->name, relation(c), c->limit->bound);
     if (c->which == CASES[0])
-        fprintf(script, "\nset title '%s %s %g'\n%splot ", c->name, relation(c), c->limit->bound,
-                c->limit == f->limits.limit ? "" : "unset key\n");
-    fprintf(script, "$S%zu using 1:2 with points pt 7 ps 0.5 lc '%s' notitle, ", number_of(f, c), COLOURS[c->which]);
-    if (isnan(fit->median))
-        fputs("NaN", script);
-    else
-        fprintf(script, "norm(log(x / %.9g) / %.9g)", fit->median, fit->beta);
-    fprintf(script, " with lines lw 2.5 lc '%s' title '%s'%s", COLOURS[c->which], SCENES[c->which].words,
-            c->which == CASES[N_OF(CASES) - 1] ? "\n" : ", ");
+        json_array_append_new(panels,
+                              panel(title, intensity_axis(e),
+                                    json_of("label=%s domain=%p", "probability", json_numbers(2, (double[]){0, 1})),
+                                    json_array()));
+    marks = json_object_get(json_array_get(panels, json_array_size(panels) - 1), "marks");
+    for (size_t l = 0; l < e->n_levels; l++)
+        share[l] = (double)c->exceeded[l] / (double)c->n_at[l];
+    json_array_append_new(marks, json_of("mark=%s x=%p y=%p fill=%s r=%d symbol=%s", "dot",
+                                         json_numbers(e->n_levels, e->level), json_numbers(e->n_levels, share),
+                                         look->colour, 3, look->symbol));
+    for (int i = 0; i < POINTS; i++) {
+        x[i] = most * (i + 1) / POINTS;
+        y[i] = fragility_at(&c->fit, x[i]);
+    }
+    json_array_append_new(marks, curve(POINTS, x, y, look->colour, 2.5));
 }
 
-static void write_script(FILE *script, const void *user)
-{
-    const Picture *p = user;
-    const size_t n = p->f->limits.n, columns = MIN_OF(n, 3), rows = (n + columns - 1) / columns;
-    const double height = 110 + 400 * (double)rows, width = 200 + 400 * (double)columns;
-    fprintf(script,
-            "set terminal svg size %g,%g font 'sans,13' noenhanced background '#ffffff'\n"
-            "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:%.6g]\nset yrange [0:1]\nset samples 400\n"
-            "set xlabel '%s [g]'\nset ylabel 'probability' offset 2\n"
-            "set key at screen 0.5,%g center vertical maxrows 2 samplen 1\n"
-            "set multiplot layout %zu,%zu margins screen %g,0.98,%g,%g spacing 0.07,0.16\n",
-            width, height, p->e->level[p->e->n_levels - 1] * 1.05,
-            p->e->intensity[0] == 's' ? "spectral acceleration" : "peak ground acceleration", 1 - 25 / height, rows,
-            columns, 60 / width, 60 / height, 1 - 90 / height);
-    each_curve(p->f, p->e, write_block, script);
-    each_curve(p->f, p->e, write_curve, script);
-    fputs("unset multiplot\n", script);
-}
-
+/* Three panels beside each other at most. */
 Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err)
 {
-    return gnuplot_draw(path, write_script, &(Picture){f, e}, err);
+    json_t *panels = json_array(), *columns = json_array(), *names = json_array();
+    each_curve(f, e, draw_curve, panels);
+    const size_t n = json_array_size(panels), across = MIN_OF(n, 3);
+    for (size_t i = 0; i < n; i++) {
+        if (i < across)
+            json_array_append_new(columns, json_array());
+        json_array_append(json_array_get(columns, i % across), json_array_get(panels, i));
+    }
+    for (size_t k = 0; k < N_OF(CASES); k++)
+        json_array_append_new(names,
+                              name_of(SCENES[CASES[k]].words, CASE_LOOK[CASES[k]].colour, CASE_LOOK[CASES[k]].mark));
+    json_decref(panels);
+    const int rows = (int)((n + across - 1) / across);
+    return drawing_save(drawing("", names, 380 * rows, columns), 30 + 400 * (int)across, path, err);
 }

@@ -8,6 +8,7 @@
 #include <jansson.h>
 
 #include "analysis/evaluations.h"
+#include "report/panels.h"
 
 typedef struct Settings Settings;
 
@@ -30,5 +31,6 @@ json_t *fragilities_json(const Fragilities *f, const Evaluations *e);
 /* Of every scene, where there is a hazard curve: rows, for people or for JSON. */
 json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people);
 
+json_t *intensity_axis(const Evaluations *e);
 Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err);
 void fragilities_free(Fragilities *f);

@@ -1,6 +1,6 @@
 
 #include "base/text.h"
-#include "report/report.h"
+#include "report/pictures.h"
 #include "report/report_json.h"
 #include "store/export.h"
 #include "store/output.h"
@@ -55,10 +55,10 @@ size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows
     return taken;
 }
 
-/* build/web/page.html, live.html: the page with a line MARK where the run goes. */
+/* build/web/page.html, live.html: the page with a line for its parts and one for where the run goes. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];
 extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
-static const char MARK[] = "<!-- the run -->\n";
+static const char PARTS[] = "<!-- the parts -->\n", RUN[] = "<!-- the run -->\n";
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
 static void write_json(json_t *all, FILE *out)
@@ -73,42 +73,63 @@ static void write_json(json_t *all, FILE *out)
     free(text);
 }
 
-static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
+/* body NULL: the parts of a report. */
+static Status write_page(json_t *run, const Report *rows, const char *body, const char *start, const char *end,
+                         FILE *out, Err *err)
 {
-    const char *mark = memmem(start, end - start, MARK, sizeof MARK - 1);
-    if (!mark)
+    const char *parts = memmem(start, end - start, PARTS, sizeof PARTS - 1);
+    const char *mark = memmem(start, end - start, RUN, sizeof RUN - 1);
+    if (!parts || !mark) {
+        json_decref(run);
         return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
-    fwrite(start, 1, mark - start, out); /* a failed write is seen on closing */
-    fputs("<script type=\"application/json\" id=\"run\">", out);
-    write_json(report_json(r), out);
+    }
+    fwrite(start, 1, (body ? parts : mark) - start, out); /* a failed write is seen on closing */
+    fprintf(out, "%s<script type=\"application/json\" id=\"run\">", body ? body : "");
+    write_json(run, out);
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
-    TRY(export_designs(out, r->run, EXPORT_PAGE, r->n_shown, r->shown, err));
+    if (rows)
+        TRY(export_designs(out, rows->run, EXPORT_PAGE, rows->n_shown, rows->shown, err));
     fputs("</script>\n", out);
-    mark += sizeof MARK - 1;
+    mark += sizeof RUN - 1;
     fwrite(mark, 1, end - mark, out);
     return STATUS_OK;
+}
+
+Status page_write(FILE *out, json_t *run, const Report *rows, const char *body, Err *err)
+{
+    return write_page(run, rows, body, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out, err);
 }
 
 static Status write_whole(const Report *r, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    const Status status =
-        write_page(r, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
-    return output_end(&o, status, err);
+    return output_end(&o, page_write(o.stream, report_json(r), r, NULL, err), err);
+}
+
+/* The report with the designs that a page shows, which become a page or pictures at path. */
+static Status with_shown(Report r, Status (*make)(const Report *, const char *, Err *), const char *path, Err *err)
+{
+    TRY_ROOM(r.shown, r.run->n_front, "designs", err);
+    r.n_shown = thin_front(r.run, REPORT_DESIGNS_MAX, (size_t[]){r.knee, r.chosen}, r.shown);
+    const Status status = make(&r, path, err);
+    free(r.shown);
+    return status;
 }
 
 Status report_page(const Report *r, const char *path, Err *err)
 {
     Report whole = *r;
-    TRY_ROOM(whole.shown, r->run->n_front, "designs", err);
-    whole.n_shown = thin_front(r->run, REPORT_DESIGNS_MAX, (size_t[]){r->knee, r->chosen}, whole.shown);
     Status status = importance_of(r->run, &whole.importance, err);
     if (status == STATUS_OK)
-        status = write_whole(&whole, path, err);
+        status = with_shown(whole, write_whole, path, err);
     importance_free(&whole.importance);
-    free(whole.shown);
     return status;
+}
+
+Status report_pictures(const Report *r, const char *folder, Err *err)
+{
+    return with_shown(*r, pictures_of, folder, err);
 }
 
 Status report_live(const Run *run, char **text, Err *err)
@@ -124,7 +145,8 @@ Status report_live(const Run *run, char **text, Err *err)
     r.knee = r.chosen = run_knee(run);
     r.n_shown = run->n_front;
     r.shown = run->front;
-    Status status = write_page(&r, _binary_build_web_live_html_start, _binary_build_web_live_html_end, out, err);
+    Status status = write_page(report_json(&r), &r, NULL, _binary_build_web_live_html_start,
+                               _binary_build_web_live_html_end, out, err);
     if (text_close(out) && status == STATUS_OK)
         status = fail_memory(err, 1, "a page");
     if (status != STATUS_OK) {

@@ -2,7 +2,7 @@
  *
  *   page       web/page.html with style, charts and script inside; the run goes in as JSON and as rows of numbers. No
  *              network, no eval: the page's own policy allows nothing but these very scripts, by their hashes
- *   pictures   the same by gnuplot, SVG and PNG
+ *   pictures   its charts as SVG and PNG, drawn by Chromium (report/pictures.h)
  *
  * A run of another problem than the tower has no Detail, and its page and pictures no part on a chosen design.
  *

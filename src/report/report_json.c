@@ -181,6 +181,27 @@ static json_t *json_of_band(const Detail *d)
     return band;
 }
 
+/* Of the core beside the yield stress of S235, the lowest of EN 10025-2, and the bare wall's buckling stress. */
+static json_t *core_warnings(const SimResult *r)
+{
+    static const double S235_PA = 235e6;
+    const double stress = measure_value(r, MEASURE_CORE_STRESS), buckling = measure_value(r, MEASURE_CORE_BUCKLING);
+    const double shear = r->forces_known ? r->forces.core_shear_stress_pa : NAN;
+    json_t *list = json_array();
+    if (stress > S235_PA)
+        json_array_append_new(
+            list,
+            json_sprintf("Stress of the core %.3g MPa: beyond the yield stress of S235, 235 MPa.", 1e-6 * stress));
+    if (shear > S235_PA / sqrt(3))
+        json_array_append_new(
+            list, json_sprintf("Shear stress of the core %.3g MPa: S235 yields in shear at 136 MPa.", 1e-6 * shear));
+    if (buckling > 1)
+        json_array_append_new(list, json_sprintf("Stress of the core is %.3g times what buckles its bare wall: it "
+                                                 "needs stiffeners, whose mass is not in this model.",
+                                                 buckling));
+    return list;
+}
+
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = d->n_floors;
@@ -193,12 +214,12 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     }
     json_t *o = json_of(
         "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-        "pga_g=%g scale=%g stretch=%g loads=%p baselines=%p history_with_core=%p "
+        "pga_g=%g scale=%g stretch=%g core_warnings=%p loads=%p baselines=%p history_with_core=%p "
         "history_no_core=%p forces=%p elsewhere=%p",
         d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
         json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
-        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_loads(d),
-        json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
+        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, core_warnings(&d->result[SCENE_IMPACT]),
+        json_of_loads(d), json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
         json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
     json_t *error = json_array(), *standard = json_array();
     for (int k = 0; k < order->n_obj; k++) {

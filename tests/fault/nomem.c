@@ -91,7 +91,7 @@ static int counted_main(int argc, char **argv, char **environment)
 {
     const char *at = getenv("NOMEM_AT");
     refuse_at = at ? strtol(at, NULL, 10) : 0;
-    unsetenv("LD_PRELOAD"); /* gnuplot and workers are served */
+    unsetenv("LD_PRELOAD"); /* Chromium and workers are served */
     dl_iterate_phdr(note_library, NULL);
     armed = 1;
     const int code = real_main(argc, argv, environment);

@@ -3,7 +3,6 @@ import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-
 const KEY_CODES = { Tab: 9, Enter: 13, Escape: 27, ArrowLeft: 37, ArrowRight: 39, Delete: 46 };
 
 // Runs { "what is expected": async function }; how many failed.
@@ -21,7 +20,6 @@ export async function tryAll(trials) {
   }
   return failed;
 }
-
 export async function openBrowser({ program = "chromium", width = 1360, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "imtet-chromium-"));
   const child = spawn(program, ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-gpu", "--no-first-run",

@@ -6,7 +6,6 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { openBrowser, tryAll } from "./browser.mjs";
-
 const downloads = mkdtempSync(join(tmpdir(), "imtet-downloads-"));
 const doctored = join(downloads, "doctored.html");
 export const browser = await openBrowser();
@@ -14,7 +13,6 @@ const page = await browser.openPage();
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // ---- what the file says, read without the page's own script
-
 let file, html, run, results, lines, names, rows, all;
 function read(path) {
   file = resolve(path);
@@ -29,7 +27,6 @@ function read(path) {
 }
 
 // ---- hands
-
 async function open(hash = "", path = file) {
   await page.call("Page.navigate", { url: "about:blank" });
   await page.call("Page.navigate", { url: pathToFileURL(path).href + hash });
@@ -65,7 +62,6 @@ async function type(label, text) {
 
 const headingOf = (name) => `.heading[data-name="${name}"]`;
 const shownAxes = () => page.evaluate("Array.from(document.querySelectorAll('g.axis')).sort((a, b) => a.getBoundingClientRect().x - b.getBoundingClientRect().x).map((g) => g.querySelector('.heading').dataset.name)");
-
 // Upwards positive: from the first tick of an axis to its last.
 const tickPlace = (name) => `(() => { const t = document.querySelector('${headingOf(name)}').parentElement.querySelectorAll('.tick'); const y = (e) => e.getBoundingClientRect().y; return y(t[0]) - y(t[t.length - 1]); })()`;
 
@@ -92,9 +88,7 @@ const counted = async () => +(await page.evaluate("document.getElementById('coun
 const tableIds = () => page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr:not([hidden])'), (tr) => +tr.dataset.id)");
 const errors = () => (lines[0].split(",").length > names.length ? run.schema.objectives.map((c) => `err_${c.name}`) : []);
 const csvOf = (chosen) => [[...names, ...errors()].join(","), ...chosen.map((i) => lines[i])].join("\n") + "\n";
-
 // ---- what is tried
-
 const tried = {
   async "a drag along an axis selects the designs of that range, in the table and in the file"() {
     const box = await boxOf("g.axis .brush .overlay", 0);
@@ -475,7 +469,6 @@ const tried = {
 };
 
 // ---- times
-
 const listenForMoves = `(() => {
   window.times = [];
   window.addEventListener("mousemove", (e) => requestAnimationFrame(() => setTimeout(() => window.times.push(performance.now() - e.timeStamp))), true);

@@ -4,7 +4,6 @@
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { openBrowser, picture } from "./browser.mjs";
-
 const [report, out, selector = "body", height = "100000", ...fields] = process.argv.slice(2);
 const browser = await openBrowser();
 try {

@@ -7,15 +7,13 @@ import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { picture, tryAll } from "../report/browser.mjs";
-
 const [imtet, folder, given, pictures] = process.argv.slice(2);
 const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
 if (!(isBench || isPictures ? given : folder) || !existsSync(root)) {
   console.error(`usage: drive.mjs IMTET FOLDER [REPORT.html ...] | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
   process.exit(64);
 }
-const pause = (ms) => new Promise((done) => setTimeout(done, ms));
-const children = [];
+const pause = (ms) => new Promise((done) => setTimeout(done, ms)), children = [];
 
 function start(...words) {
   const child = spawn(imtet, words, { stdio: ["ignore", "pipe", "ignore"] });
@@ -27,10 +25,7 @@ function start(...words) {
 async function serve() {
   const child = start("serve", root);
   let said = "";
-  for await (const piece of child.stdout) {
-    said += piece;
-    if (said.includes("Ctrl-C")) break;
-  }
+  for await (const piece of child.stdout) if ((said += piece).includes("Ctrl-C")) break;
   return said.match(/http:\S+/)[0];
 }
 
@@ -41,7 +36,6 @@ const url = await serve(), origin = new URL(url).origin;
 const runs = async () => (await fetch(`${url}runs`)).json();
 
 // ---- hands
-
 async function open(name) {
   const at = (await runs()).find((r) => r.name === name).at;
   await page.call("Page.navigate", { url: `${url}${at}/` });
@@ -92,8 +86,7 @@ async function takePictures() {
   await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if");
   await click("#kept li button");
   await click("#designs tbody td button", 1);
-  await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
-  await until("document.querySelectorAll('#drawer svg').length >= 4");
+  await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled && document.querySelectorAll('#drawer svg').length >= 4");
   await picture(page, join(pictures, "serve-design.jpg"));
   await click("#drawer .bar + .bar button", 1);
   await until("document.querySelectorAll('#compared tbody tr').length === 2");
@@ -107,7 +100,6 @@ async function takePictures() {
 }
 
 // ---- what is tried
-
 const tried = {
   async "a page shows a generation while its run goes on, later ones in their order, and the last"() {
     const live = start("optimize", join(root, "a", "settings.ini"), "--max-evals", "100", "--out", join(root, "live"));
@@ -361,10 +353,7 @@ try {
     await page.call("Page.navigate", { url });
     await until("document.getElementById('what-if')?.dataset.turn");
     await until("document.querySelector('#summary .chart svg')"); // the knee in detail is done
-    await benchSlider("a thickness", 3, 60);
-    await benchSlider("a gap", 10, 60);
-    await benchSlider("the peak of the motion", 0, 40);
-    await benchSlider("its stretch", 1, 40);
+    for (const [what, nth, moves] of [["a thickness", 3, 60], ["a gap", 10, 60], ["the peak of the motion", 0, 40], ["its stretch", 1, 40]]) await benchSlider(what, nth, moves);
   } else if (isPictures) await takePictures();
   else failed += await tryAll(tried);
 } finally {

@@ -1,12 +1,11 @@
 "use strict";
 // The run as the page holds it: columns of numbers, and what each is called and measured in.
-
-const run = JSON.parse(document.getElementById("run").textContent);
-const lines = document.getElementById("rows").textContent.trim().split("\n").filter((line) => line);
+const byId = (id) => document.getElementById(id), finite = Number.isFinite, root = document.documentElement;
+const run = JSON.parse(byId("run").textContent);
+const lines = byId("rows").textContent.trim().split("\n").filter((line) => line);
 const n = lines.length;
 
 // ---- columns: titles and units of objectives come with the run, those of the tower's variables follow from their names
-
 const SINGLE = {
   t_base_m: ["t base", "mm", 1e3, "thickness of the core, first storey"],
   t_top_m: ["t top", "mm", 1e3, "thickness of the core, last storey"],
@@ -31,10 +30,7 @@ function variableWords(name) {
   return [title, unit, factor, `${what}${side ? ` ${side}` : ""} at ${where}${side ? `: how far the floor may go to the ${side}` : ""}`];
 }
 
-function columnOf(name, place, sense, [title, unit, factor, what]) {
-  return { name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) };
-}
-
+const columnOf = (name, place, sense, [title, unit, factor, what]) => ({ name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) });
 const nVar = run.schema.variables.length;
 const variables = run.schema.variables.map((name, j) => ({ ...columnOf(name, 1 + j, 0, variableWords(name)), words: run.schema.words[j] })); // words of a choice
 const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
@@ -55,7 +51,6 @@ for (let i = 0; i < n; i++) {
 }
 const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
 const beyondLaw = new Set(run.beyond_law);
-
 // Columns that are numbered, as the gaps are, share one scale.
 const families = [...charts.group(columns, (c) => c.name.replace(/\d+/g, "#")).values()];
 for (const family of families) for (const c of family) c.family = family;
@@ -73,13 +68,12 @@ function atBound(c, v) {
 }
 
 // ---- words and numbers
-
 // A tick of a column's axis.
 const tickText = (c) => (v) => (c.words ? (c.words[v] ?? "") : show(v));
 
 // Three or four digits, never an exponent where a person would not write one.
 function show(v) {
-  if (v === null || v === undefined || !Number.isFinite(v)) return "\u2013";
+  if (v === null || v === undefined || !finite(v)) return "\u2013";
   const size = Math.abs(v);
   if (v === 0) return "0";
   if (size >= 1e6 || size < 1e-6) return v.toExponential(2).replace(/e\+?/, "\u00b710^");
@@ -87,17 +81,15 @@ function show(v) {
 }
 
 // The same with all its digits, for columns.
-function digits(v) {
-  return v === null || !Number.isFinite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
-}
-
+const digits = (v) => v === null || !finite(v) || v === 0 || Math.abs(v) >= 1000 || Math.abs(v) < 1e-6 ? show(v) : v.toPrecision(3);
 // A value of design i with its likely error, where one is known.
-const known = (c, i) => (c.words ? c.words[c.value[i]] : Number.isFinite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
+const known = (c, i) => (c.words ? c.words[c.value[i]] : finite(c.error?.[i]) ? figureText(c.value[i], c.error[i]) : digits(c.value[i]));
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
 const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");
 
-function element(tag, attributes = {}, ...children) {
+function element(tag, first, ...rest) {
+  const [attributes, ...children] = first?.constructor === Object ? [first, ...rest] : [{}, first, ...rest];
   const e = document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) e.addEventListener(key.slice(2), value);
@@ -109,15 +101,16 @@ function element(tag, attributes = {}, ...children) {
   return e;
 }
 
-const heading = (c) => [c.title, ...(c.unit ? [element("small", {}, c.unit)] : [])];
+const div = (name, ...inside) => element("div", { class: name }, ...inside);
+const note = (...words) => element("p", { class: "note" }, ...words), warn = (...words) => element("p", { class: "warn" }, ...words);
+const heading = (c) => [c.title, ...(c.unit ? [element("small", c.unit)] : [])];
 
 // ---- colours: Okabe and Ito's, and viridis without its palest end
-
 const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e69f00", SKY = "#56b4e9", GREEN = "#009e73",
   PURPLE = "#cc79a7", GREY = "#9aa4af", SHADES = 32, PALETTE = [BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, OLIVE, GREY];
 
 // Light or dark, as the system has it or the address says; of the style sheet what canvases draw with.
-const root = document.documentElement, ownTheme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+const ownTheme = !run.paper && matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 let INK, PAPER, PALE, AXIS, RAMP;
 const ramp = (t) => charts.interpolateViridis(root.dataset.theme === "dark" ? 0.15 + 0.85 * t : 0.92 * t);
 function takeTheme(name) {
@@ -129,13 +122,12 @@ function takeTheme(name) {
 takeTheme(ownTheme);
 
 // ---- the chosen design and what it is compared with
-
 const SCENES = {
-  with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
-  no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [8, 4] },
-  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3], note: "Rigidly connected: floors and core move together without a gap" },
-  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4], note: "Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof" },
-  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", path: charts.symbolStar, dash: [2, 4], note: "Viscous links: a dashpot between every floor and the core" },
+  with_core: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", dash: [] },
+  no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", dash: [8, 4] },
+  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", dash: [3, 3], note: "Rigidly connected: floors and core move together without a gap" },
+  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", dash: [12, 4], note: "Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof" },
+  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", dash: [2, 4], note: "Viscous links: a dashpot between every floor and the core" },
 };
 
 // Beside the designs in every picture of the front: a value per column, in the units of the eye, NaN where there is none.
@@ -149,13 +141,11 @@ const shownOverlays = () => overlays.filter((o) => o.isShown);
 
 // Ends of a column's scale: of the designs that are kept (c.low, c.high; of all numbered columns alike together), and of what
 // is shown beside them.
-function extent(c, beside = shownOverlays()) {
-  return charts.extent([...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c))]);
-}
+const extent = (c, beside = shownOverlays()) => charts.extent([...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c))]);
 
 // Values of a column that as many designs lie between, from one end of its scale to the other.
 function percentiles(c, low, high) {
-  const sorted = Float64Array.from(c.value).filter(Number.isFinite).sort(), inner = Array.from({ length: 19 }, (_, k) => sorted[Math.round(((k + 1) * (sorted.length - 1)) / 20)]);
+  const sorted = Float64Array.from(c.value).filter(finite).sort(), inner = Array.from({ length: 19 }, (_, k) => sorted[Math.round(((k + 1) * (sorted.length - 1)) / 20)]);
   return [...new Set([low, ...inner.filter((v) => v > low && v < high), high])];
 }
 

@@ -1,5 +1,4 @@
 // What all charts by Observable Plot have in common.
-
 // What is as wide as its place: drawn when the page is, when its part is opened and when the window has another width.
 let drawings = []; // { place, draw (width), width: as last drawn }
 
@@ -30,35 +29,34 @@ function refill(part, fill) {
 }
 
 function drawn(host, plot) {
-  const place = host.appendChild(element("div", { class: "chart" }));
+  const place = host.appendChild(div("chart"));
   return addDrawing(place, (width) => place.replaceChildren(plot(Math.max(240, width))));
 }
 
 function figure(host, title, caption, plot, ...above) {
-  const f = host.appendChild(element("figure", {}, element("h3", {}, title), ...above));
+  const f = host.appendChild(element("figure", element("h3", title), ...above));
   f.redraw = drawn(f, plot);
-  if (caption) f.append(element("figcaption", {}, caption));
+  if (caption) f.append(element("figcaption", caption));
   return f;
 }
 
 // Axis titles in the middle of their axes; the letters' size is in the style sheet.
 function chart(options) {
   const titled = (axis) => axis && { labelAnchor: "center", labelArrow: "none", ...axis };
-  return charts.plot({ marginLeft: 58, marginBottom: 44, marginTop: 12, ...options, x: titled(options.x), y: titled(options.y) });
+  return charts.plot({ marginLeft: 58, marginBottom: 44, marginTop: 12, color: { type: "identity" }, symbol: { type: "identity" }, ...options, x: titled(options.x), y: titled(options.y) });
 }
 
-function legend(entries) {
-  return element("div", { class: "legend" }, ...entries.map(([label, colour, mark]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
-}
+const legend = (entries) => div("legend", ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
 const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]));
+const gridOf = (host, columns) => host.appendChild(div(`grid${columns}`));
 
 // Heads: words or columns; rows: of line().
-const table = (id, heads, rows) => element("div", { class: "scroll" }, element("table", { id },
-  element("thead", {}, element("tr", {}, ...heads.map((h) => (typeof h === "string" ? element("th", { scope: "col" }, h) : element("th", { scope: "col", title: h.what }, ...heading(h)))))),
-  element("tbody", {}, ...rows)));
+const table = (id, heads, rows) => div("scroll", element("table", { id },
+  element("thead", element("tr", ...heads.map((h) => (typeof h === "string" ? element("th", { scope: "col" }, h) : element("th", { scope: "col", title: h.what }, ...heading(h)))))),
+  element("tbody", ...rows)));
 
 // Cells: words, or a list of what is in one.
-const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", {}, ...[inside].flat())));
+const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", ...[inside].flat())));
 
 // What holds rows anew, the focus on the button of the same design.
 function refillRows(host, ...inside) {
@@ -69,8 +67,8 @@ function refillRows(host, ...inside) {
 
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
-  const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));
-  part.addEventListener("toggle", () => part.open && document.documentElement.dataset.ready && drawAll());
+  const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", element("h3", title))));
+  part.ontoggle = () => part.open && root.dataset.ready && drawAll();
   return part;
 }
 // Everything is drawn again in its colours.
@@ -87,14 +85,14 @@ window.addEventListener("beforeprint", () => {
   for (const part of openedForPaper) part.open = true;
   showTheme("light");
 });
-window.addEventListener("afterprint", () => {
+window.onafterprint = () => {
   for (const part of openedForPaper.splice(0)) part.open = false;
   showTheme(state.theme);
-});
+};
 
 // Bars over the height: { place: floor or zone, v, title, colour, from, to: where it is not the middle of its place }; marks: behind and over them.
 const barChart = (width, height, rows, places, label, options = {}, marks = []) => chart({
-  width, height, ariaLabel: label, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
+  width, height, ariaLabel: label, ...options,
   x: { label, grid: true, zero: true, nice: true, tickFormat: (v) => show(Math.abs(v)), ...options.x }, y: { ...floorAxis(places), ...options.y },
   marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.from ?? r.place - 0.38, y2: (r) => r.to ?? r.place + 0.38, fill: "colour", title: "title", fx: options.fx && "type" }), ...marks, charts.ruleX([0])],
 });
@@ -104,8 +102,7 @@ const barChart = (width, height, rows, places, label, options = {}, marks = []) 
 function heightChart(width, height, label, lines, floor = "floor", band = null) {
   const rows = lines.flatMap(({ values, ...one }) => values.map((v, j) => ({ ...one, v, floor: j + 1 })));
   return chart({
-    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: Math.max(2, Math.min(4, Math.floor((width - 72) / 75))) }, y: { ...floorAxis(lines[0].values.length), label: floor },
-    color: { type: "identity" }, symbol: { type: "identity" },
+    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: clamp(Math.floor((width - 72) / 75), [2, 4]) }, y: { ...floorAxis(lines[0].values.length), label: floor },
     marks: [
       band ? charts.rectX(band[0].map((low, j) => ({ low, high: band[1][j], floor: j + 1 })), { x1: "low", x2: "high", y1: (r) => r.floor - 0.5, y2: (r) => r.floor + 0.5, fill: lines[0].colour, fillOpacity: 0.18, title: (r) => `all records, ${floor} ${r.floor}: ${show(r.low)} to ${show(r.high)}` }) : null,
       ...lines.map(({ name, dash, thick = 1.8 }) => charts.line(rows.filter((r) => r.name === name), { x: "v", y: "floor", stroke: "colour", strokeWidth: thick, strokeDasharray: dash })),
@@ -117,7 +114,7 @@ function heightChart(width, height, label, lines, floor = "floor", band = null) 
 
 // The hypervolume over the number of designs: rows { x, y [%], colour }; e: half of a band.
 const growthChart = (width, height, rows) => chart({
-  width, height, ariaLabel: "Hypervolume over the number of designs", color: { type: "identity" },
+  width, height, ariaLabel: "Hypervolume over the number of designs",
   x: { label: "designs simulated", tickFormat: (v) => (Number.isInteger(v) ? count(v) : "") }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
   marks: [
     rows.some((r) => r.e) ? charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, z: "colour", fill: "colour", fillOpacity: 0.2 }) : null,

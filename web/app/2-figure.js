@@ -1,8 +1,5 @@
 // A number with the digits that are known of it: "13 ± 2", by the rule of src/base/figure.h.
-
-function firstPlace(x, many) {
-  return +Math.abs(x).toExponential(many - 1).split("e")[1];
-}
+const firstPlace = (x, many) => +Math.abs(x).toExponential(many - 1).split("e")[1];
 
 // x rounded to 10^place, never -0.
 function decimal(x, place) {
@@ -20,8 +17,8 @@ function figureParts(v, uncertain, word, place) {
 const figureDigits = (v, many) => figureParts(v, 0, "", v === 0 ? 0 : firstPlace(v, many) - many + 1);
 
 function figureText(v, error = NaN, sd = NaN) {
-  if (v === null || !Number.isFinite(v)) return "-";
-  const isSd = Number.isFinite(sd) && !(error >= sd), uncertain = isSd ? sd : error, size = Math.abs(v);
+  if (v === null || !finite(v)) return "-";
+  const isSd = finite(sd) && !(error >= sd), uncertain = isSd ? sd : error, size = Math.abs(v);
   if (!uncertain) return figureDigits(v, uncertain === 0 ? 4 : 3);
   const place = firstPlace(uncertain, 1);
   if (v !== 0 && uncertain < 0.5 * 10 ** (firstPlace(v, 4) - 3)) return figureDigits(v, 4);

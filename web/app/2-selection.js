@@ -1,5 +1,4 @@
 // Which designs are looked at and how: one state for all pictures, in the page's address too; one frame for every change.
-
 const state = {
   axes: [...results], // of the parallel coordinates, from left to right
   inverted: new Set(), // columns with their better, or larger, side up
@@ -44,7 +43,7 @@ function rest() {
   clearTimeout(resting);
   resting = undefined;
   redrawAll();
-  delete document.documentElement.dataset.busy;
+  delete root.dataset.busy;
 }
 window.addEventListener("beforeprint", rest);
 
@@ -76,7 +75,7 @@ let waiting = false;
 function selectionChanged() {
   if (waiting) return;
   waiting = true;
-  document.documentElement.dataset.busy = "yes";
+  root.dataset.busy = "yes";
   requestAnimationFrame(() => {
     waiting = false;
     findSelected();
@@ -141,7 +140,7 @@ function byKeys(layers) {
     else hover(rows[clamp(to, [0, rows.length - 1])], { clientX: box.left, clientY: box.bottom }, box);
     event.preventDefault();
   });
-  layers.addEventListener("blur", () => hover(undefined));
+  layers.onblur = () => hover(undefined);
 }
 
 // The pointer over a picture: rowAt (x, y, event) is the design there.
@@ -152,8 +151,11 @@ function pointed(place, rowAt, isBelow = false) {
     if (event.type === "click" && state.hovered !== undefined) mark(state.hovered);
   };
   for (const type of ["mousemove", "click"]) place.addEventListener(type, look); // a finger does not move before
-  place.addEventListener("pointerleave", () => hover(undefined));
+  place.onpointerleave = () => hover(undefined);
 }
+
+// An element of an SVG.
+const put = (parent, name, attributes = {}) => Object.entries(attributes).reduce((g, [key, v]) => g.attr(key, v), parent.append(name));
 
 // Three canvases below an SVG: all designs, those that are selected, and what stands out of them.
 function layered(host, label, rowAt, isBelow) {
@@ -170,14 +172,13 @@ function layered(host, label, rowAt, isBelow) {
 }
 
 // ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
-
 const byName = (name) => columns.find((c) => c.name === name);
-const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (Number.isFinite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
+const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (finite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
 const pairsText = (pairs) => Array.from(pairs, ([c, v]) => `${encodeURIComponent(c.name)}:${v}`).join(",");
 const partsFrom = (text = "") => text.split(",").map((part) => part.split(":")).map(([name, ...words]) => [columns.find((c) => [c.name, encodeURIComponent(c.name)].includes(name)), ...words]).filter(([c]) => c);
-const endFrom = (word, open) => (word && Number.isFinite(+word) ? +word : open);
+const endFrom = (word, open) => (word && finite(+word) ? +word : open);
 const rangesFrom = (text) => new Map(partsFrom(text).map(([c, a, b]) => [c, [endFrom(a, -Infinity), endFrom(b, Infinity)]]));
-const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && Number.isFinite(+v)).map(([c, v]) => [c, +v]));
+const pairsFrom = (text) => new Map(partsFrom(text).filter(([c, v]) => objectives.includes(c) && finite(+v)).map(([c, v]) => [c, +v]));
 
 function addressOf() {
   const names = (list) => list.map((c) => c.name).join(",");
@@ -218,9 +219,7 @@ function takeAddress() {
   showTheme(state.theme);
   layoutChanged();
 }
-document.addEventListener("keydown", (event) => {
-  if ((event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input[type=text], input[type=number], textarea")) undo();
-});
+document.addEventListener("keydown", (event) => (event.ctrlKey || event.metaKey) && event.key === "z" && !event.target.closest("input[type=text], input[type=number], textarea") && undo());
 
 function readAddress() {
   const given = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
@@ -242,14 +241,13 @@ function readAddress() {
 }
 
 // ---- colours and canvases
-
 // Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.
 let shade = new Uint8Array(n), byShade = [], shadeColours = RAMP;
 function findShades() {
   const { value, words } = state.colour, [low, high] = extent(state.colour, []);
   const scale = high > low ? (SHADES - 1) / (high - low) : 0;
   shadeColours = words ? PALETTE : RAMP;
-  for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : Math.max(0, Math.min(SHADES - 1, Math.round((value[i] - low) * scale)));
+  for (let i = 0; i < n; i++) shade[i] = words ? value[i] % PALETTE.length : clamp(Math.round((value[i] - low) * scale), [0, SHADES - 1]);
   byShade = charts.range(n).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
 }
 views.layout.push(findShades);
@@ -268,7 +266,6 @@ function prepare(canvas, w, h) {
 
 // A range may be open; its ends on a picture are not.
 const clamp = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
-
 // The design under the pointer, in words, beside it.
 const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, role: "status" }));
 function showTip(row, event, at) {
@@ -276,7 +273,7 @@ function showTip(row, event, at) {
   if (tip.hidden) return;
   if (+tip.dataset.row !== row) {
     tip.dataset.row = row;
-    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
+    tip.replaceChildren(element("strong", designName(row)), element("dl", ...results.flatMap((c) => [element("dt", c.title), element("dd", known(c, row) + (c.unit ? `\u202f${c.unit}` : ""))])));
   }
   tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
   tip.style.top = `${Math.max(4, Math.min(at ? at.bottom + 4 : event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;

@@ -1,6 +1,5 @@
 // Parallel coordinates: a line per design, an axis per column; a brush on an axis is a range of its column. A title is
 // dragged: sideways to another place, down to turn the axis over, up to take it away; the same by keys and by a menu.
-
 const SEGMENTS_PER_FRAME = 4000;
 const INVERT_PX = 45, HIDE_PX = -32; // of a dragged title
 const NEAR_PX = 8; // of a line under the pointer
@@ -32,7 +31,7 @@ function actOnAxis(c, act) {
 }
 
 function openAxisMenu(c, box) {
-  axisMenu.replaceChildren(...axisActions(c).map(([words, can, act, key]) => element("button", { type: "button", role: "menuitem", disabled: !can, onclick: () => actOnAxis(c, act) }, words, element("kbd", {}, key.replace("Arrow", "").replace("Delete", "Del")))));
+  axisMenu.replaceChildren(...axisActions(c).map(([words, can, act, key]) => element("button", { type: "button", role: "menuitem", disabled: !can, onclick: () => actOnAxis(c, act) }, words, element("kbd", key.replace("Arrow", "").replace("Delete", "Del")))));
   axisMenu.hidden = false;
   axisMenu.style.left = `${clamp(box.left, [4, window.innerWidth - axisMenu.offsetWidth - 4])}px`;
   axisMenu.style.top = `${box.bottom + 4}px`;
@@ -45,9 +44,7 @@ function openAxisMenu(c, box) {
     if (to !== undefined) event.preventDefault();
   };
 }
-document.addEventListener("pointerdown", (event) => {
-  if (!axisMenu.contains(event.target)) axisMenu.hidden = true;
-});
+document.addEventListener("pointerdown", (event) => axisMenu.contains(event.target) || (axisMenu.hidden = true));
 window.addEventListener("scroll", () => (axisMenu.hidden = true), { passive: true });
 
 function parallelCoordinates(host) {
@@ -102,13 +99,13 @@ function parallelCoordinates(host) {
       pen.setLineDash(o.dash);
       pen.beginPath();
       at.forEach((y, k) => {
-        if (k && Number.isFinite(at[k - 1])) pen.lineTo(axes[k].at, y);
+        if (k && finite(at[k - 1])) pen.lineTo(axes[k].at, y);
         else pen.moveTo(axes[k].at, y);
       });
       pen.stroke();
     });
     pen.fillStyle = pen.strokeStyle = o.colour;
-    at.forEach((y, k) => Number.isFinite(y) && drawSymbol(pen, o, axes[k].at, y, 55));
+    at.forEach((y, k) => finite(y) && drawSymbol(pen, o, axes[k].at, y, 55));
   }
 
   function drawOver() {
@@ -130,7 +127,6 @@ function parallelCoordinates(host) {
   }
 
   // ---- the pointer
-
   function rowAt(px, py) {
     const k = axes.findIndex((axis, i) => i + 1 < axes.length && px >= axis.at && px <= axes[i + 1].at);
     if (k < 0) return undefined;
@@ -144,7 +140,6 @@ function parallelCoordinates(host) {
   }
 
   // ---- axes
-
   function brushed({ sourceEvent, selection }, axis) {
     if (!sourceEvent) return; // moved by us
     const range = selection ? selection.map(axis.y.invert).sort((a, b) => a - b) : null;
@@ -162,13 +157,13 @@ function parallelCoordinates(host) {
 
   function headAxis(group, axis, room) {
     const { c } = axis, wide = Math.min(room, 2 * margin.left), rows = wrapped(c.title, Math.max(4, wide / 7.5), 3); // in as many lines as its place needs
-    const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
-      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu`);
-    g.append("rect").attr("x", -wide / 2 + 2).attr("y", 0).attr("width", wide - 4).attr("height", margin.top - 2);
-    const text = g.append("text").attr("class", "title").attr("text-anchor", "middle");
-    rows.forEach((row, k) => text.append("tspan").attr("x", 0).attr("y", 39 - 14 * (rows.length - 1 - k)).text(row));
-    if (c.unit) g.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("y", 53).text(c.unit);
-    g.append("title").text(`${c.what}. Drag sideways to move, down to turn over, up to hide; click for more.`);
+    const g = put(group, "g", { class: "heading", tabindex: 0, role: "button", "aria-haspopup": "menu", "data-name": c.name,
+      "aria-label": "Axis " + titleUnit(c) + ": arrow keys move it, i turns it over, l makes it logarithmic, p spreads it by percentiles, c colours by it, Delete hides it, Enter opens its menu" });
+    put(g, "rect", { x: -wide / 2 + 2, y: 0, width: wide - 4, height: margin.top - 2 });
+    const text = put(g, "text", { class: "title" });
+    rows.forEach((row, k) => put(text, "tspan", { x: 0, y: 39 - 14 * (rows.length - 1 - k) }).text(row));
+    if (c.unit) put(g, "text", { class: "unit", y: 53 }).text(c.unit);
+    g.append("title").text(c.what + ". Drag sideways to move, down to turn over, up to hide; click for more.");
     g.call(dragging(axis));
     g.on("keydown", (event) => {
       const action = axisActions(c).find(([, can, , key]) => can && (key === event.key || key === event.key.toLowerCase()));
@@ -217,7 +212,7 @@ function parallelCoordinates(host) {
       axis.brush = charts.brushY().extent([[-10, margin.top - 2], [10, height - margin.bottom + 4]])
         .on("brush end", (event) => brushed(event, axis));
       group.append("g").call(charts.axisLeft(axis.y).tickValues(ticksOf(axis.y, 6)).tickSize(4).tickFormat(hasNumbers ? tickText(axis.c) : () => ""));
-      group.append("g").attr("class", "brush").call(axis.brush);
+      put(group, "g", { class: "brush" }).call(axis.brush);
       headAxis(group, axis, room);
     });
   }
@@ -256,7 +251,7 @@ const drawSymbol = (pen, o, x, y, size) => {
   pen.save();
   pen.translate(x, y);
   pen.beginPath();
-  charts.symbol(o.path, size).context(pen)();
+  charts.symbol(charts[`symbol${capital(o.symbol)}`], size).context(pen)();
   pen.lineWidth = 1.4;
   pen.strokeStyle = PAPER;
   pen.stroke();

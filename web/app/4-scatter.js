@@ -1,6 +1,5 @@
 // Scatter plots: two columns against each other, chosen freely, and a matrix of all objectives with their rank correlations;
 // a brushed box is two ranges.
-
 // Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] }, `decorate`
 // (svg, width, panels) what else is on it, `follows` what of that follows the selection. Dots are put into the pixels.
 function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
@@ -41,10 +40,10 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
     for (const o of shownOverlays())
       for (const p of panels) {
         const at = [p.x(o.value.get(p.cx) ?? NaN), p.y(o.value.get(p.cy) ?? NaN)];
-        if (at.every(Number.isFinite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
+        if (at.every(finite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
       }
     for (const [row, colour, size] of [[state.marked, INK, 64], [state.hovered, ORANGE, 95]])
-      if (row !== undefined) for (const { dots } of panels) drawSymbol(pen, { path: charts.symbolCircle, colour }, dots[2 * row], dots[2 * row + 1], size);
+      if (row !== undefined) for (const { dots } of panels) drawSymbol(pen, { symbol: "circle", colour }, dots[2 * row], dots[2 * row + 1], size);
   }
 
   function drawFront() {
@@ -72,7 +71,6 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   }
 
   // ---- the pointer
-
   function rowAt(x, y) {
     const p = panels.find(({ left, top, w, h }) => x >= left && x <= left + w && y >= top && y <= top + h);
     let best, least = 64;
@@ -84,19 +82,18 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   }
 
   // ---- axes
-
   function drawAxes(group, p) {
-    const bottom = p.top + p.h, many = Math.max(2, Math.min(6, Math.floor(p.w / 60)));
-    group.append("rect").attr("class", "cell").attr("x", p.left).attr("y", p.top).attr("width", p.w).attr("height", p.h);
+    const bottom = p.top + p.h, many = clamp(Math.floor(p.w / 60), [2, 6]);
+    put(group, "rect", { class: "cell", x: p.left, y: p.top, width: p.w, height: p.h });
     if (p.hasY)
-      group.append("g").attr("transform", `translate(${p.left},0)`).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(tickText(p.cy))).call((g) => g.select(".domain").remove());
+      put(group, "g", { transform: `translate(${p.left},0)` }).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(tickText(p.cy))).call((g) => g.select(".domain").remove());
     if (!p.hasX) return;
     let end = -Infinity; // of the last number, that the next one does not run into it
     for (const v of ticksOf(p.x, many)) {
       const words = tickText(p.cx)(v), x = p.x(v), half = 3.6 * words.length;
       if (x - half < end + 6) continue;
       end = x + half;
-      group.append("text").attr("class", "number").attr("text-anchor", "middle").attr("x", x).attr("y", bottom + 15).text(words);
+      put(group, "text", { class: "number", x, y: bottom + 15 }).text(words);
     }
   }
 
@@ -110,7 +107,7 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
       const group = charts.select(this);
       drawAxes(group, p);
       p.brush = charts.brush().extent([[p.left, p.top], [p.left + p.w, p.top + p.h]]).on("brush end", (event) => brushed(event, p));
-      group.append("g").attr("class", "brush").call(p.brush);
+      put(group, "g", { class: "brush" }).call(p.brush);
     });
     putDots(pens[0], n, byShade, () => pixel(PALE));
   }
@@ -132,14 +129,13 @@ function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
 const pixel = (hex) => (0xff000000 | (parseInt(hex.slice(5, 7), 16) << 16) | (parseInt(hex.slice(3, 5), 16) << 8) | parseInt(hex.slice(1, 3), 16)) >>> 0;
 
 // ---- two columns of one's choice
-
 function columnSelect(id, label, key) {
   const select = element("select", { id, onchange: () => {
     state[key] = columns[select.selectedIndex];
     layoutChanged();
-  } }, ...columns.map((c) => element("option", {}, c.title)));
+  } }, ...columns.map((c) => element("option", c.title)));
   views.layout.push(() => (select.selectedIndex = columns.indexOf(state[key])));
-  return element("label", {}, `${label} `, select);
+  return element("label", `${label} `, select);
 }
 
 function pairPlot(host) {
@@ -148,13 +144,12 @@ function pairPlot(host) {
     const w = width - margin.left - margin.right, h = Math.min(320, 0.75 * w);
     return { height: h + margin.top + margin.bottom, panels: [{ cx: state.x, cy: state.y, left: margin.left, top: margin.top, w, h, hasX: true, hasY: true }] };
   }, (svg, width, [p]) => {
-    svg.append("text").attr("class", "title").attr("text-anchor", "middle").attr("x", p.left + p.w / 2).attr("y", p.top + p.h + 36).text(titleUnit(p.cx));
-    svg.append("text").attr("class", "title").attr("text-anchor", "middle").attr("transform", `translate(16,${p.top + p.h / 2}) rotate(-90)`).text(titleUnit(p.cy));
+    put(svg, "text", { class: "title", x: p.left + p.w / 2, y: p.top + p.h + 36 }).text(titleUnit(p.cx));
+    put(svg, "text", { class: "title", transform: `translate(16,${p.top + p.h / 2}) rotate(-90)` }).text(titleUnit(p.cy));
   });
 }
 
 // ---- all objectives: titles on the diagonal, dots below it, correlations above
-
 // Spearman's coefficient over the selected designs.
 function rankCorrelation(a, b) {
   const rows = byShade.filter((i) => state.selected[i]), [p, q] = [a, b].map((c) => charts.rank(rows, (i) => c.value[i])), mean = (rows.length - 1) / 2;
@@ -166,7 +161,7 @@ function scatterMatrix(host) {
   const margin = { top: 4, right: 4, bottom: 22, left: 52 }, gap = 6, m = objectives.length;
   const size = (width) => {
     const w = (width - margin.left - margin.right - gap * (m - 1)) / m;
-    return { w, h: Math.max(44, Math.min(0.66 * w, 150)) };
+    return { w, h: clamp(0.66 * w, [44, 150]) };
   };
   const at = ({ w, h }, row, col) => ({ left: margin.left + col * (w + gap), top: margin.top + row * (h + gap) });
   let cells = [];
@@ -181,21 +176,19 @@ function scatterMatrix(host) {
     const s = size(width);
     objectives.forEach((c, k) => {
       const { left, top } = at(s, k, k), rows = [...wrapped(c.title, Math.max(5, s.w / 7.6), s.h > 70 ? 3 : 2), ...(c.unit ? [`[${c.unit}]`] : [])];
-      const text = svg.append("text").attr("class", "title").attr("text-anchor", "middle");
-      rows.forEach((row, i) => text.append("tspan").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 15 * (i - (rows.length - 1) / 2) + 4).text(row));
+      rows.forEach((row, i) => put(svg, "text", { class: "title", x: left + s.w / 2, y: top + s.h / 2 + 15 * (i - (rows.length - 1) / 2) + 4 }).text(row));
     });
     cells = [];
     for (let row = 0; row < m; row++)
       for (let col = row + 1; col < m; col++) {
-        const { left, top } = at(s, row, col), g = svg.append("g").attr("class", "correlation");
-        const box = g.append("rect").attr("x", left).attr("y", top).attr("width", s.w).attr("height", s.h);
-        cells.push({ a: objectives[row], b: objectives[col], box, text: g.append("text").attr("text-anchor", "middle").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 5) });
+        const { left: x, top: y } = at(s, row, col), g = put(svg, "g", { class: "correlation" });
+        cells.push({ a: objectives[row], b: objectives[col], box: put(g, "rect", { x, y, width: s.w, height: s.h }), text: put(g, "text", { x: x + s.w / 2, y: y + s.h / 2 + 5 }) });
       }
   }, () => { // sign and strength: blue together, orange against each other
     for (const { a, b, box, text } of cells) {
       const r = rankCorrelation(a, b);
-      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", Number.isFinite(r) ? 0.55 * Math.abs(r) : 0);
-      text.text(Number.isFinite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
+      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", finite(r) ? 0.55 * Math.abs(r) : 0);
+      text.text(finite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
     }
   });
 }

@@ -1,10 +1,9 @@
 // The selected designs as a table and as a file.
-
 const PAGE = 12;
 
 // A cell that a spreadsheet would run as a formula is given an apostrophe; numbers stay as they are.
 function cell(text) {
-  const s = /^[\s\u2000-\u200f]*[=+\-@\uff1d\uff0b\uff0d\uff20]/.test(text) && !Number.isFinite(+text) ? `'${text}` : text;
+  const s = /^[\s\u2000-\u200f]*[=+\-@\uff1d\uff0b\uff0d\uff20]/.test(text) && !finite(+text) ? `'${text}` : text;
   return /[",\r\n]/.test(s) ? `"${s.replaceAll('"', '""')}"` : s;
 }
 
@@ -27,7 +26,7 @@ function designTable(host) {
   const head = element("tr"), body = element("tbody");
   const back = plainButton("Previous", () => draw(page - 1)), next = plainButton("Next", () => draw(page + 1)), where = element("span");
   host.append(element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Selected designs" },
-    element("table", { id: "designs" }, element("thead", {}, head), body)), element("div", { class: "pages" }, back, where, next));
+    element("table", { id: "designs" }, element("thead", head), body)), div("pages", back, where, next));
 
   head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what, class: !c.sense && "variable" },
     element("button", { type: "button", onclick: () => sortBy(c) }, c.title), ...heading(c).slice(1))));
@@ -38,7 +37,7 @@ function designTable(host) {
     const words = (isKnee ? " knee" : "") + (id === run.chosen && !isKnee ? " chosen" : "") + (isBeyond ? " \u26a0" : "") + (note ? " \u270e" : "");
     return element("tr", { "data-id": id, class: [i === state.marked && "marked", isKnee && "knee"].filter(Boolean).join(" "), onpointerenter: () => hover(i), onpointerleave: () => hover(undefined),
       title: [isBeyond && "maximum indentation beyond what the contact law is meant for", note].filter(Boolean).join("; ") },
-    element("td", {}, name, words), ...shown.map((c) => element("td", { class: !c.sense && "variable" }, known(c, i))));
+    element("td", name, words), ...shown.map((c) => element("td", { class: !c.sense && "variable" }, known(c, i))));
   }
 
   function sortBy(c) {

@@ -1,8 +1,6 @@
 // The variables of the front: a heat map of those that are numbered (gaps by floor), what matters for which objective, and
 // a few typical designs.
-
 // ---- heat map: a column of pixels per design, or per few of them
-
 const COLUMNS_MAX = 480;
 
 // The selected designs from the least to the largest value of the colour's column, in at most COLUMNS_MAX groups.
@@ -22,7 +20,7 @@ function heatFigure(host, family) {
     groups = groupsInOrder();
     const values = new Float64Array(groups.length * m);
     family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = words ? c.value[rows[rows.length >> 1]] : meanOf(c, rows))));
-    const marked = groups.findIndex((rows) => rows.includes(state.marked)), ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
+    const marked = groups.findIndex((rows) => rows.includes(state.marked)), ends = [0, 1].map((s) => (finite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
     return chart({
       width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
       x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
@@ -49,12 +47,11 @@ function heatFigure(host, family) {
     const rows = isInside && groups[Math.floor((groups.length * (event.clientX - image.left)) / image.width)];
     return rows ? rows[rows.length >> 1] : undefined;
   });
-  follow(f, () => resting === undefined && document.documentElement.dataset.ready && f.redraw()); // not while a range is dragged
+  follow(f, () => resting === undefined && root.dataset.ready && f.redraw()); // not while a range is dragged
   return f;
 }
 
 // ---- importance
-
 const KNOWN_R2 = 0.5; // below it the surrogate explains too little to say what matters
 
 function importanceFigure(host) {
@@ -66,8 +63,8 @@ function importanceFigure(host) {
   const largest = Math.max(...rows.filter((r) => r.known).map((r) => r.total), 0.1), isCrowded = variables.length > 26;
   const below = 16 + 7 * Math.max(...variables.map((c) => c.title.length));
   figure(host, "Which variables matter for which objective",
-    `Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of ${count(m.centres)} of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. ` +
-    `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
+    "Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of " + count(m.centres) +
+    " of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. " + `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
       width, height: 30 * objectives.length + below + 20, marginLeft: Math.min(230, 0.4 * width), marginBottom: below, ariaLabel: "Total Sobol indices of variables for objectives",
       x: { label: null, domain: variables.map((c) => c.title), tickRotate: -90, tickSize: 0 }, y: { label: null, domain: named, tickSize: 0 },
       color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
@@ -79,7 +76,6 @@ function importanceFigure(host) {
 }
 
 // ---- typical designs
-
 const TYPES_MAX = 4;
 const DISTINCT = 0.35; // of the standard deviation over the front: by that much a type differs in an objective
 
@@ -140,7 +136,7 @@ function typesPart(host) {
     const key = element("span", { class: "key", style: `background: ${PALETTE[k]}` }, String(k + 1));
     return line([[key, name], count(t.rows.length), String(ids[t.typical]), ...objectives.map((c) => digits(c.value[t.typical]))]);
   };
-  part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
+  part.append(note("Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
   const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));

@@ -1,5 +1,4 @@
 // Designs ranked by weights, or by how far they are from a reference point: the costs of imtet choose --weights and --reference.
-
 const RANKED = 8;
 const score = Object.assign(columnOf("score", -1, 0, ["score of the choice", "", 1, "weighted sum of the objectives over their ranges, or distance from the reference point: lower is better"]), { sense: 1, bounds: [NaN, NaN] });
 score.family = [score];
@@ -22,15 +21,15 @@ function weightsPart(host) {
   const list = element("div"), fields = objectives.map((c) => {
     const weight = element("input", { type: "range", min: 0, max: 10, step: 0.5, name: `${c.name} weight`, "aria-label": `weight of ${c.title}` }), told = element("output");
     const point = element("input", { type: "text", inputmode: "decimal", name: `${c.name} reference`, "aria-label": `${titleUnit(c)} of the reference point`, placeholder: `${show(c.min)} to ${show(c.max)}` });
-    weight.addEventListener("input", () => take(state.weights.set(c, +weight.value)));
-    point.addEventListener("change", () => {
+    weight.oninput = () => take(state.weights.set(c, +weight.value));
+    point.onchange = () => {
       const v = point.value.trim() === "" ? null : +point.value;
       point.classList.toggle("bad", Number.isNaN(v));
       if (v === null) state.reference.delete(c);
       else if (!Number.isNaN(v)) state.reference.set(c, v);
       take();
-    });
-    return { c, weight, told, point, row: element("div", { class: "weight" }, element("span", { title: c.what }, titleUnit(c)), weight, told, point) };
+    };
+    return { c, weight, told, point, row: div("weight", element("span", { title: c.what }, titleUnit(c)), weight, told, point) };
   });
 
   function take() {
@@ -49,9 +48,9 @@ function weightsPart(host) {
     refillRows(list, table("ranked", ["design", "score", ...objectives], best.map((i) => line([element("button", { type: "button", onclick: () => mark(i) }, String(ids[i])), digits(score.value[i]), ...objectives.map((c) => known(c, i))], { "data-id": ids[i] }))));
   }
 
-  host.append(element("p", { class: "note" }, "Weights of the objectives over their ranges on the front; with a value of the reference point in any objective, the design nearest to it. The pictures are coloured by the score; the best of the selected designs:"),
-    element("div", { class: "weights" }, ...fields.map(({ row }) => row)),
-    element("div", { class: "bar" }, plainButton("Equal weights, no reference point", () => {
+  host.append(note("Weights of the objectives over their ranges on the front; with a value of the reference point in any objective, the design nearest to it. The pictures are coloured by the score; the best of the selected designs:"),
+    div("weights", ...fields.map(({ row }) => row)),
+    div("bar", plainButton("Equal weights, no reference point", () => {
       state.weights.clear();
       state.reference.clear();
       take();

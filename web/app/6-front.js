@@ -1,20 +1,19 @@
 // The part on the front: what is shown, ranges by hand, all pictures of it, the table.
-
 function presetChoice() {
   const presets = [["objectives", run.schema.limited.length ? "objectives and limited results" : "objectives", results], ["variables", "variables", variables], ["all", "both", [...results, ...variables]]];
-  return element("fieldset", {}, element("legend", {}, "Axes"), ...presets.map(([value, label, axes]) => {
+  return element("fieldset", element("legend", "Axes"), ...presets.map(([value, label, axes]) => {
     const input = element("input", { type: "radio", name: "axes", value, onchange: () => {
       state.axes = [...axes];
       layoutChanged();
     } });
     views.layout.push(() => (input.checked = axes.length === state.axes.length && axes.every((c) => state.axes.includes(c))));
-    return element("label", {}, input, ` ${label}`);
+    return element("label", input, ` ${label}`);
   }));
 }
 
 // The bar of the colour, by the library; of choices and types their words.
 function colourBar() {
-  const host = element("div", { class: "colourbar" });
+  const host = div("colourbar");
   views.layout.push(() => {
     const c = state.colour, [low, high] = extent(c, []);
     host.replaceChildren(c.words ? legend((c.named ?? c.words).map((word, k) => [word, PALETTE[k]]))
@@ -29,7 +28,7 @@ function overlayLegend() {
   follow(null, () => (marked.textContent = state.marked === undefined ? "no design marked" : designName(state.marked)));
   return element("div", { class: "legend", id: "overlays" }, marked, ...overlays.map((o) => {
     const item = element("span", { "data-mark": o.mark, title: o.device, style: `--key: ${o.colour}` }, o.words);
-    return element("label", {}, element("input", { type: "checkbox", checked: o.isShown, name: o.key, onchange: (event) => {
+    return element("label", element("input", { type: "checkbox", checked: o.isShown, name: o.key, onchange: (event) => {
       o.isShown = event.target.checked;
       layoutChanged();
     } }), item);
@@ -47,7 +46,7 @@ function rangeInputs() {
     const [low, high] = ["from", "to"].map((word) => element("input", {
       type: "text", name: `${c.name} ${word}`, inputmode: "decimal", "aria-label": `${titleUnit(c)} ${word}`, onchange: () => take(c, low, high),
     }));
-    return { c, axis, low, high, row: element("div", {}, axis, element("span", { class: "name", title: c.what }, titleUnit(c)), low, "\u2013", high) };
+    return { c, axis, low, high, row: element("div", axis, element("span", { class: "name", title: c.what }, titleUnit(c)), low, "\u2013", high) };
   });
 
   function read(c, input, standard) {
@@ -76,7 +75,7 @@ function rangeInputs() {
       if (document.activeElement !== high) high.value = range && range[1] < Infinity ? tickText(c)(c.words ? Math.floor(range[1]) : range[1]) : "";
     }
   });
-  return element("details", { id: "ranges" }, element("summary", {}, "Axes and ranges as numbers"), element("div", { class: "ranges" }, ...inputs.map(({ row }) => row)));
+  return element("details", { id: "ranges" }, element("summary", "Axes and ranges as numbers"), div("ranges", ...inputs.map(({ row }) => row)));
 }
 
 function selectionBar() {
@@ -93,22 +92,21 @@ function selectionBar() {
     all.disabled = !state.steps.length;
     back.disabled = !past.length && addressOf() === (lastAddress ?? "");
   });
-  return element("div", { class: "bar" }, number, keep, exclude, clear, all, back, plainButton("Download selection as CSV", () => saveFile(`${run.name}-selection.csv`, csvOf((i) => state.selected[i])), { id: "download", class: "plain main" }));
+  return div("bar", number, keep, exclude, clear, all, back, plainButton("Download selection as CSV", () => saveFile(`${run.name}-selection.csv`, csvOf((i) => state.selected[i])), { id: "download", class: "plain main" }));
 }
 
 function frontPart() {
-  const host = document.getElementById("front");
+  const host = byId("front");
   host.append(
-    element("p", { class: "note" }, "Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
+    note("Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
       "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design." +
-      (run.front > n ? ` Here are ${count(n)} of ${count(run.front)} designs of the front: those with the lowest and the highest value of every objective and variable, ` +
-        "the knee, the chosen design and polished ones, and the others evenly in the order of their evaluation; imtet export has all." : "")),
-    selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), columnSelect("colour", "Colour", "colour"), colourBar()), overlayLegend());
+      (run.front > n ? ` Here are ${count(n)} of ${count(run.front)}` + " designs of the front: those with the lowest and the highest value of every objective and variable, the knee, the chosen design and polished ones, and the others evenly in the order of their evaluation; imtet export has all." : "")),
+    selectionBar(), div("bar hide-in-print", presetChoice(), columnSelect("colour", "Colour", "colour"), colourBar()), overlayLegend());
   parallelCoordinates(host.appendChild(element("figure", { class: "scroll" })));
   host.append(rangeInputs());
-  const grid = host.appendChild(element("div", { class: "grid2" }));
+  const grid = gridOf(host, 2);
   if (columns.length > 1) {
-    const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Scatter plot of two columns"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
+    const pair = grid.appendChild(element("figure", element("h3", "Scatter plot of two columns"), div("bar", columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
     pairPlot(pair);
   }
   const maps = grid.appendChild(element("div"));
@@ -116,7 +114,7 @@ function frontPart() {
   if (objectives.length > 1) {
     weightsPart(folded(host, "Choose by weights or a reference point"));
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
-    matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
+    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);
@@ -124,6 +122,6 @@ function frontPart() {
   matters.hidden = !run.importance; // imtet serve finds it when it is wanted
   if (run.importance) importanceFigure(matters);
   const list = folded(host, "Selected designs as a table", true);
-  list.append(element("p", { class: "note" }, "Click a heading to sort, a number to mark that design in the pictures."));
+  list.append(note("Click a heading to sort, a number to mark that design in the pictures."));
   designTable(list.appendChild(element("div")));
 }

@@ -1,11 +1,9 @@
 // The first screen: what was studied and found, in a sentence, a picture and warnings; then growth and provenance.
-
 // As in the program's own output: the peak, and what the record was multiplied by.
 const peakText = (d) => `peak ${show(d.pga_g)} g` +
   (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
 
 // ---- in a sentence
-
 function change(value, before) {
   const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
   if (pct === 0 || value === before) return "the same";
@@ -14,7 +12,6 @@ function change(value, before) {
 
 // The likely errors of the chosen design.
 const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.error);
-
 // 1: more than before, -1: less, 0: neither, within a thousandth and its error.
 const compareTo = (before, v, error) => (Math.abs(v - before) <= Math.max(1e-3 * Math.abs(before), error ?? 0) ? 0 : Math.sign(v - before));
 
@@ -43,36 +40,34 @@ function sentence(d) {
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with
-
 const VERDICT = { "-1": ["worse", "\u2716"], 0: ["same", "="], 1: ["better", "\u2714"] };
 
 // The value, and behind it in small what is not known of it and the unit.
 function shownValue(c, value, error) {
   const v = value * c.factor, isNothing = c.unit === "%" && v < 0 && v > -0.05; // a share of -0.0066 %
   const [known, rest] = value === null ? ["failed"] : figureText(isNothing ? 0 : v, error === null ? NaN : error * c.factor).split(/(?= \u00b1)/);
-  return [known, " ", element("small", {}, `${rest ? rest.trim() + " " : ""}${c.unit}`)];
+  return [known, " ", element("small", `${rest ? rest.trim() + " " : ""}${c.unit}`)];
 }
 
 // How far the number would be from that of the next suite: not an error of comparisons, which are under the same records.
 const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", title: `Standard error of this number over the ${run.detail.records} records, by the bootstrap.` },
-  `records \u00b1 ${+(error * c.factor).toPrecision(2)} `, element("small", {}, c.unit)) : "");
+  `records \u00b1 ${+(error * c.factor).toPrecision(2)} `, element("small", c.unit)) : "");
 
 function cards() {
   const raw = run.chosen_f, error = chosenError();
   const against = (c, k, o) => {
     const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
     if (!kind) return "";
-    return element("div", { class: `change ${kind}`, title: `${kind} than ${o.words}: ${withUnit(c, o.raw[k] * c.factor)}` }, `${sign} ${change(raw[k] * c.factor, o.raw[k] * c.factor)} `, element("small", {}, o.key === "no_core" ? "no core" : "rigid"));
+    return element("div", { class: `change ${kind}`, title: `${kind} than ${o.words}: ${withUnit(c, o.raw[k] * c.factor)}` }, `${sign} ${change(raw[k] * c.factor, o.raw[k] * c.factor)} `, element("small", o.key === "no_core" ? "no core" : "rigid"));
   };
-  return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
-    element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
-    element("div", { class: "value" }, ...shownValue(c, raw[k], error?.[k])),
+  return div(objectives.length > 8 ? "cards many" : "cards", ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
+    div("what", c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
+    div("value", ...shownValue(c, raw[k], error?.[k])),
     bySuite(c, run.detail?.standard_error?.[k]),
     ...(run.tower && !run.detail ? [skeleton(24)] : overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o))))));
 }
 
 // ---- warnings
-
 const listed = (words, most = 8) => words.slice(0, most).join(", ") + (words.length > most ? ` and ${words.length - most} more` : "");
 
 function boundWarning(d) {
@@ -87,7 +82,6 @@ function boundWarning(d) {
 }
 
 const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
-
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 
@@ -105,17 +99,8 @@ function leftOut(d) {
     const error = factor * (chosenError()?.[objectives.findIndex((o) => o.name === name)] ?? 0);
     return compareTo(b, a, error) * compareTo(e, c, error) >= 0 ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
   }));
-  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", `Errors after \u00b1 are of the simulation, not of the model: with ${listed(lacks)}, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
+  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", "Errors after \u00b1 are of the simulation, not of the model: with " + listed(lacks) + `, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
     (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
-}
-
-// Of the core beside the yield stress of S235, the lowest of EN 10025-2, and the bare wall's buckling stress.
-const S235_PA = 235e6;
-function coreWarnings(d) {
-  const { forces } = d, stress = forces?.stress_pa ?? [], most = Math.max(...stress), buckling = Math.max(...stress.map((v, j) => v / (forces?.buckling_pa?.[j] ?? Infinity)));
-  return [most > S235_PA ? `Stress of the core${underRecord(d)} ${show(most / 1e6)} MPa: beyond the yield stress of S235, 235 MPa.` : "",
-    forces?.shear_pa > S235_PA / Math.sqrt(3) ? `Shear stress of the core${underRecord(d)} ${show(forces.shear_pa / 1e6)} MPa: S235 yields in shear at 136 MPa.` : "",
-    buckling > 1 ? `Stress of the core${underRecord(d)} is ${show(buckling)} times what buckles its bare wall: it needs stiffeners, whose mass is not in this model.` : ""].filter(Boolean).map((text) => ["worse", text]);
 }
 
 function warnings(d) {
@@ -126,7 +111,7 @@ function warnings(d) {
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
     d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}${underRecord(d)}.`] : null,
     ...leftOut(d),
-    ...coreWarnings(d),
+    ...d.core_warnings.map((text) => ["worse", text.replace("the core", `the core${underRecord(d)}`)]),
     ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
     d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,
     d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
@@ -161,55 +146,51 @@ function standoutTable() {
 const skeleton = (height) => element("div", { class: "skeleton", "aria-hidden": "true", style: `height: ${height}px` });
 
 function summaryPart() {
-  const d = run.detail, waits = run.tower && !d, host = document.getElementById("summary");
+  const d = run.detail, waits = run.tower && !d, host = byId("summary");
   document.title = `${run.name} \u2013 imtet report`;
-  document.getElementById("title").textContent = `Study ${run.name}`;
+  byId("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
-  if (run.notes_fault) host.append(element("p", { class: "warn" }, `Notes: ${run.notes_fault}`));
-  if (d && run.rule) host.append(element("p", { class: "note" }, `The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
+  if (run.notes_fault) host.append(warn(`Notes: ${run.notes_fault}`));
+  if (d && run.rule) host.append(note(`The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(252));
   const more = folded(host, "The best designs of the front, beside the baselines");
-  more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
-  if (d && run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
+  more.append(note("The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
+  if (d && run.robust) more.append(note("Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
     `${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`));
 }
 
 let drawGrowth = () => {}; // anew, while a run goes on
+function growthRows() {
+  const c = run.convergence;
+  return c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * (c.error[i] ?? 0), colour: BLUE }));
+}
 function growthPart() {
-  const host = document.getElementById("growth"), c = run.convergence;
-  if (c.simulated.length < 2) return host.remove();
-  const rows = () => c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * (c.error[i] ?? 0), colour: BLUE })), last = rows().at(-1);
+  const host = byId("growth"), last = growthRows().at(-1);
+  if (run.convergence.simulated.length < 2) return host.remove();
   const figure = host.appendChild(element("figure"));
-  drawGrowth = drawn(figure, (width) => growthChart(width, 200, rows()));
-  figure.append(element("figcaption", {}, "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
-    `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that). ` +
-    "A curve that still climbs asks for a longer run."));
+  drawGrowth = drawn(figure, (width) => growthChart(width, 200, growthRows()));
+  figure.append(element("figcaption", "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
+    `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)}` + " % (standard error of the estimate; band: twice that). A curve that still climbs asks for a longer run."));
 }
 
+// All that provenance.json holds, flat.
 function provenancePart() {
-  const host = document.getElementById("provenance");
-  const made = run.provenance ? JSON.parse(run.provenance) : {};
-  const facts = [["program", `imtet ${made.version ?? "?"} (${made.revision ?? "?"})`], ["started", made.machine?.started],
-    ["machine", made.machine && `${made.machine.host}, ${made.machine.system}, ${made.machine.threads} threads`],
-    ["seed", made.seed], ["record", made.inputs?.record], ["hash of the record", made.inputs?.record_fnv1a],
-    ["folder", run.folder], ["this page", `imtet ${run.version} (${run.revision})`]];
-  host.append(element("dl", {}, ...facts.filter(([, v]) => v !== undefined && v !== null)
-    .flatMap(([k, v]) => [element("dt", {}, k), element("dd", {}, String(v))])));
-  for (const [title, text] of [["Every setting", run.settings], ["provenance.json", run.provenance]])
-    if (text) host.append(element("details", {}, element("summary", {}, title), element("pre", { tabindex: "0" }, text)));
+  const facts = (made) => Object.entries(made).flatMap(([key, v]) => (v instanceof Object ? facts(v) : [element("dt", key), element("dd", String(v))]));
+  byId("provenance").append(element("dl", ...facts({ folder: run.folder, page: `imtet ${run.version} (${run.revision})`, ...JSON.parse(run.provenance || "{}") })),
+    element("details", element("summary", "Every setting"), element("pre", { tabindex: "0" }, run.settings)));
 }
 
 // Links to the parts that this run has; the address keeps the state of the pictures.
 function contents() {
   const names = [["summary", `Study ${run.name}`], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  const skip = linkTo(document.getElementById("front"), "Skip to the front"), theme = plainButton("", () => {
+  const skip = linkTo(byId("front"), "Skip to the front"), theme = plainButton("", () => {
     state.theme = state.theme === "dark" ? "light" : "dark";
     showTheme(state.theme);
   }, { id: "theme" });
   skip.className = "skip";
   views.layout.push(() => (theme.textContent = state.theme === "dark" ? "Light" : "Dark"));
-  document.getElementById("parts").append(skip, ...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)), theme);
+  byId("parts").append(skip, ...names.filter(([id]) => byId(id)).map(([id, text]) => linkTo(byId(id), text)), theme);
 }
 
 // The focus goes along.

@@ -1,7 +1,5 @@
 // The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
-
 // ---- heights
-
 // Gaps at a bound of the search and gaps that never close are marked; bounds by a dashed line.
 // A gap as wide as this stands for no stop at all (src/study/simplify.h).
 const NO_STOP_M = 10;
@@ -19,14 +17,22 @@ function gapFigure(host, d) {
   const stiffness = soft === hard ? `${show(soft / 1e6)} MN/m` : `${show(soft / 1e6)} to ${show(hard / 1e6)} MN/m`;
   const bumpers = `${hard > 0 ? ` Bumpers of ${stiffness}.` : ""}${rows.length < sides.length * d.gap_m.length ? " Where no bar is there is no stop." : ""}`;
   figure(host, "Gaps over the height", `${isBoth ? "Clearance between floor and core on either side." : "How far a floor may go to the left (drawn to the left of 0) and to the right before it meets the core."}${bumpers}`, (width) => barChart(width, 380, rows, d.gap_m.length, isBoth ? "gap [mm]" : "gap to the left and to the right [mm]", {}, [
-    charts.ruleX(bounds.filter(Number.isFinite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
+    charts.ruleX(bounds.filter(finite), { stroke: VERMILLION, strokeDasharray: "5 4" }),
     charts.dot(rows.filter((r) => r.bound), { x: "v", y: "place", symbol: "diamond2", fill: VERMILLION, stroke: PAPER, r: 5, title: "title" }),
   ]), legend([["closes", BLUE], ["never closes", "#c5d6e2"], ["at a bound of the search", VERMILLION, "\u25c6"]]));
 }
 
+function shapeFigures(host, d, isBeside = false) {
+  const shape = gridOf(host, 21), values = d.thickness_m.map((t) => 1e3 * t);
+  if (!isBeside) gapFigure(shape, d);
+  figure(shape, "Thickness of the core", `From ${show(values[0])} mm in the first storey to ${show(values[values.length - 1])} mm in the last.`,
+    (width) => heightChart(width, 380, "thickness [mm]", [{ name: "thickness", values, colour: BLUE, symbol: "circle", thick: 2.5 }]));
+}
+
 // The largest force on every floor by side, and what the storeys of the core bear.
-function forceFigures(host, d) {
-  const { contact_n: sides, stress_pa: stress, buckling_pa: buckling } = d.forces, floors = d.gap_m.length;
+function forceFigures(part, d) {
+  if (!d.forces) return;
+  const host = gridOf(part, 2), { contact_n: sides, stress_pa: stress, buckling_pa: buckling } = d.forces, floors = d.gap_m.length;
   const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, from: j + (s ? 1 : 0.64), to: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, title: `floor ${j + 1}, moving ${s ? "left" : "right"}: ${show(v / 1e6)} MN` })));
   figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => barChart(width, 340, rows, floors, "largest contact force [MN]"), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
   if (!stress) return;
@@ -49,18 +55,17 @@ function peakPart(host, d, height) {
   const scenes = scenesOf(d);
   if (!scenes.length) return;
   host.append(sceneLegend(scenes.map(([key]) => key)));
-  const grid = host.appendChild(element("div", { class: "grid3" }));
+  const grid = gridOf(host, 3);
   for (const [key, title, label] of PEAKS) peakFigure(grid, scenes, key, title, label, height, d.band);
 }
 
 // ---- where the energy goes
-
 // A dot per mode and scene, logarithmic: the first mode has a hundred times the share of the tenth.
 function modeFigure(host, scenes, title, caption) {
   const modes = Math.min(10, scenes[0][1].modes.length);
   const rows = scenes.flatMap(([scene, r]) => r.modes.slice(0, modes).map((v, i) => ({ ...SCENES[scene], v: Math.max(v, 0.01), mode: i + 1 })));
   figure(host, title, caption, (width) => chart({
-    width, height: 300, ariaLabel: title, color: { type: "identity" }, symbol: { type: "identity" },
+    width, height: 300, ariaLabel: title,
     x: { label: "mode of the building", domain: [0.5, modes + 0.5], ticks: charts.range(1, modes + 1), tickFormat: "d", tickSize: 0 },
     y: { label: "share of the input energy [%]", grid: true, type: "log", ticks: [0.01, 0.1, 1, 10, 100], tickFormat: show },
     marks: [
@@ -79,23 +84,32 @@ function shareFigure(host, scenes) {
   };
   const rows = scenes.flatMap(([scene, r]) => parts(r).map(([part, colour, v]) => ({ scene: SCENES[scene].words, part, colour, v })));
   figure(host, "Where the input energy goes", "Other: devices, and what is still kinetic, strain or stored energy at the end.", (width) => chart({
-    width, height: 300, marginLeft: 130, ariaLabel: "Where the input energy goes", color: { type: "identity" },
+    width, height: 300, marginLeft: 130, ariaLabel: "Where the input energy goes",
     x: { label: "share of the input energy [%]", grid: true }, y: { label: null, domain: scenes.map(([scene]) => SCENES[scene].words) },
     marks: [charts.barX(rows, { x: "v", y: "scene", fill: "colour", title: (r) => `${r.scene}, ${r.part}: ${show(r.v)} %` }), charts.ruleX([0])],
   }), legend(parts(scenes[0][1]).map(([part, colour]) => [part, colour])));
+}
+
+function modePart(host, d) {
+  const scenes = scenesOf(d), first = scenes.slice(0, 3), r = d.with_core;
+  if (!first.length) return;
+  host.append(sceneLegend(first.map(([key]) => key)));
+  const grid = gridOf(host, 2);
+  modeFigure(grid, first, "Energy dissipated by each mode",
+    r.hysteresis_pct > 0 ? `Storeys that yield dissipate ${show(r.hysteresis_pct)} % of the input: ${DISSIPATED}.` : !r.impacts ? null : "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
+  shareFigure(grid, scenes);
 }
 
 // What storeys that yield keep: plastic drift at the end, and the drift of the state of rest that follows.
 function leftPart(host, scenes, d) {
   const height = (key) => scenes.map(([scene, r]) => [scene, { left: r[key].map((v, j) => (100 * Math.abs(v)) / d.storey_m[j]) }]);
   host.append(sceneLegend(scenes.map(([key]) => key)));
-  const grid = host.appendChild(element("div", { class: "grid2" }));
+  const grid = gridOf(host, 2);
   peakFigure(grid, height("plastic_m"), "left", "Plastic drift", "plastic drift at the end [% of the height]", 300);
   peakFigure(grid, height("residual_m"), "left", "Residual drift", "drift at rest [% of the height]", 300);
 }
 
 // ---- over time
-
 const ENERGIES = [["damped_building", "damping of the building", BLUE], ["damped_core", "damping of the core", GREEN],
   ["contacts", "impacts", ORANGE], ["core", "kinetic and strain energy of the core", PURPLE], ["strain", "strain energy of the building", SKY], ["kinetic", "kinetic energy of the building", GREY]];
 
@@ -106,7 +120,6 @@ function energyFigure(host, title, h, top) {
   });
   figure(host, title, null, (width) => chart({
     width, height: 300, ariaLabel: title, x: { label: "time [s]" }, y: { label: "energy [MJ]", grid: true, domain: [0, top], nice: true },
-    color: { type: "identity" },
     marks: [
       charts.areaY(rows, { x: "t", y1: "low", y2: "high", z: "colour", fill: "colour" }),
       charts.lineY(h.energies.input, { x: h.t, y: (v) => v / 1e6, stroke: INK, strokeWidth: 1.4 }),
@@ -117,8 +130,8 @@ function energyFigure(host, title, h, top) {
 
 const historiesOf = (d) => [["with core", d.history_with_core], ["without core", d.history_no_core]].filter(([, h]) => h);
 
-function energyPair(host, d) {
-  const all = historiesOf(d), top = charts.max(all, ([, h]) => charts.max(h.energies.input)) / 1e6;
+function energyPair(part, d) {
+  const host = gridOf(part, 2), all = historiesOf(d), top = charts.max(all, ([, h]) => charts.max(h.energies.input)) / 1e6;
   host.before(legend([...ENERGIES.map(([key, label, colour]) => [key === "contacts" && d.with_core.plastic_m ? "impacts, storeys that yield" : label, colour]), ["input energy", INK]]));
   for (const [scene, h] of all) energyFigure(host, `Energies, ${scene}`, h, top);
 }
@@ -147,8 +160,8 @@ function spectrumPlot(h, top, hz, width) {
   });
 }
 
-function spectrumPair(host, d) {
-  const all = historiesOf(d);
+function spectrumPair(part, d) {
+  const host = gridOf(part, 2), all = historiesOf(d);
   const [limit, top] = ["u", "spectrum"].map((key) => charts.max(all, ([, h]) => charts.max(h[key], Math.abs)));
   for (const [scene, h] of all) {
     const f = figure(host, `Displacement of floor ${d.floor}, ${scene}`, null, (width) => displacementPlot(h, limit, width));
@@ -157,7 +170,6 @@ function spectrumPair(host, d) {
 }
 
 // ---- other earthquakes
-
 function otherTable(d) {
   const all = [{ record: d.record, pga_g: d.pga_g, scale: d.scale, stretch: d.stretch, with_core: d.with_core, no_core: d.no_core }, ...d.elsewhere];
   const kept = objectives.map((c, k) => [c, k]).filter(([c]) => c.name !== "mcore_kg");
@@ -174,70 +186,56 @@ function otherTable(d) {
 const shortName = (record) => record.replace(/^builtin:(.*)/, "$1 (synthetic)").replace(/.*\//, "");
 
 function otherPart(host, d) {
-  host.append(element("p", { class: "note" },
-    "The same design under other motions, one at a time. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
-  const grid = host.appendChild(element("div", { class: "grid2" }));
+  host.append(note("The same design under other motions, one at a time. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
+  const grid = gridOf(host, 2);
   for (const e of d.elsewhere) {
     const scenes = scenesOf(e);
     if (!scenes.length) continue;
     peakFigure(grid, scenes, "drift_m", `Interstorey drift under ${shortName(e.record)}`, "peak interstorey drift [m]", 300);
-    modeFigure(grid, scenes, `Modes under ${shortName(e.record)}`, null);
+    modeFigure(grid, scenes, `Modes under ${shortName(e.record)}`);
     const worse = scenes.length < 2 ? [] : e.with_core.drift_m.flatMap((v, j) => (v > e.no_core.drift_m[j] ? [j + 1] : []));
     if (worse.length) grid.append(element("p", { class: "warn wide" }, `Under ${shortName(e.record)} the drift is larger than without core at floors ${listed(worse, 12)}.`));
   }
 }
 
 // ---- which effects it needs
-
 const signed = (v) => (v === null ? "failed" : `${v > 0 ? "+" : v < 0 ? "\u2212" : ""}${show(Math.abs(v) < 0.005 ? 0 : Math.abs(v))}`);
 
 function ladderPart(host, d) {
   const l = d.ladder, keys = LADDER;
-  if (l.reason) return host.append(element("p", { class: "warn" }, `Not found: ${l.reason}`));
+  if (l.reason) return host.append(warn(`Not found: ${l.reason}`));
   const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
   const scene = (key) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits((l.by_the_set[key][name] ?? NaN) * factor))]);
   host.append(
-    element("p", { class: "note" }, `Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ${keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", ")} %, which is 2 % or the scatter as built. ` +
-      "imtet check --ladder repeats it with the steps, and says what each costs." +
-      (l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : "")),
+    note("Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ", keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", "), " %, which is 2 % or the scatter as built. imtet check --ladder repeats it with the steps, and says what each costs.",
+      l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : ""),
     table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict === "needed" && e.most_in !== "with_core" ? `needed: ${SCENES[e.most_in].words}` : e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
-    element("p", {}, `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
+    element("p", `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
     table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], ["with_core", "rigid", "no_core"].map(scene)));
 }
 
 // ---- all of it
-
 // Of any design: `d` as report_json.h describes it, into `host`; isBeside: its gaps are shown already.
 function detailParts(host, d, isBeside = false) {
   const r = d.with_core, scenes = scenesOf(d);
   const notes = d.baselines.filter((b) => b.objectives && SCENES[b.key].note).map((b) => `${SCENES[b.key].note}${b.device && ` (${b.device})`}.`).join(" ");
-  if (r.objectives) host.append(element("p", {}, `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
-  host.append(loadTable(d), element("p", { class: "note" }, notes));
-  const shape = host.appendChild(element("div", { class: "grid21" }));
-  if (!isBeside) gapFigure(shape, d);
-  const values = d.thickness_m.map((t) => 1e3 * t);
-  figure(shape, "Thickness of the core", `From ${show(values[0])} mm in the first storey to ${show(values[values.length - 1])} mm in the last.`,
-    (width) => heightChart(width, 380, "thickness [mm]", [{ name: "thickness", values, colour: BLUE, symbol: "circle", thick: 2.5 }]));
-  if (d.forces) forceFigures(host.appendChild(element("div", { class: "grid2" })), d);
-  if (scenes.length) {
-    host.append(sceneLegend(scenes.slice(0, 3).map(([key]) => key)));
-    const energy = host.appendChild(element("div", { class: "grid2" }));
-    modeFigure(energy, scenes.slice(0, 3), "Energy dissipated by each mode", 
-      r.hysteresis_pct > 0 ? `Storeys that yield dissipate ${show(r.hysteresis_pct)} % of the input: ${DISSIPATED}.` : !r.impacts ? null : "Impacts transfer energy from low modes to high ones, which dissipate it faster.");
-    shareFigure(energy, scenes);
-    if (r.plastic_m) leftPart(host, scenes, d);
-  }
+  if (r.objectives) host.append(element("p", `Protected by ${d.protection}: ${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.`));
+  host.append(loadTable(d), note(notes));
+  shapeFigures(host, d, isBeside);
+  forceFigures(host, d);
+  modePart(host, d);
+  if (r.plastic_m) leftPart(host, scenes, d);
   if (d.ladder) ladderPart(folded(host, "Which effects it needs", true), d);
   if (historiesOf(d).length) {
     const energies = folded(host, "Energies over time");
-    energies.append(element("p", { class: "note" }, "Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak." +
+    energies.append(note("Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak." +
       (r.plastic_m ? " Strain is that of storeys which do not yield; what it has too much is taken off the part of those that do." : "")));
-    energyPair(energies.appendChild(element("div", { class: "grid2" })), d);
+    energyPair(energies, d);
     const over = folded(host, "Displacement over time");
-    over.append(element("p", { class: "note" }, "Below each history its Morlet wavelet amplitude by frequency, the same colours on both sides; dashed: natural frequencies of the building."));
-    spectrumPair(over.appendChild(element("div", { class: "grid2" })), d);
+    over.append(note("Below each history its Morlet wavelet amplitude by frequency, the same colours on both sides; dashed: natural frequencies of the building."));
+    spectrumPair(over, d);
   }
   if (d.elsewhere.length) otherPart(folded(host, "Other earthquakes"), d);
 }
@@ -250,10 +248,10 @@ function pairTable(pair) {
 }
 
 function designPart() {
-  const host = document.getElementById("design"), d = run.detail;
+  const host = byId("design"), d = run.detail;
   if (!d) return host.remove();
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
-  host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ${run.id_step ? run.folder.replaceAll(" + ", " ") : run.folder} --design ID`));
+  host.append(note("Simulated again with the run\u2019s settings; its peaks are on the first screen. For another design: imtet report ", run.id_step ? run.folder.replaceAll(" + ", " ") : run.folder, " --design ID"));
   if (run.pair) folded(host, "As found and to be built", true).append(pairTable(run.pair));
   detailParts(host, d);
 }

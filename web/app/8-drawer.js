@@ -1,9 +1,7 @@
 // The design that was clicked, in a drawer beside the pictures, which stay where they are: its numbers, gaps and peaks, and
 // what can be done with it.
-
 const drawer = document.body.appendChild(element("aside", { id: "drawer", tabindex: "-1", hidden: true, "aria-labelledby": "drawer-title" }));
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
-
 // What imtet serve adds: buttons, and a promise of the design in detail with what follows the peaks.
 const drawerMore = { buttons: () => [], detail: () => null, rest: () => {} };
 
@@ -19,7 +17,7 @@ function showDrawer(isOpen) {
   if (isOpen === !drawer.hidden) return;
   keepInPlace(() => {
     drawer.hidden = !isOpen;
-    document.documentElement.classList.toggle("beside", isOpen);
+    root.classList.toggle("beside", isOpen);
     layoutChanged();
     drawAll();
   });
@@ -32,19 +30,17 @@ function closeDrawer() {
   again.find((e) => e.getClientRects().length)?.focus({ preventScroll: true });
 }
 
-document.addEventListener("keydown", (event) => {
-  if (event.key === "Escape" && axisMenu.hidden && !drawer.hidden) closeDrawer();
-});
+document.addEventListener("keydown", (event) => event.key === "Escape" && axisMenu.hidden && !drawer.hidden && closeDrawer());
 
 function difference(value, before) {
   const pct = (100 * (value - before)) / Math.abs(before);
-  return element("small", { class: "difference" }, Number.isFinite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
+  return element("small", { class: "difference" }, finite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
 }
 
 function numbersOf(row) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", {}, ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
       ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other])])]))]);
 }
 
@@ -64,20 +60,20 @@ function commandsOf(id) {
 const noteOf = (id) => {
   const text = run.notes[id] ?? "";
   return drawerMore.takeNote ? element("label", { class: "note" }, "Note ", element("textarea", { name: "note", rows: 2, onchange: (event) => drawerMore.takeNote(id, event.target) }, text))
-    : text ? element("p", { class: "note" }, `Note: ${text}`) : "";
+    : text ? note(`Note: ${text}`) : "";
 };
 
 function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
-    host.append(element("div", { class: "bar" }, element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      element("div", { class: "bar" }, ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
-    if (d?.reason) host.append(element("p", { class: "warn" }, `Not simulated: ${d.reason}`));
+    host.append(div("bar", element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
+      div("bar", ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
+    if (d?.reason) host.append(warn(`Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.gap_m) gapFigure(host, d);
     else for (const family of families) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
     if (d?.with_core) peakPart(host, d, 240);
-    host.append(element("details", {}, element("summary", {}, "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
+    host.append(element("details", element("summary", "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
     if (d?.with_core) drawerMore.rest(host, d);
   });
   drawer.dataset.id = d?.waits ? "" : id;

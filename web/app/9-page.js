@@ -1,31 +1,34 @@
-// In order; what is on the first screen is drawn first.
-
-document.getElementById("first").remove();
+// In order; what is on the first screen is drawn first. On paper there are drawings alone.
 findKept();
-summaryPart();
-frontPart();
-growthPart();
-designPart();
-provenancePart();
-contents();
-standard = Object.fromEntries(new URLSearchParams(addressOf()));
-readAddress();
-takeTheme(state.theme);
-layoutChanged();
-performance.mark("front drawn");
+(run.paper ? drawPaper : drawPage)();
+
+function drawPage() {
+  byId("first").remove();
+  summaryPart();
+  frontPart();
+  growthPart();
+  designPart();
+  provenancePart();
+  contents();
+  standard = Object.fromEntries(new URLSearchParams(addressOf()));
+  readAddress();
+  takeTheme(state.theme);
+  layoutChanged();
+  performance.mark("front drawn");
+}
 
 function drawDesign() {
   drawAll();
   if (/[#&]mark=/.test(location.hash) && drawer.hidden) openDrawer(state.marked);
   performance.mark("all drawn");
-  document.documentElement.dataset.ready = "yes";
+  root.dataset.ready = "yes";
 }
 requestAnimationFrame(() => setTimeout(drawDesign));
 
-window.addEventListener("hashchange", takeAddress);
+window.onhashchange = takeAddress;
 
 let width = window.innerWidth, timer;
-window.addEventListener("resize", () => {
+window.onresize = () => {
   clearTimeout(timer);
   timer = setTimeout(() => {
     if (window.innerWidth === width) return;
@@ -33,4 +36,4 @@ window.addEventListener("resize", () => {
     layoutChanged();
     drawDesign();
   }, 150);
-});
+};

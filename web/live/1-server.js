@@ -1,5 +1,4 @@
 // ---- live: what only a page with the program behind it has. Addresses are relative to /TOKEN/RUN/.
-
 async function ask(where, body) {
   const answer = await fetch(where, body ? { method: "POST", body: JSON.stringify(body) } : {}).catch(() => {
     throw new Error("the server does not answer (imtet serve has ended?)");
@@ -11,18 +10,17 @@ async function ask(where, body) {
 
 // A section of its own before that of the given id, with its link in the same place.
 function livePart(id, title, before) {
-  const part = element("section", { id }, element("h2", {}, title)), next = document.getElementById(before) ?? document.getElementById("provenance");
+  const part = element("section", { id }, element("h2", title)), next = byId(before) ?? byId("provenance");
   next.before(part);
   document.querySelector(`#parts a[href="#${next.id}"]`).before(linkTo(part, title));
   return part;
 }
 
 // ---- fronts as parallel coordinates, small and quick enough to follow a slider
-
 // draw([{ rows: [[natural objective, ...]], colour, thick, alpha }]), the last on top; better is down. The first is drawn anew
 // only where it, a range or the width has changed.
 function frontStrip(host, label, height = 208) {
-  const layers = host.appendChild(element("div", { class: "scroll" })).appendChild(element("div", { class: "layers strip" }));
+  const layers = host.appendChild(div("scroll")).appendChild(div("layers strip"));
   layers.style.minWidth = `${92 * objectives.length}px`; // no word lies on another
   const [back, over] = [0, 1].map((k) => layers.appendChild(element("canvas", k ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
   const words = layers.appendChild(element("div", { class: "words", "aria-hidden": "true" }));
@@ -87,4 +85,4 @@ function frontStrip(host, label, height = 208) {
 }
 
 const frontRows = charts.range(n).map((i) => objectives.map((c) => c.raw[i]));
-const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });
+const paleFront = (rows = frontRows) => ({ rows, colour: PALE, thick: 0.7, alpha: clamp(12 / Math.sqrt(rows.length + 1), [0.2, 0.8]) });

@@ -1,11 +1,10 @@
 // A run under way: how far it is, failures and the front as it grows.
-
 function progressPart() {
   const part = livePart("live", "Progress", "front");
   const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });
   const again = plainButton("", () => location.reload(), { hidden: true, id: "new-front" });
   part.append(said, bar, again);
-  const strip = part.appendChild(element("figure", {}, element("h3", {}, "The front as it grows"),
+  const strip = part.appendChild(element("figure", element("h3", "The front as it grows"),
     legend([["the front", "var(--pale)"], ["new since this page was loaded", BLUE]])));
   const draw = frontStrip(strip, "The front as it grows");
   let generation = -1;
@@ -44,7 +43,7 @@ function progressPart() {
     events.onmessage = ({ data }) => take(JSON.parse(data));
     events.onerror = () => (said.textContent = "The server does not answer (imtet serve has ended?). Asking again.");
   }
-  document.addEventListener("visibilitychange", follow_);
-  window.addEventListener("pagehide", () => events?.close());
+  document.onvisibilitychange = follow_;
+  window.onpagehide = () => events?.close();
   follow_();
 }

@@ -1,5 +1,4 @@
 // Any design at a click on its line, dot or row: simulated by the server, once, for the drawer.
-
 const details = new Map(); // id -> promise
 function detailOf(id) {
   if (!details.has(id)) {
@@ -29,26 +28,25 @@ async function completeSummary() {
   const { detail } = await detailOf(run.knee);
   run.detail = detail;
   overlays.push(...overlaysOf(detail));
-  refill(document.getElementById("summary"), (host) => {
+  refill(byId("summary"), (host) => {
     host.append(element("h1", { id: "title" }));
     summaryPart();
   });
-  document.getElementById("overlays").replaceWith(overlayLegend());
+  byId("overlays").replaceWith(overlayLegend());
   layoutChanged();
 }
 
 // Which variables matter is found when its part is opened.
-const matters = document.getElementById("which-variables-matter");
+const matters = byId("which-variables-matter");
 matters.hidden = false;
 matters.addEventListener("toggle", async () => {
   if (!run.importance) run.importance = await ask("importance").catch(() => null);
   if (run.importance) importanceFigure(matters);
-  else matters.append(element("p", { class: "note" }, "Too few designs succeeded to say so."));
+  else matters.append(note("Too few designs succeeded to say so."));
   drawAll();
 }, { once: true });
 
 // ---- two to four side by side
-
 const compared = []; // { name, raw, gap_m, peaks }
 const SIDES = Object.values(SCENES); // their colours and symbols
 let comparePart;
@@ -60,11 +58,14 @@ function compare(one) {
   if (compared.length > 1) goTo(comparePart);
 }
 
+// Objectives, and how far they are from those of another design.
+const besides = (raw, before) => objectives.map((c, k) => (raw ? [digits(raw[k] * c.factor), before ? difference(raw[k], before[k]) : ""] : "\u2013"));
+
 function compareTable() {
   const row = (one, i) => line([[legend([[one.name, SIDES[i].colour, SIDES[i].mark]]), plainButton("Remove", () => {
     compared.splice(i, 1);
     showCompared();
-  }, { "aria-label": `remove ${one.name}` })], ...objectives.map((c, k) => [digits(one.raw[k] * c.factor), i ? difference(one.raw[k], compared[0].raw[k]) : ""])]);
+  }, { "aria-label": `remove ${one.name}` })], ...besides(one.raw, i && compared[0].raw)]);
   return table("compared", ["differences from the first", ...objectives], compared.map(row));
 }
 
@@ -72,8 +73,8 @@ function showCompared() {
   comparePart ??= livePart("compare", "Side by side", "provenance");
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
-    host.append(element("h2", {}, "Side by side"), compareTable());
-    const grid = host.appendChild(element("div", { class: "grid3" }));
+    host.append(element("h2", "Side by side"), compareTable());
+    const grid = gridOf(host, 3);
     for (const [key, title, label] of [["gap_mm", "Gaps", "gap [mm]"], ...PEAKS]) {
       const lines = compared.map((one, i) => ({ name: one.name, values: one.peaks[key] ?? one.gap_m.map((g) => 1e3 * g), colour: SIDES[i].colour, symbol: SIDES[i].symbol }));
       figure(grid, title, null, (width) => heightChart(width, 300, label, lines));

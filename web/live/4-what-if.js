@@ -1,6 +1,5 @@
 // What if: sliders for every variable, the motion and the restitution; each change is one simulation. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
-
 const GROUND = [["pga_g", "peak", "g", "--pga "], ["stretch", "time \u00d7", "", "--set motion.stretch="], ["restitution", "restitution", "", "--set contact.restitution="]];
 const TRIAL = "#c2185b";
 let startWhatIf = () => {};
@@ -8,14 +7,13 @@ let startWhatIf = () => {};
 function whatIfPart() {
   const part = livePart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
-  const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
-  part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), element("div", { class: "what-if" }, sliders, pictures));
-  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
+  const sliders = div("sliders"), pictures = div("beside");
+  part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), div("what-if", sliders, pictures));
+  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
   // ---- sliders
-
   function choice(key, title, words, value, take) {
     const buttons = words.map((word, i) => plainButton(word, (event) => {
       take(i);
@@ -24,7 +22,7 @@ function whatIfPart() {
     }));
     const set = (v) => buttons.forEach((b, i) => b.setAttribute("aria-pressed", i === Math.round(v)));
     set(value);
-    return { key, set, row: element("div", { class: "bar", role: "group", "aria-label": title }, element("span", {}, title), ...buttons) };
+    return { key, set, row: element("div", { class: "bar", role: "group", "aria-label": title }, element("span", title), ...buttons) };
   }
 
   // Of values that are sold the slider has their numbers.
@@ -46,16 +44,16 @@ function whatIfPart() {
       set(rounded);
       moved(event.timeStamp);
     };
-    input.addEventListener("input", (event) => change(shown(), event));
-    number.addEventListener("change", (event) => {
+    input.oninput = (event) => change(shown(), event);
+    number.onchange = (event) => {
       const v = number.value === "" ? NaN : +number.value / factor, isGood = v >= low - 1e-9 * high && v <= high + 1e-9 * high;
       number.classList.toggle("bad", !isGood);
       number.title = isGood ? "" : `from ${show(low * factor)} to ${show(high * factor)}`;
       if (isGood) change(v, event);
-    });
-    number.addEventListener("blur", () => number.classList.contains("bad") || (number.value = digits(shown() * factor)));
+    };
+    number.onblur = () => number.classList.contains("bad") || (number.value = digits(shown() * factor));
     set(value);
-    return { key, set, row: element("div", { class: "slider" }, element("span", {}, title), input, number, element("small", {}, unit)) };
+    return { key, set, row: div("slider", element("span", title), input, number, element("small", unit)) };
   }
 
   const moving = { variables: [], ground: [] };
@@ -68,8 +66,8 @@ function whatIfPart() {
       if (whole.checked) ground.whole = 1;
       moved(event.timeStamp);
     } });
-    if (bounds.simulations > 1) moving.ground.push({ key: "whole", set: (v) => (whole.checked = v), row: element("label", {}, whole, ` all ${bounds.simulations} simulations by which the run judges a design`) });
-    const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", {}, element("legend", {}, title), ...list.map(({ row }) => row)) : "");
+    if (bounds.simulations > 1) moving.ground.push({ key: "whole", set: (v) => (whole.checked = v), row: element("label", whole, ` all ${bounds.simulations} simulations by which the run judges a design`) });
+    const isGap = (c) => /^gap_/.test(c.name), group = (title, list) => (list.length ? element("fieldset", element("legend", title), ...list.map(({ row }) => row)) : "");
     sliders.replaceChildren(
       group("Motion and contact", moving.ground), group("Core and others", moving.variables.filter((_, j) => !isGap(variables[j]))),
       group("Gaps, from the roof down", moving.variables.filter((_, j) => isGap(variables[j])).reverse()));
@@ -101,11 +99,10 @@ function whatIfPart() {
   }
 
   // ---- what came of it
-
   function place() {
     if (!answer.objectives) return `This design could not be simulated: ${answer.reason}`;
     const law = answer.beyond_law ? " The indentation is beyond what the contact law is meant for." : "";
-    if (answer.dominated_by === undefined) return `Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations.${law}`;
+    if (answer.dominated_by === undefined) return "Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations." + law;
     if (answer.dominated_by) return `Dominated by ${count(answer.dominated_by)} of ${count(n)} designs of the front.${law}`;
     return `Nondominated${answer.dominates ? `: it dominates ${count(answer.dominates)} ${answer.dominates === 1 ? "design" : "designs"} of the front` : ""}.${law}`;
   }
@@ -113,8 +110,8 @@ function whatIfPart() {
   const draw = frontStrip(pictures, "The design in the front");
   pictures.prepend(said);
   pictures.append(legend([["what if", TRIAL], ["where it began", "var(--ink)"], ["front", "var(--pale)"], ...Object.values(SCENES).slice(1).map(({ words, colour }) => [words, colour])]), board);
-  const peaks = pictures.appendChild(element("div", { class: "grid3" }));
-  const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(element("div", { class: "chart" }))]);
+  const peaks = gridOf(pictures, 3);
+  const places = PEAKS.map(([key, , label]) => [key, label, peaks.appendChild(div("chart"))]);
 
   // Baselines of the run itself: under another motion only the building without core is simulated anew, for its peaks.
   const beside = () => overlays.filter((o) => run.detail?.[o.key] && !GROUND.some(([key]) => key in answer.ground));
@@ -132,10 +129,7 @@ function whatIfPart() {
     }
   }
 
-  function drawTable() {
-    const row = (label, raw, before) => line([label, ...objectives.map((c, k) => (raw ? [digits(raw[k] * c.factor), before ? difference(raw[k], before[k]) : ""] : "\u2013"))]);
-    board.replaceChildren(table("trial", ["", ...objectives], [row(start.name, start.raw), row("what if", answer.objectives, start.raw)]));
-  }
+  const drawTable = () => board.replaceChildren(table("trial", ["", ...objectives], [line([start.name, ...besides(start.raw)]), line(["what if", ...besides(answer.objectives, start.raw)])]));
 
   // No old number stands beside a slider that has moved.
   function showNothing() {
@@ -145,7 +139,7 @@ function whatIfPart() {
     for (const [, , host] of places) host.replaceChildren();
     const at = overlays.indexOf(trial);
     if (at >= 0) overlays.splice(at, 1);
-    document.getElementById("overlays").replaceWith(overlayLegend());
+    byId("overlays").replaceWith(overlayLegend());
     layoutChanged();
   }
 
@@ -161,14 +155,13 @@ function whatIfPart() {
     trial.value = new Map([...objectives.map((c, k) => [c, (trial.raw[k] ?? NaN) * c.factor]), ...variables.map((c, j) => [c, x[j] * c.factor])]);
     if (!overlays.includes(trial)) {
       overlays.push(trial);
-      document.getElementById("overlays").replaceWith(overlayLegend());
+      byId("overlays").replaceWith(overlayLegend());
     }
     clearTimeout(resting_);
     resting_ = setTimeout(layoutChanged, 400);
   }
 
   // ---- designs that are kept
-
   let shownKept = "";
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
   const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
@@ -177,7 +170,7 @@ function whatIfPart() {
   function showKept() {
     state.trials = shownKept = keptText();
     saveAddress();
-    list.replaceChildren(...kept.map((one, i) => element("li", {}, `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
+    list.replaceChildren(...kept.map((one, i) => element("li", `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
       plainButton("Compare", () => compare(one)), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", plainButton("Drop", () => {
         kept.splice(i, 1);
         showKept();
@@ -214,11 +207,10 @@ function whatIfPart() {
 
   const csv = () => [run.schema.variables.map(cell).join(","), ...kept.map((one) => one.x.join(","))].join("\n") + "\n";
   const save = plainButton("Download as a design file", () => saveFile(`${run.name}-kept.csv`, csv()), { id: "save-kept", disabled: true });
-  pictures.append(element("div", { class: "bar" }, plainButton("Keep", keep, { id: "keep-trial" }), save,
+  pictures.append(div("bar", plainButton("Keep", keep, { id: "keep-trial" }), save,
     plainButton("Back to where it began", () => set(start.x, {}), { id: "back" })), list, command);
 
   // ---- from a design of the front
-
   function set(values, on) {
     x.set(values);
     for (const key of Object.keys(ground)) delete ground[key];

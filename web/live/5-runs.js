@@ -1,5 +1,4 @@
 // The runs of the folder that is served, and some of them over each other.
-
 const RUNS_BESIDE = 3; // this one
 
 async function runsPart() {
@@ -24,21 +23,21 @@ async function against(body, others) {
     const { runs, differences } = await ask(`against/${others}`), colours = SIDES.map(({ colour }) => colour);
     if (body.dataset.wanted !== wanted) return;
     refill(body, (host) => {
-      if (differences.length) host.append(element("p", { class: "warn" }, `Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));
+      if (differences.length) host.append(warn(`Different problems, so that no front is the better one: ${differences.join(", ")} differ.`));
       host.append(legend(runs.map((r, i) => [`${r.name}: ${count(r.f.length)} on the front`, colours[i]])));
-      const grid = host.appendChild(element("div", { class: "grid2" }));
-      const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The fronts")));
+      const grid = gridOf(host, 2);
+      const strip = grid.appendChild(element("figure", element("h3", "The fronts")));
       frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 280)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i], alpha: 0.5 * paleFront(r.f).alpha })));
       const rows = runs.flatMap((r, i) => r.simulated.map((x, k) => ({ x, y: 100 * r.volume[k], colour: colours[i] })));
       figure(grid, "Hypervolume over the number of designs", "In one box for all: from a fifth of their range below the best of all fronts to the worst.", (width) => growthChart(width, 260, rows));
       const points = runs.flatMap((r, i) => r.f.map((f) => ({ x: f[objectives.indexOf(state.x)] * state.x.factor, y: f[objectives.indexOf(state.y)] * state.y.factor, colour: colours[i] })));
       if (objectives.includes(state.x) && objectives.includes(state.y))
         figure(grid, `${state.x.title} and ${state.y.title}`, "The axes are those of the scatter plot of two columns.", (width) => chart({
-          width, height: 300, ariaLabel: "The fronts", x: { label: titleUnit(state.x), grid: true }, y: { label: titleUnit(state.y), grid: true }, color: { type: "identity" },
+          width, height: 300, ariaLabel: "The fronts", x: { label: titleUnit(state.x), grid: true }, y: { label: titleUnit(state.y), grid: true },
           marks: [charts.dot(points, { x: "x", y: "y", stroke: "colour", r: 2.5 })] }));
     });
   } catch (error) {
-    refill(body, (host) => host.append(element("p", { class: "warn" }, error.message)));
+    refill(body, (host) => host.append(warn(error.message)));
   }
   body.classList.remove("stale");
 }

@@ -1,4 +1,4 @@
-const later_ = (promise) => promise.catch((error) => document.getElementById("live").append(element("p", { class: "warn" }, error.message)));
+const later_ = (promise) => promise.catch((error) => byId("live").append(warn(error.message)));
 
 if (run.tower) whatIfPart();
 progressPart();
