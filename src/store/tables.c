@@ -138,20 +138,14 @@ static double *number_at(const Evaluation *e, NumberPlace place)
     return *(double *const *)(const void *)((const char *)e + place.array) + place.i;
 }
 
-static size_t n_columns(RowTable table, const Schema *s)
-{
-    Numbers list[N_NUMBERS];
-    size_t n = ROWS[table].n + 1;
-    numbers_of(table, s, list);
-    for (size_t k = 0; k < N_NUMBERS; k++)
-        n += list[k].n;
-    return n;
-}
-
 Status tables_have_room(const Schema *s, Err *err)
 {
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
-    const size_t others = n_columns(ROWS_EVALUATION, s) - s->n_var;
+    Numbers list[N_NUMBERS];
+    size_t others = N_OF(EVALUATION) + 1;
+    numbers_of(ROWS_EVALUATION, s, list);
+    for (size_t k = 1; k < N_NUMBERS; k++) /* behind the variables */
+        others += list[k].n;
     return s->n_var + others <= COLUMNS_MAX
                ? STATUS_OK
                : bad_data(err,
@@ -162,15 +156,6 @@ Status tables_have_room(const Schema *s, Err *err)
 
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
-/* Names become identifiers of SQL: in double quotes, which are doubled inside. */
-static void put_column(FILE *f, const char *begin, const char *name, const char *end)
-{
-    fprintf(f, ", \"%s", begin);
-    for (; *name; name++)
-        fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
-    fprintf(f, "%s\" REAL", end);
-}
-
 static void put_table(FILE *f, const TableColumns *t)
 {
     fprintf(f, "CREATE TABLE %s(", t->name);
@@ -179,7 +164,8 @@ static void put_table(FILE *f, const TableColumns *t)
     fputs(t->has_digest ? ", digest INTEGER NOT NULL" : "", f);
 }
 
-/* To be freed. */
+/* The statements that make all tables, to be freed. Names become identifiers of SQL: in double quotes, doubled inside.
+ */
 static Status tables_text(const Schema *s, char **text, Err *err)
 {
     size_t length;
@@ -197,8 +183,12 @@ static Status tables_text(const Schema *s, char **text, Err *err)
         put_table(f, &ROWS[t]);
         numbers_of(t, s, list);
         for (size_t k = 0; k < N_NUMBERS; k++)
-            for (size_t c = 0; c < list[k].n; c++)
-                put_column(f, list[k].begin, s->column[list[k].first + c].name, list[k].end);
+            for (size_t c = 0; c < list[k].n; c++) {
+                fprintf(f, ", \"%s", list[k].begin);
+                for (const char *name = s->column[list[k].first + c].name; *name; name++)
+                    fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
+                fprintf(f, "%s\" REAL", list[k].end);
+            }
         fputs(");", f);
     }
     return text_close(f) == 0 ? STATUS_OK : fail_memory(err, 1, "the names of the columns");
@@ -248,52 +238,40 @@ typedef struct {
     int is_whole;    /* all of the text was understood */
 } Finding;
 
-/* The name of a column from the first character behind its quote; returns what follows the last, NULL: no such. */
-static const char *take_name(const char *text, char *name, size_t size)
-{
-    size_t n = 0;
-    for (; *text && n + 1 < size; text++) {
-        if (*text == '"' && *++text != '"')
-            break;
-        name[n++] = *text;
-    }
-    name[n] = 0;
-    return strncmp(text, " REAL", 5) == 0 ? text + 5 : NULL;
-}
-
-/* What follows the fields of a table in its text, which begins as this program writes it; NULL: it does not. */
-static Status skip_fields(const TableColumns *t, const char *text, const char **behind, Err *err)
-{
-    char *begin = NULL;
-    size_t length;
-    FILE *stream = text_open(&begin, &length);
-    *behind = NULL;
-    if (stream)
-        put_table(stream, t);
-    if (!stream || text_close(stream) != 0) {
-        free(begin);
-        return fail_memory(err, 1, "the names of the columns");
-    }
-    *behind = strncmp(text, begin, length) == 0 ? text + length : NULL;
-    free(begin);
-    return STATUS_OK;
-}
-
-/* Behind the fields stand numbers alone, in any order. */
+/* The text of a table begins with its fields, as this program writes them; behind them stand numbers alone, in any
+ * order. */
 static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
 {
     Finding *f = user;
     Numbers list[N_NUMBERS];
     RowColumns *c = f->columns;
-    const char *text = column_text(row, 0), *at;
-    char name[TABLE_NAME_MAX + 8];
-    TRY(skip_fields(&ROWS[f->table], text, &at, err));
+    const char *text = column_text(row, 0);
+    char *begin = NULL, name[TABLE_NAME_MAX + 8];
+    size_t length;
+    FILE *stream = text_open(&begin, &length);
+    if (stream)
+        put_table(stream, &ROWS[f->table]);
+    if (!stream || text_close(stream) != 0) {
+        free(begin);
+        return fail_memory(err, 1, "the names of the columns");
+    }
+    const char *at = strncmp(text, begin, length) == 0 ? text + length : NULL;
+    free(begin);
     TRY_ROOM(c->place, strlen(text) / sizeof ", \"\" REAL" + 2, "columns", err); /* no column is shorter */
     numbers_of(f->table, f->schema, list);
-    while (at && strncmp(at, ", \"", 3) == 0 && (at = take_name(at + 3, name, sizeof name))) {
+    for (; at && strncmp(at, ", \"", 3) == 0; c->n++) {
+        size_t n = 0;
+        for (at += 3; *at && n + 1 < sizeof name; at++) {
+            if (*at == '"' && *++at != '"')
+                break;
+            name[n++] = *at;
+        }
+        name[n] = 0;
+        at = strncmp(at, " REAL", 5) == 0 ? at + 5 : NULL;
+        if (!at)
+            break;
         const NumberPlace place = c->place[c->n] = place_of(name, list, f->schema, c->n);
         f->n_wanted += place.array == offsetof(Evaluation, x) || place.array == offsetof(Evaluation, f);
-        c->n++;
     }
     f->is_whole = at && strcmp(at, ")") == 0;
     return STATUS_OK;
@@ -323,7 +301,6 @@ Status tables_check(Database *db, const Schema *schema, Err *err)
     Status status = database_each(db, "SELECT sql FROM sqlite_schema WHERE name NOT IN ('evaluation', 'finer')",
                                   count_known, &k, err);
     free(text);
-    TRY(status);
     for (RowTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
         RowColumns columns;
         status = tables_columns(db, t, schema, &columns, err);
@@ -390,42 +367,27 @@ int tables_head_is_whole(sqlite3_stmt *row)
            digest_of_head(column_text(row, 0), column_text(row, 1), column_whole(row, 2, 0), column_whole(row, 3, 0));
 }
 
-static Status fill_new_database(Database *db, const Schema *schema, const char *tables, const Settings *used,
-                                const char *provenance, Err *err)
-{
-    char created[24], *text = settings_text(used);
-    if (!text)
-        return fail_memory(err, 1, "the settings");
-    utc_now(created);
-    Status status = database_do(db, err, "BEGIN", "");
-    if (status == STATUS_OK)
-        status = database_do(db, err, tables, "");
-    if (status == STATUS_OK)
-        status = database_do(db, err,
-                             "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created, digest) "
-                             "VALUES (1, ?, ?, ?, ?, ?, ?)",
-                             "ttiiti", text, provenance, used->search.max_evals, schema->n_var, created,
-                             digest_of_head(text, provenance, used->search.max_evals, schema->n_var));
-    if (status == STATUS_OK)
-        status = database_do(db, err, "COMMIT", "");
-    free(text);
-    return status;
-}
-
 Status tables_create(const char *path, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
-    char temporary[PATH_MAX + 8], *tables;
+    static const char INSERT[] = "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created, digest) "
+                                 "VALUES (1, ?, ?, ?, ?, ?, ?)";
+    char temporary[PATH_MAX + 8], created[24], *tables = NULL, *text = settings_text(used);
+    const long evals = used->search.max_evals;
     Database *db = NULL;
     snprintf(temporary, sizeof temporary, "%s.tmp", path);
     unlink(temporary);
-    TRY(tables_have_room(schema, err));
-    Status status = tables_text(schema, &tables, err);
-    if (status == STATUS_OK)
-        status = database_create(&db, temporary, err);
-    if (status == STATUS_OK)
-        status = fill_new_database(db, schema, tables, used, provenance, err);
+    utc_now(created);
+    Status status = text ? tables_have_room(schema, err) : fail_memory(err, 1, "the settings");
+    THEN(status, tables_text(schema, &tables, err));
+    THEN(status, database_create(&db, temporary, err));
+    THEN(status, database_do(db, err, "BEGIN", ""));
+    THEN(status, database_do(db, err, tables, ""));
+    THEN(status, database_do(db, err, INSERT, "ttiiti", text, provenance, evals, schema->n_var, created,
+                             digest_of_head(text, provenance, evals, schema->n_var)));
+    THEN(status, database_do(db, err, "COMMIT", ""));
     database_close(db);
     free(tables);
+    free(text);
     TRY(status);
     database_remove_journal(path);
     if (rename(temporary, path) != 0)
@@ -450,102 +412,76 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
 /* A row that is written or read column by column, and the digest of what has passed. */
 typedef struct {
     sqlite3_stmt *s;
-    int at; /* columns that have passed */
+    int reads, at; /* columns that have passed */
     uint64_t digest;
 } Row;
 
-static void put_number(Row *r, double value)
+static void pass_number(Row *r, double *value)
 {
+    if (r->reads)
+        *value = column_number(r->s, r->at);
+    else if (isfinite(*value))
+        sqlite3_bind_double(r->s, r->at + 1, *value);
     r->at++;
-    if (isfinite(value))
-        sqlite3_bind_double(r->s, r->at, value);
-    r->digest = digest_numbers(1, &value, r->digest);
+    r->digest = digest_numbers(1, value, r->digest);
 }
 
-/* What is not bound is NULL. */
-static void put_text(Row *r, const char *text, int is_null)
+/* A column of a record: what is not bound is NULL, and a reason that is read is SQLite's until the next row. */
+static void pass_field(Row *r, const Field *f, void *record)
 {
+    void *field = (char *)record + f->at;
+    const char **reason = field, *text = f->type >= TEXT && r->reads ? column_text(r->s, r->at) : NULL;
+    switch (f->type) {
+    case REAL:
+        pass_number(r, field);
+        return;
+    case WHOLE:
+    case MOVED:
+        if (r->reads)
+            *(long *)field = sqlite3_column_int64(r->s, r->at);
+        else
+            sqlite3_bind_int64(r->s, r->at + 1, *(long *)field);
+        r->digest = digest_whole(f->type == WHOLE ? *(long *)field : 0, r->digest);
+        break;
+    case MARK:
+        if (r->reads)
+            *(int *)field = (int)column_whole(r->s, r->at, NEVER);
+        else if (*(int *)field != NEVER)
+            sqlite3_bind_int(r->s, r->at + 1, *(int *)field);
+        break;
+    case TEXT:
+        if (r->reads)
+            snprintf(field, f->size, "%s", text);
+        else
+            text = field;
+        break;
+    case REASON:
+        if (r->reads)
+            *reason = text;
+        else
+            text = *reason ? *reason : "";
+        break;
+    case OUTCOME:
+        if (r->reads)
+            *(Outcome *)field = outcome_of_word(text);
+        else
+            text = outcome_word(*(Outcome *)field);
+        break;
+    case KIND:
+        if (r->reads)
+            *(EvaluationKind *)field = kind_of_word(text);
+        else
+            text = *(EvaluationKind *)field == KIND_UNFINISHED ? "" : kind_word(*(EvaluationKind *)field);
+    }
     r->at++;
-    if (!is_null)
+    if (text && !r->reads && (*text || f->type == REASON))
         sqlite3_bind_text(r->s, r->at, text, -1, SQLITE_STATIC);
-    r->digest = digest_text(text, r->digest);
-}
-
-static void put_field(Row *r, const Field *f, const char *record)
-{
-    const void *at = record + f->at;
-    const EvaluationKind *kind = at;
-    const char *const *reason = at;
-    switch (f->type) {
-    case WHOLE:
-    case MOVED:
-        sqlite3_bind_int64(r->s, ++r->at, *(const long *)at);
-        r->digest = digest_whole(f->type == WHOLE ? *(const long *)at : 0, r->digest);
-        break;
-    case MARK:
-        r->at++;
-        if (*(const int *)at != NEVER)
-            sqlite3_bind_int(r->s, r->at, *(const int *)at);
-        break;
-    case REAL:
-        put_number(r, *(const double *)at);
-        break;
-    case TEXT:
-        put_text(r, at, *(const char *)at == 0);
-        break;
-    case REASON:
-        put_text(r, *reason ? *reason : "", 0);
-        break;
-    case OUTCOME:
-        put_text(r, outcome_word(*(const Outcome *)at), 0);
-        break;
-    case KIND:
-        r->at++;
-        if (*kind != KIND_UNFINISHED)
-            sqlite3_bind_text(r->s, r->at, kind_word(*kind), -1, SQLITE_STATIC);
-    }
-}
-
-static const char *take_text(Row *r)
-{
-    const char *text = column_text(r->s, r->at++);
-    r->digest = digest_text(text, r->digest);
-    return text;
-}
-
-/* A reason is SQLite's until the next row. */
-static void take_field(Row *r, const Field *f, char *record)
-{
-    void *at = record + f->at;
-    switch (f->type) {
-    case WHOLE:
-    case MOVED:
-        *(long *)at = sqlite3_column_int64(r->s, r->at++);
-        r->digest = digest_whole(f->type == WHOLE ? *(long *)at : 0, r->digest);
-        break;
-    case MARK:
-        *(int *)at = (int)column_whole(r->s, r->at++, NEVER);
-        break;
-    case REAL:
-        *(double *)at = column_number(r->s, r->at++);
-        r->digest = digest_numbers(1, at, r->digest);
-        break;
-    case TEXT:
-        snprintf(at, f->size, "%s", take_text(r));
-        break;
-    case REASON:
-        *(const char **)at = take_text(r);
-        break;
-    case OUTCOME:
-        *(Outcome *)at = outcome_of_word(take_text(r));
-        break;
-    case KIND:
-        *(EvaluationKind *)at = kind_of_word(column_text(r->s, r->at++));
-    }
+    if (text && f->type != KIND)
+        r->digest = digest_text(text, r->digest);
 }
 
 /* INSERT with n places, and the fields in the first of them. */
-static Status begin_insert(Database *db, const TableColumns *t, size_t n, const void *record, Row *r, Err *err)
+static Status begin_insert(Database *db, const TableColumns *t, size_t n, void *record, Row *r, Err *err)
 {
     char sql[4200]; /* 2 for each of 2,000 columns */
     int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", t->name);
@@ -557,11 +493,11 @@ static Status begin_insert(Database *db, const TableColumns *t, size_t n, const 
     *r = (Row){.digest = HASH_SEED};
     TRY(database_statement(db, sql, &r->s, err));
     for (size_t i = 0; i < t->n; i++)
-        put_field(r, &t->field[i], record);
+        pass_field(r, &t->field[i], record);
     return STATUS_OK;
 }
 
-Status record_put(Database *db, RecordTable table, const void *record, Err *err)
+Status record_put(Database *db, RecordTable table, void *record, Err *err)
 {
     const TableColumns *t = &RECORDS[table];
     Row r;
@@ -589,10 +525,10 @@ static Status take_record(sqlite3_stmt *row, void *user, Err *err)
         r->list = wider;
     }
     char *record = r->list + r->n++ * t->size;
-    Row taken = {.s = row, .digest = HASH_SEED};
+    Row taken = {.s = row, .reads = 1, .digest = HASH_SEED};
     memset(record, 0, t->size);
     for (size_t i = 0; i < t->n; i++)
-        take_field(&taken, &t->field[i], record);
+        pass_field(&taken, &t->field[i], record);
     if (t->has_digest && sqlite3_column_int64(row, taken.at) != (long)taken.digest)
         return database_damaged(r->db, err, "%s %lld is not what was written", t->name, sqlite3_column_int64(row, 0));
     return STATUS_OK;
@@ -624,7 +560,7 @@ Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema
     TRY(begin_insert(db, t, t->n + 1 + columns->n, &row, &r, err));
     const int digest_at = ++r.at;
     for (size_t i = 0; i < columns->n; i++)
-        put_number(&r, columns->place[i].array ? *number_at(&row, columns->place[i]) : NAN);
+        pass_number(&r, columns->place[i].array ? number_at(&row, columns->place[i]) : &(double){NAN});
     sqlite3_bind_int64(r.s, digest_at, (r.digest ^ digest_kind(e->kind, e->generation)));
     return database_run(db, r.s, err);
 }
@@ -655,16 +591,12 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     Reading *r = user;
     Evaluation *e = r->room.row;
     const TableColumns *t = &ROWS[r->columns.table];
-    Row taken = {.s = row, .digest = HASH_SEED};
+    Row taken = {.s = row, .reads = 1, .digest = HASH_SEED};
     for (size_t i = 0; i < t->n; i++)
-        take_field(&taken, &t->field[i], (char *)e);
-    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at);
-    for (size_t i = 0; i < r->columns.n; i++) {
-        const double value = column_number(row, ++taken.at);
-        if (r->columns.place[i].array)
-            *number_at(e, r->columns.place[i]) = value;
-        taken.digest = digest_numbers(1, &value, taken.digest);
-    }
+        pass_field(&taken, &t->field[i], e);
+    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at++);
+    for (size_t i = 0; i < r->columns.n; i++)
+        pass_number(&taken, r->columns.place[i].array ? number_at(e, r->columns.place[i]) : &(double){0});
     if (digest != (taken.digest ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
     evaluation_set_outcome(e, e->outcome, e->reason);

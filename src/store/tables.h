@@ -44,8 +44,8 @@ int tables_head_is_whole(sqlite3_stmt *row);
 
 typedef enum { TABLE_GENERATION, TABLE_FRONT, TABLE_SESSION, N_RECORD_TABLES } RecordTable;
 
-/* A record as a row, in the place of the one with its number. */
-Status record_put(Database *db, RecordTable table, const void *record, Err *err);
+/* A record, which stays as it is, as a row, in the place of the one with its number. */
+Status record_put(Database *db, RecordTable table, void *record, Err *err);
 
 /* All of them by their numbers. list: the address of a pointer to the array, NULL before, to be freed. */
 Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err *err);
