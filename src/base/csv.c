@@ -197,9 +197,10 @@ static int next_row(Reading *r, const char **from, const char **to)
 }
 
 /* What is wrong with a cell that should be a number. */
-static Status fail_number(const Table *t, int line, size_t column, Cell c, CellKind kind, double x, Err *err)
+static Status fail_number(const Table *t, int line, size_t column, Cell c, Err *err)
 {
-    if (kind == NOT_FINITE)
+    double x;
+    if (cell_number(c, 1, &x) == NOT_FINITE)
         return bad_data(err, "%s:%d: column %zu is %g; only finite numbers are accepted", t->path, line, column + 1, x);
     if (c.from == c.to)
         return bad_data(err, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
@@ -235,7 +236,7 @@ static Status read_row(Reading *r, const char *from, const char *to, Err *err)
         double x = NAN;
         const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
         if (!r->of_words && kind != NUMBER && !is_empty)
-            return fail_number(t, r->l.number, n, c, kind, x, err);
+            return fail_number(t, r->l.number, n, c, err);
         if (kind == NUMBER)
             TRY(lines_note_mark(&r->l, c, err));
         if (!r->of_words) {
@@ -337,6 +338,6 @@ Status sheet_number(const Table *s, size_t row, const char *column, double other
     *value = otherwise;
     if (!*text && !isnan(otherwise))
         return STATUS_OK;
-    const CellKind kind = cell_number(c, 1, value);
-    return kind == NUMBER ? STATUS_OK : fail_number(s, s->line[row], table_column(s, column), c, kind, *value, err);
+    return cell_number(c, 1, value) == NUMBER ? STATUS_OK
+                                              : fail_number(s, s->line[row], table_column(s, column), c, err);
 }

@@ -26,6 +26,7 @@ static struct {
     int users, threads;
 } single = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
+/* The first user takes the threads of BLAS away, the last one gives them back. */
 static void count_users(int change)
 {
     pthread_mutex_lock(&single.lock);

@@ -219,6 +219,7 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
     return STATUS_OK;
 }
 
+/* The lock is taken only until the scene was opened: then what it has stays. */
 static Status prepare(OnDemand *o, const Run *run, Err *err)
 {
     if (o->n_var > 0)

@@ -199,6 +199,7 @@ static const char NO_FRONT[] =
     "<title>imtet</title></head><body><h1>No front</h1><p>%zu designs simulated, %zu failed: %s.</p>"
     "<p>This page looks again every second.</p></body></html>\n";
 
+/* The report of a run that has a front; before, how far the search is, by a page that looks again. */
 static Status show_page(Visit *v, Answer *a, Err *err)
 {
     const Look *look = v->view.look;
@@ -219,6 +220,7 @@ static Status show_front(Visit *v, Answer *a, Err *err)
     return answer_json(answer_front(v->view.look), 6, a);
 }
 
+/* Which variables move which objectives. */
 static Status show_importance(Visit *v, Answer *a, Err *err)
 {
     const Run *run = &v->view.look->run;
@@ -270,14 +272,14 @@ static Status take_note(Visit *v, Answer *a, Err *err)
     else if (run_find(run, json_integer_value(id)) == run->table.n)
         status = fail(err, STATUS_MISSING, "%s: has no design %lld", run->folder, json_integer_value(id));
     pthread_mutex_lock(&v->server->notes);
-    if (status == STATUS_OK)
-        status = notes_put(run->folder, json_integer_value(id), text, err);
+    THEN(status, notes_put(run->folder, json_integer_value(id), text, err));
     pthread_mutex_unlock(&v->server->notes);
     json_decref(given);
     TRY(status);
     return show_notes(v, a, err);
 }
 
+/* The fronts of this run and the others that the path names, in one box. */
 static Status show_against(Visit *v, Answer *a, Err *err)
 {
     Watch *w = v->server->watch;
@@ -293,8 +295,7 @@ static Status show_against(Visit *v, Answer *a, Err *err)
         look[i + 1] = other[i].look;
         name[i + 1] = status == STATUS_OK ? watch_name(w, path->number[i]) : NULL;
     }
-    if (status == STATUS_OK)
-        status = answer_against(path->n_numbers + 1, look, name, &all, err);
+    THEN(status, answer_against(path->n_numbers + 1, look, name, &all, err));
     for (size_t i = 0; i < path->n_numbers; i++)
         watch_give(&other[i]);
     TRY(status);
@@ -420,8 +421,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = fail(&err, STATUS_MISSING, "there is no such run");
     else if (route->has_run)
         status = watch_take(s->watch, v.run, PAGE_S, &v.view, &err);
-    if (status == STATUS_OK)
-        status = show(&v, &a, &err);
+    THEN(status, show(&v, &a, &err));
     watch_give(&v.view);
     if (status != STATUS_OK)
         a = refusal(c,

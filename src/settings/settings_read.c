@@ -27,6 +27,7 @@ typedef struct {
     Err *first;
 } Reading;
 
+/* One line per fault; the first is the error of the whole reading. */
 static void report_fault(Reading *r, Place at, const char *text)
 {
     char where[32] = "";

@@ -62,6 +62,7 @@ void floor_filter_free(FloorFilter *f)
     free(f);
 }
 
+/* Arrays of a block of rows and what follows it. */
 static void layout(void *object, Carve *c)
 {
     FloorFilter *f = object;
@@ -187,14 +188,17 @@ CLONED static int may_rise(size_t rows, size_t width, const double y[], double n
     return m8_any(&over);
 }
 
-/* Both passes of rows 0..block + 1 of y from all its rows; the largest magnitude among 1..block of every column, and
- * its row. */
-static inline __attribute__((always_inline)) void backward_vectors(const int vectors, const Filter *filter, size_t rows,
-                                                                   size_t block, size_t width, const double y[],
-                                                                   double z[], double top[], double top_row[])
+/* Both passes of rows 0..block + 1 of some columns from all rows of y; the largest magnitude among 1..block of every
+ * column, and its row. */
+static inline __attribute__((always_inline)) void
+backward_vectors(const int vectors, const FloorFilter *f, size_t block, size_t column, double top[], double top_row[])
 {
+    const Filter *filter = &f->filter;
+    const size_t width = f->width;
+    const double *y = f->y + column;
+    double *z = f->z + column;
     v8 s[VECTORS][FILTER_SECTIONS][2] = {{{{0}}}}, most[VECTORS] = {{0}}, at[VECTORS] = {{0}};
-    for (size_t i = rows; i-- > 0;)
+    for (size_t i = f->filled; i-- > 0;)
 #pragma GCC unroll 3
         for (int j = 0; j < vectors; j++) {
             v8 x = ((const v8 *)(y + i * width))[j];
@@ -210,19 +214,18 @@ static inline __attribute__((always_inline)) void backward_vectors(const int vec
             at[j] = V8_WHERE(more, (v8){0} + (double)i, at[j]);
         }
     for (int j = 0; j < vectors; j++) {
-        ((v8 *)top)[j] = most[j];
-        ((v8 *)top_row)[j] = at[j];
+        ((v8 *)(top + column))[j] = most[j];
+        ((v8 *)(top_row + column))[j] = at[j];
     }
 }
 
-CLONED static void backward(const Filter *filter, size_t rows, size_t block, size_t width, const double y[], double z[],
-                            double top[], double top_row[])
+CLONED static void backward(const FloorFilter *f, size_t block, double top[], double top_row[])
 {
     size_t at = 0;
-    for (; at + VECTORS * LANES8 <= width; at += VECTORS * LANES8)
-        backward_vectors(VECTORS, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
-    for (; at < width; at += LANES8)
-        backward_vectors(1, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
+    for (; at + VECTORS * LANES8 <= f->width; at += VECTORS * LANES8)
+        backward_vectors(VECTORS, f, block, at, top, top_row);
+    for (; at < f->width; at += LANES8)
+        backward_vectors(1, f, block, at, top, top_row);
 }
 
 /* Peaks of rows 1..block of y, the last of which has a neighbour: of the parabola through the row of the largest
@@ -232,7 +235,7 @@ static void take_block(FloorFilter *f, size_t block)
     _Alignas(64) double top[FLOORS_MAX], row[FLOORS_MAX];
     if (!may_rise(f->filled - 1, f->width, f->y + f->width, f->norm, f->most))
         return;
-    backward(&f->filter, f->filled, block, f->width, f->y, f->z, top, row);
+    backward(f, block, top, row);
     for (size_t j = 0; j < (size_t)f->n; j++) {
         if (!(top[j] > f->most[j]))
             continue;

@@ -75,8 +75,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (scene->run.duration == 0 && motion)
         scene->run.duration = motion_duration(motion);
     Status status = building_load(&scene->building, &o->building, err);
-    if (status == STATUS_OK)
-        status = design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err);
+    THEN(status, design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err));
     if (status == STATUS_OK && neighbour_is_given(&o->core)) {
         scene->neighbour = calloc(1, sizeof *scene->neighbour);
         status = scene->neighbour ? core_make(scene->neighbour, &o->core, &o->building, &scene->building, 0, 0, err)
@@ -132,25 +131,22 @@ const DesignSpace *scene_design(const Scene *scene)
     return &scene->design;
 }
 
-Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
-                         double zero_gap_hz[], double *core_mass_kg, Err *err)
+Status scene_frequencies(const Scene *scene, const double x[], SceneModes *out, Err *err)
 {
-    const int n = scene->building.n;
     CoreOptions options = scene->options.core;
     CoreBeam *core;
-    TRY_ROOM(core, 1, "a core", err);
     Design d;
+    TRY_ROOM(core, 1, "a core", err);
     design_of(&scene->design, x, &d);
     if (d.side > 0)
         options.width_m = d.side;
     Status status = core_make(core, &options, &scene->options.building, &scene->building, d.t_base, d.t_top, err);
-    if (status == STATUS_OK)
-        status = building_joined_hz(core, &scene->building, zero_gap_hz, err);
-    for (int i = 0; i < n && status == STATUS_OK; i++) {
-        building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
-        core_hz[i] = i < core->top ? core->omega[i] / (2 * M_PI) : NAN;
+    THEN(status, building_joined_hz(core, &scene->building, out->joined_hz, err));
+    for (int i = 0; i < scene->building.n && status == STATUS_OK; i++) {
+        out->building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
+        out->core_hz[i] = i < core->top ? core->omega[i] / (2 * M_PI) : NAN;
     }
-    *core_mass_kg = core->mass_kg;
+    out->core_mass_kg = core->mass_kg;
     free(core);
     return status;
 }
@@ -402,6 +398,7 @@ static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, dou
     return STATUS_OK;
 }
 
+/* Floors and core without gaps: the building's model is that of both while the engine runs. */
 static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *err)
 {
     Joined joined;
@@ -410,10 +407,8 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
     w->building = &joined.building;
     if (status == STATUS_OK && w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
-    if (status == STATUS_OK)
-        status = model_set(&w->model, w->options, w->building, NULL, NULL, err);
-    if (status == STATUS_OK)
-        status = run_engine(w, result, err);
+    THEN(status, model_set(&w->model, w->options, w->building, NULL, NULL, err));
+    THEN(status, run_engine(w, result, err));
     if (status == STATUS_OK)
         joined_book(&joined, result);
     w->building = own;
@@ -433,8 +428,7 @@ static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *resu
     if (w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, core, 0, (double[]){d.t_base, d.t_top});
     Status status = set_model(w, core, &d, kind == SCENE_IMPACT ? w->options->design.link_exponent : 1, err);
-    if (status == STATUS_OK)
-        status = run_engine(w, result, err);
+    THEN(status, run_engine(w, result, err));
     w->run.work = work;
 
     /* What the devices cost. */

@@ -153,6 +153,7 @@ typedef struct {
     const size_t *rows;
 } Many;
 
+/* Designs first .. end - 1 of the list as lines of a table, or as objects. */
 static void put_some(FILE *f, const Many *m, size_t first, size_t end)
 {
     for (size_t i = first; i < end; i++) {
@@ -213,26 +214,27 @@ Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, cons
 
 /* -- files of the run's folder ------------------------------------------------------------------------------------- */
 
-static Status write_inside(const char *folder, const char *name, const Run *run, ExportTable table, size_t n,
-                           const size_t rows[], Err *err)
+/* A table in the folder of a run. */
+static Status write_inside(const char *folder, const Run *run, ExportTable table, size_t n, const size_t rows[],
+                           Err *err)
 {
     char path[PATH_MAX];
     Output o;
-    folder_path(folder, name, path);
+    folder_path(folder, table == EXPORT_FRONT ? "front.csv" : "nearest.csv", path);
     TRY(output_open_inside(&o, path, err));
     return output_end(&o, export_designs(o.stream, run, table, n, rows, err), err);
 }
 
 Status export_front(const Run *run, Err *err)
 {
-    return write_inside(run->folder, "front.csv", run, EXPORT_FRONT, run->n_front, run->front, err);
+    return write_inside(run->folder, run, EXPORT_FRONT, run->n_front, run->front, err);
 }
 
 Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
 {
     char path[PATH_MAX];
     if (n > 0)
-        return write_inside(folder, "nearest.csv", run, EXPORT_NEAREST, n, rows, err);
+        return write_inside(folder, run, EXPORT_NEAREST, n, rows, err);
     folder_path(folder, "nearest.csv", path);
     unlink(path);
     return STATUS_OK;

@@ -122,6 +122,7 @@ Status output_end(Output *o, Status status, Err *err)
 
 char *digits_of(char *from, char *to, double value); /* digits.cpp: returns where they end */
 
+/* Numbers with their fewest digits; what is not finite is `missing`. */
 static void put_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
 {
     char text[32];

@@ -67,6 +67,7 @@ void program_identity(size_t n, char text[])
     json_decref(all);
 }
 
+/* Host, operating system and the kernels that this processor gets. */
 static json_t *machine(int threads)
 {
     char host[256] = "unknown", system[128] = "unknown", started[24], line[256];

@@ -226,6 +226,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
 
 /* -- transactions -------------------------------------------------------------------------------------------------- */
 
+/* Whether there is something to commit, told to the thread that does. */
 static void set_open(RunStore *store, int is_open)
 {
     pthread_mutex_lock(&store->lock);
@@ -236,6 +237,7 @@ static void set_open(RunStore *store, int is_open)
     pthread_mutex_unlock(&store->lock);
 }
 
+/* A transaction, unless one is open already. */
 static Status begin(RunStore *store, Err *err)
 {
     if (store->is_lost)
@@ -451,8 +453,7 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
     const size_t n = store->waiting.n;
     Status status = store->status;
     *err = store->why;
-    if (status == STATUS_OK)
-        status = evaluation_table_append(&store->waiting, e, err);
+    THEN(status, evaluation_table_append(&store->waiting, e, err));
     if (status != STATUS_OK)
         store->waiting.n = n; /* without half a row */
     pthread_cond_signal(&store->news);
@@ -531,6 +532,7 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     return STATUS_OK;
 }
 
+/* All that a generation changes: kinds of its rows, front, record, session, state of the search. */
 static Status put_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
     const Archive *a = v->all;

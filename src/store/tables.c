@@ -120,6 +120,7 @@ typedef struct {
 
 enum { N_NUMBERS = 5 };
 
+/* What a table has of them, in the order in which this program writes them. */
 static void numbers_of(RowTable table, const Schema *s, Numbers list[N_NUMBERS])
 {
     const int is_finer = table == ROWS_FINER;
@@ -322,6 +323,7 @@ static uint64_t digest_whole(long value, uint64_t hash)
     return hash ^ hash >> 32;
 }
 
+/* As SQLite gives them back: -0 as 0, and one value for all that are not finite. */
 static uint64_t digest_numbers(size_t n, const double values[], uint64_t hash)
 {
     for (size_t i = 0; i < n; i++) {
@@ -416,6 +418,7 @@ typedef struct {
     uint64_t digest;
 } Row;
 
+/* NULL stands for what is not finite. */
 static void pass_number(Row *r, double *value)
 {
     if (r->reads)
@@ -514,11 +517,12 @@ typedef struct {
     size_t n;
 } Records;
 
+/* A row becomes the next record of the list, which grows at powers of two. */
 static Status take_record(sqlite3_stmt *row, void *user, Err *err)
 {
     Records *r = user;
     const TableColumns *t = r->table;
-    if ((r->n & (r->n - 1)) == 0) { /* at powers of two */
+    if ((r->n & (r->n - 1)) == 0) {
         char *wider = realloc(r->list, (r->n > 0 ? 2 * r->n : 1) * t->size);
         if (!wider)
             return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows of %s", database_path(r->db), r->n, t->name);
@@ -586,6 +590,7 @@ typedef struct {
     void *user;
 } Reading;
 
+/* A row becomes the one evaluation that there is room for, and is handed on. */
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
@@ -613,14 +618,11 @@ Status rows_each(Database *db, RowTable table, const Schema *s, const char *wher
         .db = db, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err), .take = take, .user = user};
     snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", ROWS[table].name, where);
     Status status = tables_columns(db, table, s, &r.columns, err);
-    if (status == STATUS_OK)
-        status = evaluation_table_add(&r.room, &row, err);
+    THEN(status, evaluation_table_add(&r.room, &row, err));
     if (status == STATUS_OK && n_err > 0)
         row->err = row->extra + s->n_extra;
-    if (status == STATUS_OK)
-        status = evaluation_table_give_room(row, err);
-    if (status == STATUS_OK)
-        status = database_each(db, sql, take_row, &r, err);
+    THEN(status, evaluation_table_give_room(row, err));
+    THEN(status, database_each(db, sql, take_row, &r, err));
     evaluation_table_free(&r.room);
     free(r.columns.place);
     return status;
