@@ -46,12 +46,12 @@ double floor_filter_spacing(double cutoff_hz)
 
 Status floor_filter_create(FloorFilter **out, int n_floors, double cutoff_hz, Err *err)
 {
-    *out = calloc(1, sizeof **out);
-    if (!*out)
-        return fail(err, STATUS_NO_MEMORY, "filter: out of memory");
-    (*out)->n = n_floors;
-    (*out)->width = ((size_t)n_floors + LANES8 - 1) & ~(size_t)(LANES8 - 1);
-    (*out)->cutoff_hz = cutoff_hz;
+    FloorFilter *f = *out = NULL;
+    TRY_ROOM(f, 1, "a filter of floors", err);
+    f->n = n_floors;
+    f->width = ((size_t)n_floors + LANES8 - 1) & ~(size_t)(LANES8 - 1);
+    f->cutoff_hz = cutoff_hz;
+    *out = f;
     return STATUS_OK;
 }
 

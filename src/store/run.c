@@ -156,11 +156,6 @@ Status run_settle_front(Run *run, Err *err)
     return STATUS_OK;
 }
 
-int run_is_screened(const Run *run)
-{
-    return settings_screens(run->settings);
-}
-
 size_t run_evaluations(const Run *run, size_t first)
 {
     /* As in the search; the first replicate of all records is one here. */
@@ -172,7 +167,7 @@ size_t run_evaluations(const Run *run, size_t first)
     for (size_t i = first; i < run->table.n; i++) {
         const double *sd = run->table.row[i].sd; /* NULL: of one simulation of every record; the cheap level has none */
         EvaluationKind kind = run->table.row[i].kind;
-        if (kind == KIND_UNFINISHED && run_is_screened(run))
+        if (kind == KIND_UNFINISHED && settings_screens(s))
             kind = sd && isfinite(sd[0]) ? KIND_FINISHED : KIND_SCREENED;
         sum += kind == KIND_SCREENED   ? cheap
                : kind == KIND_FINISHED ? whole - cheap

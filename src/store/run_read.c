@@ -243,14 +243,13 @@ static Status load_rows(Loading *l, Err *err)
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
-/* As one state of a run that is worked on. */
-static Status load(Run *run, Database *d, const char *folder, int with_rows, Err *err)
+Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *err)
 {
     Loading l = {.run = run, .d = d};
     memset(run, 0, sizeof *run);
-    TRY(database_do(d, err, "BEGIN", ""));
+    TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
     Status status = load_head(&l, err);
-    if (with_rows)
+    if (parts == RUN_WHOLE)
         THEN(status, load_rows(&l, err));
     evaluation_table_free(&l.polished);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
@@ -259,16 +258,6 @@ static Status load(Run *run, Database *d, const char *folder, int with_rows, Err
     if (status != STATUS_OK)
         run_free(run);
     return status;
-}
-
-Status run_load_head(Run *run, Database *d, const char *folder, Err *err)
-{
-    return load(run, d, folder, 0, err);
-}
-
-Status run_load(Run *run, Database *d, const char *folder, Err *err)
-{
-    return load(run, d, folder, 1, err);
 }
 
 int run_is_there(const char *folder)
@@ -309,7 +298,7 @@ Status run_read(Run *run, const char *folder, Err *err)
     TRY(run_wanted(folder, err));
     folder_path(folder, "run.sqlite", path);
     Status status = database_open(&d, path, DATABASE_READ, err);
-    THEN(status, run_load(run, d, folder, err));
+    THEN(status, run_load(run, d, folder, RUN_WHOLE, err));
     database_close(d);
     return folder_advise(folder, status, err);
 }

@@ -129,7 +129,7 @@ static Status load_run(RunStore *store, Err *err)
     Run *run = &store->run;
     const Schema *s = &run->schema;
     TRY(open_database(store, err));
-    TRY(run_load_head(run, store->db, store_folder(store), err));
+    TRY(run_load(run, store->db, store_folder(store), RUN_HEAD, err));
     store->has_run = 1;
     database_grow(store->db);
     store->unfinished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
@@ -624,7 +624,7 @@ Status store_event(RunStore *store, json_t *event, Err *err)
 Status store_read(RunStore *store, Run *run, Err *err)
 {
     TRY(store_flush(store, err));
-    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), err), err);
+    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), RUN_WHOLE, err), err);
 }
 
 Status store_write_front(RunStore *store, Run *run, Err *err)
