@@ -6,12 +6,13 @@
 
 /* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which
  * samples are not below that level. What a design dominates is in all sets of its own levels, which few others are. */
+#define WORDS_OF(n) (((n) + WORD * SOME - 1) / (WORD * SOME) * SOME) /* that n samples take */
 enum {
     LEVELS = 128,
     FEW = 2,
     WORD = 64,
     SOME = 8, /* words come in multiples of it: whole vectors */
-    WORDS = (HYPERVOLUME_SAMPLES + WORD * SOME - 1) / (WORD * SOME) * SOME
+    WORDS = WORDS_OF(HYPERVOLUME_SAMPLES)
 };
 
 struct Hypervolume {
@@ -50,12 +51,6 @@ static void join_levels(Hypervolume *h)
         for (size_t level = LEVELS - 1; level-- > 0;)
             for (size_t w = 0; w < h->n_words; w++)
                 samples_above(h, k, level)[w] |= samples_above(h, k, level + 1)[w];
-}
-
-/* That n samples take. */
-static size_t words_of(size_t n)
-{
-    return (n + WORD * SOME - 1) / (WORD * SOME) * SOME;
 }
 
 void hypervolume_box(size_t n_obj, double lower[], double reference[])
@@ -136,7 +131,7 @@ void hypervolume_add(Hypervolume *h, const double f[])
     h->n_left -= n;
     for (size_t w = 0; n > 0 && w < h->n_words; w++)
         h->left[w] ^= dominated[w];
-    if (words_of(FEW * h->n_left) >= h->n_words)
+    if (WORDS_OF(FEW * h->n_left) >= h->n_words)
         return;
 
     /* Samples that are left move together, so that fewer words are looked at. */
@@ -148,7 +143,7 @@ void hypervolume_add(Hypervolume *h, const double f[])
     memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
     for (size_t i = 0; i < n; i++)
         note_sample(h, i);
-    h->n_words = words_of(n);
+    h->n_words = WORDS_OF(n);
     join_levels(h);
 }
 

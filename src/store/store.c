@@ -275,7 +275,7 @@ static const Schema *schema_of_store(const RunStore *store)
     return store->schema ? store->schema : &store->run.schema;
 }
 
-static Status insert_row(RunStore *store, RowTable table, const Evaluation *e, Err *err)
+static Status insert_row(RunStore *store, RunTable table, const Evaluation *e, Err *err)
 {
     RowColumns *columns = &store->columns[table];
     if (!columns->place)
@@ -670,7 +670,7 @@ void store_free(RunStore *store)
     free(store->polished);
     evaluation_table_free(&store->unfinished);
     hypervolume_free(store->hypervolume);
-    for (RowTable t = 0; t < N_ROW_TABLES; t++)
+    for (RunTable t = 0; t < N_ROW_TABLES; t++)
         free(store->columns[t].place);
     folder_release(&store->folder);
     free(store);

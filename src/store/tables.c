@@ -92,11 +92,9 @@ typedef struct {
         name, has_digest, fields, N_OF(fields), sizeof(record)                                                         \
     }
 
-static const TableColumns ROWS[N_ROW_TABLES] = {
+static const TableColumns TABLES[N_DESCRIBED] = {
     [ROWS_EVALUATION] = TABLE("evaluation", 1, EVALUATION, Evaluation),
     [ROWS_FINER] = TABLE("finer", 1, FINER, Evaluation),
-};
-static const TableColumns RECORDS[N_RECORD_TABLES] = {
     [TABLE_GENERATION] = TABLE("generation", 1, GENERATION, RunGeneration),
     [TABLE_FRONT] = TABLE("front", 0, FRONT, RunMark),
     [TABLE_SESSION] = TABLE("session", 0, SESSION, RunSession),
@@ -109,7 +107,7 @@ static const char OTHERS[] =
     "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "
     "digest INTEGER NOT NULL);";
 
-enum { N_TABLES = N_RECORD_TABLES + N_ROW_TABLES + 2 };
+enum { N_FIXED = N_DESCRIBED - N_ROW_TABLES + 2 /* tables without numbers of an evaluation */ };
 
 /* Numbers of an evaluation that follow its digest: n columns named after those of the schema from `first` on, and the
  * array of the record that has them. */
@@ -121,7 +119,7 @@ typedef struct {
 enum { N_NUMBERS = 5 };
 
 /* What a table has of them, in the order in which this program writes them. */
-static void numbers_of(RowTable table, const Schema *s, Numbers list[N_NUMBERS])
+static void numbers_of(RunTable table, const Schema *s, Numbers list[N_NUMBERS])
 {
     const int is_finer = table == ROWS_FINER;
     const Numbers all[] = {
@@ -176,14 +174,10 @@ static Status tables_text(const Schema *s, char **text, Err *err)
     if (!f)
         return fail_memory(err, 1, "the names of the columns");
     fputs(OTHERS, f);
-    for (RecordTable t = 0; t < N_RECORD_TABLES; t++) {
-        put_table(f, &RECORDS[t]);
-        fputs(");", f);
-    }
-    for (RowTable t = 0; t < N_ROW_TABLES; t++) {
-        put_table(f, &ROWS[t]);
+    for (RunTable t = 0; t < N_DESCRIBED; t++) {
+        put_table(f, &TABLES[t]);
         numbers_of(t, s, list);
-        for (size_t k = 0; k < N_NUMBERS; k++)
+        for (size_t k = 0; k < N_NUMBERS && t < N_ROW_TABLES; k++)
             for (size_t c = 0; c < list[k].n; c++) {
                 fprintf(f, ", \"%s", list[k].begin);
                 for (const char *name = s->column[list[k].first + c].name; *name; name++)
@@ -232,7 +226,7 @@ static NumberPlace place_of(const char *name, const Numbers list[N_NUMBERS], con
 
 typedef struct {
     Database *db;
-    RowTable table;
+    RunTable table;
     const Schema *schema;
     RowColumns *columns;
     size_t n_wanted; /* variables and objectives that were found */
@@ -251,7 +245,7 @@ static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
     size_t length;
     FILE *stream = text_open(&begin, &length);
     if (stream)
-        put_table(stream, &ROWS[f->table]);
+        put_table(stream, &TABLES[f->table]);
     if (!stream || text_close(stream) != 0) {
         free(begin);
         return fail_memory(err, 1, "the names of the columns");
@@ -278,16 +272,16 @@ static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-Status tables_columns(Database *db, RowTable table, const Schema *schema, RowColumns *columns, Err *err)
+Status tables_columns(Database *db, RunTable table, const Schema *schema, RowColumns *columns, Err *err)
 {
     char sql[80];
     Finding f = {.db = db, .table = table, .schema = schema, .columns = columns};
     const size_t wanted = schema->n_obj + (table == ROWS_EVALUATION ? schema->n_var : 0);
     *columns = (RowColumns){.table = table};
-    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", ROWS[table].name);
+    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", TABLES[table].name);
     Status status = database_each(db, sql, find_columns, &f, err);
     if (status == STATUS_OK && !(f.is_whole && f.n_wanted == wanted))
-        status = database_damaged(db, err, "its table %s is not that of this run", ROWS[table].name);
+        status = database_damaged(db, err, "its table %s is not that of this run", TABLES[table].name);
     if (status != STATUS_OK)
         free(columns->place);
     columns->place = status == STATUS_OK ? columns->place : NULL;
@@ -302,16 +296,15 @@ Status tables_check(Database *db, const Schema *schema, Err *err)
     Status status = database_each(db, "SELECT sql FROM sqlite_schema WHERE name NOT IN ('evaluation', 'finer')",
                                   count_known, &k, err);
     free(text);
-    for (RowTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
+    for (RunTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
         RowColumns columns;
         status = tables_columns(db, t, schema, &columns, err);
         free(columns.place);
     }
     TRY(status);
-    return k.n_known == N_TABLES - N_ROW_TABLES
+    return k.n_known == N_FIXED
                ? STATUS_OK
-               : database_damaged(db, err, "%d of its tables are not those of this run",
-                                  N_TABLES - N_ROW_TABLES - k.n_known);
+               : database_damaged(db, err, "%d of its tables are not those of this run", N_FIXED - k.n_known);
 }
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
@@ -500,9 +493,9 @@ static Status begin_insert(Database *db, const TableColumns *t, size_t n, void *
     return STATUS_OK;
 }
 
-Status record_put(Database *db, RecordTable table, void *record, Err *err)
+Status record_put(Database *db, RunTable table, void *record, Err *err)
 {
-    const TableColumns *t = &RECORDS[table];
+    const TableColumns *t = &TABLES[table];
     Row r;
     TRY(begin_insert(db, t, t->n + t->has_digest, record, &r, err));
     if (t->has_digest)
@@ -538,10 +531,10 @@ static Status take_record(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err *err)
+Status records_read(Database *db, RunTable table, void *list, size_t *n, Err *err)
 {
     char sql[64];
-    Records r = {.db = db, .table = &RECORDS[table]};
+    Records r = {.db = db, .table = &TABLES[table]};
     snprintf(sql, sizeof sql, "SELECT * FROM %s ORDER BY 1", r.table->name);
     const Status status = database_each(db, sql, take_record, &r, err);
     memcpy(list, &r.list, sizeof r.list);
@@ -554,7 +547,7 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
-    const TableColumns *t = &ROWS[columns->table];
+    const TableColumns *t = &TABLES[columns->table];
     Evaluation row = *e;
     Row r;
     for (size_t k = 0; k < schema->n_obj; k++)
@@ -595,7 +588,7 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
     Evaluation *e = r->room.row;
-    const TableColumns *t = &ROWS[r->columns.table];
+    const TableColumns *t = &TABLES[r->columns.table];
     Row taken = {.s = row, .reads = 1, .digest = HASH_SEED};
     for (size_t i = 0; i < t->n; i++)
         pass_field(&taken, &t->field[i], e);
@@ -608,7 +601,7 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     return r->take(e, r->user, err);
 }
 
-Status rows_each(Database *db, RowTable table, const Schema *s, const char *where, EvaluationFn take, void *user,
+Status rows_each(Database *db, RunTable table, const Schema *s, const char *where, EvaluationFn take, void *user,
                  Err *err)
 {
     char sql[200];
@@ -616,7 +609,7 @@ Status rows_each(Database *db, RowTable table, const Schema *s, const char *wher
     const size_t n_err = table == ROWS_FINER ? s->n_obj + s->n_extra : 0;
     Reading r = {
         .db = db, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err), .take = take, .user = user};
-    snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", ROWS[table].name, where);
+    snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", TABLES[table].name, where);
     Status status = tables_columns(db, table, s, &r.columns, err);
     THEN(status, evaluation_table_add(&r.room, &row, err));
     if (status == STATUS_OK && n_err > 0)
