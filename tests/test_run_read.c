@@ -107,11 +107,11 @@ TEST(rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_the
     h.settings->problem.noisy = NOISY_NO;
     h.settings->search.fidelity = FIDELITY_REPLICATES;
     h.settings->sim.replicates = 3;
-    assert_true(run_is_screened(&h));
+    assert_true(settings_screens(h.settings));
     assert_int_equal(run_evaluations(&h, 0), (8 + 2 + open + 1) / 3);
     assert_int_equal(run_evaluations(&h, 9), (open + 1) / 3);
     h.settings->search.fidelity = FIDELITY_OFF;
-    assert_false(run_is_screened(&h));
+    assert_false(settings_screens(h.settings));
     assert_int_equal(run_evaluations(&h, 9), open);
     run_free(&h);
 }

@@ -212,12 +212,12 @@ static Status describe(const Problem *p, const Question *q, Err *err)
 {
     const Tower *t = tower_of(p);
     const int n_floors = tower_n_floors(t), n_obj = (int)p->n_obj;
-    double building[FLOORS_MAX], core[FLOORS_MAX], joined[FLOORS_MAX], mass;
-    TRY(scene_frequencies(tower_record(t, 0)->scene, p->upper, building, core, joined, &mass, err));
+    SceneModes modes;
+    TRY(scene_frequencies(tower_record(t, 0)->scene, p->upper, &modes, err));
     result_numbers(q->result, "floors", 1, (double[]){n_floors});
     result_numbers(q->result, "lower", p->n_var, p->lower);
     result_numbers(q->result, "upper", p->n_var, p->upper);
-    result_numbers(q->result, "building_hz", (size_t)n_floors, building);
+    result_numbers(q->result, "building_hz", (size_t)n_floors, modes.building_hz);
     result_text(q->result, "record", tower_record(t, 0)->motion.name);
     TRY(add_names(q->result, "variables", t, (int)p->n_var, variable, err));
     TRY(add_names(q->result, "objectives", t, n_obj, objective, err));

@@ -35,6 +35,7 @@ static inline void *carve_store(const Carve *c)
     return store ? memset(store, 0, size) : NULL;
 }
 
+/* Counts, then hands out. */
 static inline void *carve_all(void (*layout)(void *object, Carve *c), void *object)
 {
     Carve c = {0};

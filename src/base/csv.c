@@ -6,41 +6,36 @@
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a
- * shell's <(...) have a writer. */
-static int is_left_pipe(const char *path)
-{
-    struct stat about;
-    return strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode);
-}
-
-static Status read_stream(FILE *f, const char *path, size_t largest, char **text, size_t *length, Err *err)
-{
-    for (size_t capacity = 1 << 16; *length <= largest; capacity *= 2) {
-        char *wider = realloc(*text, capacity + 1);
-        if (!wider)
-            return fail_memory(err, capacity, "bytes");
-        *text = wider;
-        *length += fread(*text + *length, 1, capacity - *length, f);
-        (*text)[*length] = 0;
-        if (ferror(f))
-            return fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(errno));
-        if (*length < capacity && *length <= largest)
-            return STATUS_OK;
-    }
-    return bad_data(err, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
-}
-
 Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err)
 {
+    struct stat about;
+    Status status = STATUS_OK;
     *text = NULL;
     *length = 0;
-    if (is_left_pipe(path))
+
+    /* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a
+     * shell's <(...) have a writer. */
+    if (strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode))
         return fail(err, STATUS_MISSING, "%s: is a named pipe, not a file; to read from a pipe name /dev/stdin", path);
     FILE *f = fopen(path, "rb");
     if (!f)
         return fail_missing(err, path);
-    const Status status = read_stream(f, path, largest, text, length, err);
+    int is_whole = 0;
+    for (size_t capacity = 1 << 16; status == STATUS_OK && !is_whole; capacity *= 2) {
+        char *wider = realloc(*text, capacity + 1);
+        if (!wider) {
+            status = fail_memory(err, capacity, "bytes");
+            break;
+        }
+        *text = wider;
+        *length += fread(*text + *length, 1, capacity - *length, f);
+        (*text)[*length] = 0;
+        is_whole = *length < capacity;
+        if (ferror(f))
+            status = fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(errno));
+        else if (*length > largest)
+            status = bad_data(err, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
+    }
     fclose(f);
     if (status != STATUS_OK) {
         free(*text);
@@ -85,14 +80,6 @@ int lines_next(Lines *l)
     return 1;
 }
 
-/* Behind a cell that ends at p: any blanks and at most one of the other marks; beyond the end where nothing is left. */
-static const char *skip_blanks(const char *p, const char *end, const char *marks)
-{
-    for (int n = 0; p < end && (isspace((unsigned char)*p) || (strchr(marks, *p) && !n)); p++)
-        n += !isspace((unsigned char)*p);
-    return p < end ? p : end + 1;
-}
-
 Cell cell_next(const char **p, const char *end, const char *marks)
 {
     const int blanks = *marks == ' ';
@@ -108,7 +95,12 @@ Cell cell_next(const char **p, const char *end, const char *marks)
         if (!quoted && (strchr(marks, *c.to) || (blanks && isspace((unsigned char)*c.to))))
             break;
     }
-    *p = blanks ? skip_blanks(c.to, end, marks) : c.to + 1;
+    /* Behind the cell any blanks and at most one of the other marks; beyond the end where nothing is left. */
+    *p = blanks ? c.to : c.to + 1;
+    for (int n = 0; blanks && *p < end && (isspace((unsigned char)**p) || (strchr(marks, **p) && !n)); ++*p)
+        n += !isspace((unsigned char)**p);
+    if (blanks && *p >= end)
+        *p = end + 1;
     strip(&c.from, &c.to);
     c.is_quoted = c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"';
     if (c.is_quoted) {
@@ -204,43 +196,11 @@ static int next_row(Reading *r, const char **from, const char **to)
     return 0;
 }
 
-static Status read_names(Reading *r, const char *from, const char *to, Err *err)
+/* What is wrong with a cell that should be a number. */
+static Status fail_number(const Table *t, int line, size_t column, Cell c, Err *err)
 {
-    Table *t = r->t;
-    size_t n = 0;
-    TRY_ROOM(t->names, t->n_cols, "column names", err);
-    for (const char *p = from; p <= to; n++) {
-        const Cell c = cell_next(&p, to, r->separator);
-        if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
-            return fail_at(err, &r->l, "column %zu has no usable name", n + 1);
-        memcpy(t->names[n], c.from, c.to - c.from);
-    }
-    return STATUS_OK;
-}
-
-static Status room_for_row(Reading *r, Err *err)
-{
-    Table *t = r->t;
-    if (t->n_rows < r->rows)
-        return STATUS_OK;
-    const size_t rows = 2 * t->n_rows + 64, cells = rows * t->n_cols;
-    void *wider =
-        r->of_words ? realloc(t->cell, cells * sizeof *t->cell) : realloc(t->values, cells * sizeof *t->values);
-    if (wider && r->of_words)
-        t->cell = wider;
-    else if (wider)
-        t->values = wider;
-    int *line = wider ? realloc(t->line, rows * sizeof *line) : NULL;
-    if (!line)
-        return fail_memory(err, rows, "rows");
-    t->line = line;
-    r->rows = rows;
-    return STATUS_OK;
-}
-
-static Status fail_number(const Table *t, int line, size_t column, Cell c, CellKind kind, double x, Err *err)
-{
-    if (kind == NOT_FINITE)
+    double x;
+    if (cell_number(c, 1, &x) == NOT_FINITE)
         return bad_data(err, "%s:%d: column %zu is %g; only finite numbers are accepted", t->path, line, column + 1, x);
     if (c.from == c.to)
         return bad_data(err, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
@@ -248,43 +208,51 @@ static Status fail_number(const Table *t, int line, size_t column, Cell c, CellK
                     (int)MIN_OF(c.to - c.from, 20), c.from);
 }
 
-static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
-{
-    Table *t = r->t;
-    const size_t at = t->n_rows * t->n_cols + column, length = c.to - c.from;
-    double x = 0;
-    const int is_empty = !r->of_words && r->has_header && length == 0;
-    const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
-    if (!r->of_words && kind != NUMBER && !is_empty)
-        return fail_number(t, r->l.number, column, c, kind, x, err);
-    if (kind == NUMBER)
-        TRY(lines_note_mark(&r->l, c, err));
-    if (!r->of_words) {
-        t->values[at] = is_empty ? NAN : x;
-        return STATUS_OK;
-    }
-    memcpy(t->text + r->used, c.from, length);
-    t->text[r->used + length] = 0;
-    t->cell[at] = r->used;
-    r->used += length + 1;
-    return STATUS_OK;
-}
-
-/* Numbers that are missing at a row's end are named one by one. */
+/* The cells of a row. Numbers that are missing at its end are named one by one. */
 static Status read_row(Reading *r, const char *from, const char *to, Err *err)
 {
     Table *t = r->t;
     const char *p = from;
-    TRY(room_for_row(r, err));
+    if (t->n_rows == r->rows) {
+        const size_t rows = 2 * t->n_rows + 64, cells = rows * t->n_cols;
+        void *wider =
+            r->of_words ? realloc(t->cell, cells * sizeof *t->cell) : realloc(t->values, cells * sizeof *t->values);
+        if (wider && r->of_words)
+            t->cell = wider;
+        else if (wider)
+            t->values = wider;
+        int *line = wider ? realloc(t->line, rows * sizeof *line) : NULL;
+        if (!line)
+            return fail_memory(err, rows, "rows");
+        t->line = line;
+        r->rows = rows;
+    }
     for (size_t n = 0; n < t->n_cols; n++) {
         if (r->of_words && p > to)
             return fail_at(err, &r->l, "%zu columns; the header has %zu", n, t->n_cols);
-        TRY(take_cell(r, n, cell_next(&p, to, r->separator), err));
+        const Cell c = cell_next(&p, to, r->separator);
+        const size_t at = t->n_rows * t->n_cols + n, length = c.to - c.from;
+        const int is_empty = !r->of_words && r->has_header && length == 0;
+        double x = NAN;
+        const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
+        if (!r->of_words && kind != NUMBER && !is_empty)
+            return fail_number(t, r->l.number, n, c, err);
+        if (kind == NUMBER)
+            TRY(lines_note_mark(&r->l, c, err));
+        if (!r->of_words) {
+            t->values[at] = x;
+            continue;
+        }
+        memcpy(t->text + r->used, c.from, length);
+        t->text[r->used + length] = 0;
+        t->cell[at] = r->used;
+        r->used += length + 1;
     }
     t->line[t->n_rows++] = r->l.number;
     return p > to ? STATUS_OK : fail_at(err, &r->l, "more than %zu columns", t->n_cols);
 }
 
+/* The names of the columns, where there are some, and all rows. */
 static Status read_rows(Reading *r, size_t length, Err *err)
 {
     Table *t = r->t;
@@ -296,7 +264,18 @@ static Status read_rows(Reading *r, size_t length, Err *err)
     while (next_row(r, &from, &to)) {
         for (const char *p = from; t->n_cols == 0 || (p > from && p <= to); t->n_cols++)
             cell_next(&p, to, r->separator);
-        TRY(r->has_header && !t->names ? read_names(r, from, to, err) : read_row(r, from, to, err));
+        if (!r->has_header || t->names) {
+            TRY(read_row(r, from, to, err));
+            continue;
+        }
+        TRY_ROOM(t->names, t->n_cols, "column names", err);
+        size_t n = 0;
+        for (const char *p = from; p <= to; n++) {
+            const Cell c = cell_next(&p, to, r->separator);
+            if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
+                return fail_at(err, &r->l, "column %zu has no usable name", n + 1);
+            memcpy(t->names[n], c.from, c.to - c.from);
+        }
     }
     if (t->n_rows > 0 || (t->names && !r->of_words))
         return STATUS_OK;
@@ -309,8 +288,7 @@ Status table_parse(Table *t, const char *path, const char *text, size_t length, 
     memset(t, 0, sizeof *t);
     snprintf(t->path, sizeof t->path, "%s", path);
     Status status = lines_open(&r.l, t->path, text, length, err);
-    if (status == STATUS_OK)
-        status = read_rows(&r, length, err);
+    THEN(status, read_rows(&r, length, err));
     if (status != STATUS_OK)
         table_free(t);
     return status;
@@ -360,6 +338,6 @@ Status sheet_number(const Table *s, size_t row, const char *column, double other
     *value = otherwise;
     if (!*text && !isnan(otherwise))
         return STATUS_OK;
-    const CellKind kind = cell_number(c, 1, value);
-    return kind == NUMBER ? STATUS_OK : fail_number(s, s->line[row], table_column(s, column), c, kind, *value, err);
+    return cell_number(c, 1, value) == NUMBER ? STATUS_OK
+                                              : fail_number(s, s->line[row], table_column(s, column), c, err);
 }

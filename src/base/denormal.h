@@ -4,6 +4,7 @@
  * Threads  the mode belongs to the calling thread; other processors than x86-64 keep theirs */
 #pragma once
 
+/* Returns the mode before, for denormal_restore. */
 static inline unsigned denormal_off(void)
 {
 #ifdef __x86_64__

@@ -6,12 +6,13 @@
 
 /* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which
  * samples are not below that level. What a design dominates is in all sets of its own levels, which few others are. */
+#define WORDS_OF(n) (((n) + WORD * SOME - 1) / (WORD * SOME) * SOME) /* that n samples take */
 enum {
     LEVELS = 128,
     FEW = 2,
     WORD = 64,
     SOME = 8, /* words come in multiples of it: whole vectors */
-    WORDS = (HYPERVOLUME_SAMPLES + WORD * SOME - 1) / (WORD * SOME) * SOME
+    WORDS = WORDS_OF(HYPERVOLUME_SAMPLES)
 };
 
 struct Hypervolume {
@@ -34,13 +35,6 @@ static uint64_t *samples_above(const Hypervolume *h, size_t k, size_t level)
     return h->above + (k * LEVELS + level) * WORDS;
 }
 
-static void sample_at(const Hypervolume *h, uint32_t seed, size_t i, double u[])
-{
-    Random r = random_stream(seed, RANDOM_HYPERVOLUME, 0, (uint32_t)i);
-    for (size_t k = 0; k < h->n_obj; k++)
-        u[k] = random_uniform(&r);
-}
-
 /* Sample i into the sets of its own levels. */
 static void note_sample(Hypervolume *h, size_t i)
 {
@@ -57,45 +51,6 @@ static void join_levels(Hypervolume *h)
         for (size_t level = LEVELS - 1; level-- > 0;)
             for (size_t w = 0; w < h->n_words; w++)
                 samples_above(h, k, level)[w] |= samples_above(h, k, level + 1)[w];
-}
-
-static void fill(Hypervolume *h, const double lower[], const double reference[], uint32_t seed)
-{
-    const size_t m = h->n_obj;
-    for (size_t k = 0; k < m; k++) {
-        h->lower[k] = lower[k];
-        h->per[k] = LEVELS / (reference[k] - lower[k]);
-    }
-    for (size_t i = 0; i < HYPERVOLUME_SAMPLES; i++) {
-        double *s = h->sample + i * m;
-        sample_at(h, seed, i, s);
-        for (size_t k = 0; k < m; k++)
-            s[k] = lower[k] + (reference[k] - lower[k]) * s[k];
-        note_sample(h, i);
-    }
-    join_levels(h);
-}
-
-/* That n samples take. */
-static size_t words_of(size_t n)
-{
-    return (n + WORD * SOME - 1) / (WORD * SOME) * SOME;
-}
-
-/* Samples that are left move together, so that fewer words are looked at. */
-static void draw_together(Hypervolume *h)
-{
-    const size_t m = h->n_obj;
-    size_t n = 0;
-    for (size_t w = 0; w < h->n_words; w++)
-        for (uint64_t rest = h->left[w]; rest; rest &= rest - 1, n++)
-            memmove(h->sample + n * m, h->sample + (w * WORD + __builtin_ctzll(rest)) * m, m * sizeof *h->sample);
-    memset(h->left, 0, sizeof h->left);
-    memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
-    for (size_t i = 0; i < n; i++)
-        note_sample(h, i);
-    h->n_words = words_of(n);
-    join_levels(h);
 }
 
 void hypervolume_box(size_t n_obj, double lower[], double reference[])
@@ -121,7 +76,17 @@ Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[],
     h->lower = h->sample + HYPERVOLUME_SAMPLES * n_obj;
     h->per = h->lower + n_obj;
     h->above = (void *)(h->per + n_obj);
-    fill(h, lower, reference, seed);
+    for (size_t k = 0; k < n_obj; k++) {
+        h->lower[k] = lower[k];
+        h->per[k] = LEVELS / (reference[k] - lower[k]);
+    }
+    for (size_t i = 0; i < HYPERVOLUME_SAMPLES; i++) {
+        Random r = random_stream(seed, RANDOM_HYPERVOLUME, 0, (uint32_t)i);
+        for (size_t k = 0; k < n_obj; k++)
+            h->sample[i * n_obj + k] = lower[k] + (reference[k] - lower[k]) * random_uniform(&r);
+        note_sample(h, i);
+    }
+    join_levels(h);
     return STATUS_OK;
 }
 
@@ -133,20 +98,15 @@ CLONED_V3 static void keep_common(size_t n_words, uint64_t near[], const uint64_
         near[w] &= above[w];
 }
 
-/* Samples that are left and not below the level of f in any objective. */
-static void find_near(const Hypervolume *h, const double f[], uint64_t near[WORDS])
-{
-    memcpy(near, h->left, h->n_words * sizeof *near);
-    for (size_t k = 0; k < h->n_obj; k++)
-        keep_common(h->n_words, near, samples_above(h, k, level_of(h, k, f[k])));
-}
-
-/* Samples that are left and that f dominates; returns how many. */
+/* Samples that are left and that f dominates; returns how many. They are among those that are not below the level of f
+ * in any objective. */
 static size_t find_dominated(const Hypervolume *h, const double f[], uint64_t near[WORDS])
 {
     const size_t m = h->n_obj;
     size_t n = 0;
-    find_near(h, f, near);
+    memcpy(near, h->left, h->n_words * sizeof *near);
+    for (size_t k = 0; k < m; k++)
+        keep_common(h->n_words, near, samples_above(h, k, level_of(h, k, f[k])));
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
             const size_t bit = __builtin_ctzll(rest);
@@ -165,13 +125,26 @@ double hypervolume_gain(const Hypervolume *h, const double f[])
 
 void hypervolume_add(Hypervolume *h, const double f[])
 {
+    const size_t m = h->n_obj;
     uint64_t dominated[WORDS];
-    const size_t n = find_dominated(h, f, dominated);
+    size_t n = find_dominated(h, f, dominated);
     h->n_left -= n;
     for (size_t w = 0; n > 0 && w < h->n_words; w++)
         h->left[w] ^= dominated[w];
-    if (words_of(FEW * h->n_left) < h->n_words)
-        draw_together(h);
+    if (WORDS_OF(FEW * h->n_left) >= h->n_words)
+        return;
+
+    /* Samples that are left move together, so that fewer words are looked at. */
+    n = 0;
+    for (size_t w = 0; w < h->n_words; w++)
+        for (uint64_t rest = h->left[w]; rest; rest &= rest - 1, n++)
+            memmove(h->sample + n * m, h->sample + (w * WORD + __builtin_ctzll(rest)) * m, m * sizeof *h->sample);
+    memset(h->left, 0, sizeof h->left);
+    memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
+    for (size_t i = 0; i < n; i++)
+        note_sample(h, i);
+    h->n_words = WORDS_OF(n);
+    join_levels(h);
 }
 
 double hypervolume_share(const Hypervolume *h)

@@ -29,37 +29,39 @@ json_t *json_words(const char *text)
     return string;
 }
 
-static json_t *next_value(char type, va_list *values)
-{
-    const char *text;
-    switch (type) {
-    case 'd':
-        return json_integer(va_arg(*values, int));
-    case 'g':
-        return json_number(va_arg(*values, double));
-    case 'l':
-    case 'z':
-        return json_integer(va_arg(*values, long));
-    case 'c':
-        return json_boolean(va_arg(*values, int));
-    case 's':
-        text = va_arg(*values, const char *);
-        return text ? json_words(text) : NULL;
-    default:
-        return va_arg(*values, json_t *);
-    }
-}
-
 json_t *json_put(json_t *o, const char *members, ...)
 {
     char key[64];
+    const char *text;
     va_list values;
     va_start(values, members);
     for (const char *at = members; *at; at += strspn(at, " ")) {
+        json_t *value;
         const size_t n = strcspn(at, "=");
         snprintf(key, sizeof key, "%.*s", (int)n, at);
         at += n + 2; /* behind =% */
-        json_object_set_new(o, key, next_value(*at, &values));
+        switch (*at) {
+        case 'd':
+            value = json_integer(va_arg(values, int));
+            break;
+        case 'g':
+            value = json_number(va_arg(values, double));
+            break;
+        case 'l':
+        case 'z':
+            value = json_integer(va_arg(values, long));
+            break;
+        case 'c':
+            value = json_boolean(va_arg(values, int));
+            break;
+        case 's':
+            text = va_arg(values, const char *);
+            value = text ? json_words(text) : NULL;
+            break;
+        default:
+            value = va_arg(values, json_t *);
+        }
+        json_object_set_new(o, key, value);
         at += strcspn(at, " ");
     }
     va_end(values);

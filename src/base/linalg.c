@@ -8,33 +8,12 @@
 
 /* Rows of A are columns for LAPACK: the same thing for a symmetric matrix, and no copies are made. */
 
-static void fix_sign(int n, double *mode)
-{
-    int largest = 0;
-    for (int j = 1; j < n; j++)
-        if (fabs(mode[j]) > fabs(mode[largest]))
-            largest = j;
-    if (mode[largest] < 0)
-        for (int j = 0; j < n; j++)
-            mode[j] = -mode[j];
-}
-
 /* ---- kernels --------------------------------------------------------------------------------------------------- */
 
 /* Of OpenBLAS that is built for several processors: forget the kernels in use; choose again, by the processor or by
  * OPENBLAS_CORETYPE. */
 __attribute__((weak)) void gotoblas_dynamic_quit(void);
 __attribute__((weak)) void gotoblas_dynamic_init(void);
-
-static int can_choose(void)
-{
-#ifdef __x86_64__
-    return gotoblas_dynamic_quit && gotoblas_dynamic_init && __builtin_cpu_supports("avx2") &&
-           __builtin_cpu_supports("fma");
-#else
-    return 0;
-#endif
-}
 
 const char *linalg_kernel_name(void)
 {
@@ -47,6 +26,7 @@ static struct {
     int users, threads;
 } single = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
+/* The first user takes the threads of BLAS away, the last one gives them back. */
 static void count_users(int change)
 {
     pthread_mutex_lock(&single.lock);
@@ -74,7 +54,13 @@ int linalg_pin(void)
 {
     static const char VARIABLE[] = "OPENBLAS_CORETYPE", PINNED[] = "Haswell";
     openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
-    if (getenv(VARIABLE) || !can_choose() || strcmp(linalg_kernel_name(), PINNED) == 0)
+#ifdef __x86_64__
+    const int can_choose = gotoblas_dynamic_quit && gotoblas_dynamic_init && __builtin_cpu_supports("avx2") &&
+                           __builtin_cpu_supports("fma");
+#else
+    const int can_choose = 0;
+#endif
+    if (getenv(VARIABLE) || !can_choose || strcmp(linalg_kernel_name(), PINNED) == 0)
         return 1;
     if (setenv(VARIABLE, PINNED, 1) != 0)
         return 0;
@@ -94,19 +80,10 @@ static const size_t BYTES_OF_THREAD = (size_t)264 << 20;
 __attribute__((weak)) void *blas_memory_alloc(int unused);
 __attribute__((weak)) void blas_memory_free(void *buffer);
 
-static void make_buffers(size_t n_threads)
+Status linalg_room(size_t n_threads, Err *err)
 {
     enum { MOST = 64 };
     void *buffer[MOST];
-    const size_t n = !blas_memory_alloc || !blas_memory_free ? 0 : MIN_OF(n_threads, MOST);
-    for (size_t i = 0; i < n; i++)
-        buffer[i] = blas_memory_alloc(0);
-    for (size_t i = 0; i < n; i++)
-        blas_memory_free(buffer[i]);
-}
-
-Status linalg_room(size_t n_threads, Err *err)
-{
     struct rlimit limit;
     const size_t more = n_threads > 1 ? n_threads - 1 : 1, size = more * BYTES_OF_THREAD;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -120,7 +97,11 @@ Status linalg_room(size_t n_threads, Err *err)
             limit.rlim_cur >> 20, more, more > 1 ? "s" : "", size >> 20,
             n_threads > 1 ? ", or take fewer --threads" : "");
     munmap(room, size);
-    make_buffers(n_threads);
+    const size_t n = !blas_memory_alloc || !blas_memory_free ? 0 : MIN_OF(n_threads, MOST);
+    for (size_t i = 0; i < n; i++)
+        buffer[i] = blas_memory_alloc(0);
+    for (size_t i = 0; i < n; i++)
+        blas_memory_free(buffer[i]);
     return STATUS_OK;
 }
 
@@ -132,12 +113,6 @@ static int lacked_memory(int info)
 /* From so many modes on by divide and conquer: faster, with another rounding, in twice the memory. */
 enum { MODES_OF_MANY = 257 };
 
-static int eigen(int n, double A[], double B[], double values[])
-{
-    return n < MODES_OF_MANY ? LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, values)
-                             : LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, values);
-}
-
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
 {
     const size_t nn = n * (size_t)n;
@@ -146,15 +121,20 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     double *B = A + nn;
     memcpy(A, K, nn * sizeof *A);
     memcpy(B, M, nn * sizeof *B);
-    const int info = eigen(n, A, B, omega);
+    const int info = n < MODES_OF_MANY ? LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, omega)
+                                       : LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, omega);
     if (info == 0) {
         const double rounding = 1e-12 * fabs(omega[n - 1]);
         for (int i = 0; i < n && omega[0] >= -rounding; i++)
             omega[i] = sqrt(fmax(omega[i], 0.0));
         for (int i = 0; i < n; i++) {
-            fix_sign(n, A + i * n);
+            const double *mode = A + i * n;
+            int largest = 0;
+            for (int j = 1; j < n; j++)
+                if (fabs(mode[j]) > fabs(mode[largest]))
+                    largest = j;
             for (int j = 0; j < n; j++)
-                phi[j * n + i] = A[i * n + j];
+                phi[j * n + i] = mode[largest] < 0 ? -mode[j] : mode[j];
         }
     }
     free(A);

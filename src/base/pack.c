@@ -3,22 +3,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int grow(Pack *p, size_t size)
-{
-    if (size <= p->n_max - p->n)
-        return 1;
-    const size_t n_max = 2 * (p->n + size);
-    unsigned char *wider = realloc(p->bytes, n_max);
-    if (!wider)
-        return 0;
-    p->bytes = wider;
-    p->n_max = n_max;
-    return 1;
-}
-
 void pack(Pack *p, void *value, size_t size)
 {
-    p->faulty = p->faulty || (p->reading ? size > p->n - p->at : !grow(p, size));
+    const size_t room = p->reading ? p->n - p->at : p->n_max - p->n;
+    if (size > room && !p->reading && !p->faulty) {
+        const size_t n_max = 2 * (p->n + size);
+        unsigned char *wider = realloc(p->bytes, n_max);
+        p->faulty |= !wider;
+        p->bytes = wider ? wider : p->bytes;
+        p->n_max = wider ? n_max : p->n_max;
+    }
+    p->faulty |= p->reading && size > room;
     if (p->faulty || size == 0)
         return;
     if (p->reading) {

@@ -1,6 +1,7 @@
 #include "base/random.h"
 
 #include <math.h>
+#include <string.h>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -13,22 +14,18 @@ Random random_stream(uint32_t seed, RandomPurpose purpose, uint32_t generation, 
     return (Random){.key = {seed, purpose}, .counter = {0, individual, generation, 0}};
 }
 
-static void next_block(Random *r)
-{
-    const philox4x32_ctr_t counter = {{r->counter[0], r->counter[1], r->counter[2], r->counter[3]}};
-    const philox4x32_key_t key = {{r->key[0], r->key[1]}};
-    const philox4x32_ctr_t block = philox4x32(counter, key);
-    for (int i = 0; i < 4; i++)
-        r->block[i] = block.v[i];
-    r->left = 4;
-    if (++r->counter[0] == 0)
-        r->counter[3]++;
-}
-
+/* Numbers come in blocks of four. */
 uint32_t random_bits(Random *r)
 {
-    if (r->left == 0)
-        next_block(r);
+    if (r->left == 0) {
+        const philox4x32_ctr_t counter = {{r->counter[0], r->counter[1], r->counter[2], r->counter[3]}};
+        const philox4x32_key_t key = {{r->key[0], r->key[1]}};
+        const philox4x32_ctr_t block = philox4x32(counter, key);
+        memcpy(r->block, block.v, sizeof r->block);
+        r->left = 4;
+        if (++r->counter[0] == 0)
+            r->counter[3]++;
+    }
     return r->block[4 - r->left--];
 }
 

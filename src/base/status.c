@@ -7,15 +7,10 @@
 
 #include "base/visible.h"
 
-/* Of a text that was cut; size: of its array. */
-static void end_with_dots(char text[], size_t size)
-{
-    static const char DOTS[] = "...";
-    memcpy(text + visible_cut(text, size - sizeof DOTS), DOTS, sizeof DOTS);
-}
-
+/* The sentence without invisible characters, which ends with dots where it was cut. */
 static Status say(Err *err, Status code, ErrSub sub, const char *format, va_list args)
 {
+    static const char DOTS[] = "...";
     char raw[sizeof err->text]; /* may quote any bytes of a file */
     if (!err)
         return code;
@@ -24,7 +19,7 @@ static Status say(Err *err, Status code, ErrSub sub, const char *format, va_list
     err->sub = sub;
     const int is_whole = visible_text(err->text, sizeof err->text, raw);
     if (is_cut || !is_whole)
-        end_with_dots(err->text, sizeof err->text);
+        memcpy(err->text + visible_cut(err->text, sizeof err->text - sizeof DOTS), DOTS, sizeof DOTS);
     return code;
 }
 

@@ -91,6 +91,13 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
             return try_status_;                                                                                        \
     } while (0)
 
+/* The next of several steps whose end has something to release: taken where all before it went well. */
+#define THEN(status, expr)                                                                                             \
+    do {                                                                                                               \
+        if ((status) == STATUS_OK)                                                                                     \
+            (status) = (expr);                                                                                         \
+    } while (0)
+
 #define N_OF(array)  (sizeof(array) / sizeof *(array)) /* elements */
 #define MIN_OF(a, b) ((a) < (b) ? (a) : (b))
 #define MAX_OF(a, b) ((a) > (b) ? (a) : (b))

@@ -44,24 +44,6 @@ static size_t decode(const char *text, uint32_t *code)
     return 0;
 }
 
-/* One character of the text as it may be shown; returns how many bytes it had. */
-static size_t show_one(const char *text, char shown[16])
-{
-    static const char ESCAPES[] = "\a\b\t\n\v\f\r", LETTERS[] = "abtnvfr";
-    uint32_t code = 0;
-    const size_t n = decode(text, &code);
-    const char *escape = code < 0x80 && n ? strchr(ESCAPES, code) : NULL;
-    if (escape)
-        snprintf(shown, 16, "\\%c", LETTERS[escape - ESCAPES]);
-    else if (n == 0 || code < ' ' || code == 0x7f)
-        snprintf(shown, 16, "\\x%02X", (unsigned char)text[0]);
-    else if (is_invisible(code))
-        snprintf(shown, 16, "<U+%04X>", code);
-    else
-        snprintf(shown, 16, "%.*s", (int)n, text);
-    return n ? n : 1;
-}
-
 int visible_cut(const char *text, size_t most)
 {
     size_t n = strnlen(text, most + 1);
@@ -73,10 +55,23 @@ int visible_cut(const char *text, size_t most)
 
 int visible_text(char out[], size_t size, const char *text)
 {
+    static const char ESCAPES[] = "\a\b\t\n\v\f\r", LETTERS[] = "abtnvfr";
     char shown[16];
     size_t n = 0;
     while (*text) {
-        text += show_one(text, shown);
+        /* One character as it may be shown, and how many bytes it had. */
+        uint32_t code = 0;
+        const size_t bytes = decode(text, &code);
+        const char *escape = code < 0x80 && bytes ? strchr(ESCAPES, code) : NULL;
+        if (escape)
+            snprintf(shown, sizeof shown, "\\%c", LETTERS[escape - ESCAPES]);
+        else if (bytes == 0 || code < ' ' || code == 0x7f)
+            snprintf(shown, sizeof shown, "\\x%02X", (unsigned char)text[0]);
+        else if (is_invisible(code))
+            snprintf(shown, sizeof shown, "<U+%04X>", code);
+        else
+            snprintf(shown, sizeof shown, "%.*s", (int)bytes, text);
+        text += bytes ? bytes : 1;
         const size_t length = strlen(shown);
         if (n + length >= size) {
             out[n] = 0;
@@ -89,13 +84,6 @@ int visible_text(char out[], size_t size, const char *text)
     return 1;
 }
 
-/* Some spreadsheets read the full-width = + - @ (U+FF1D ...) like the narrow ones. */
-static int is_formula_sign(uint32_t code)
-{
-    const uint32_t narrow = code > 0xff00 && code < 0xff5f ? code - 0xfee0 : code;
-    return narrow > 0 && narrow < 0x80 && strchr("=+-@", narrow) != NULL;
-}
-
 void cell_text(char cell[], size_t size, const char *text)
 {
     size_t n = 0, length;
@@ -105,7 +93,9 @@ void cell_text(char cell[], size_t size, const char *text)
         length = decode(text, &code);
         if (length == 0)
             code = (unsigned char)*text;
-        const size_t apostrophe = begins && length && is_formula_sign(code);
+        /* Some spreadsheets read the full-width = + - @ (U+FF1D ...) like the narrow ones. */
+        const uint32_t narrow = code > 0xff00 && code < 0xff5f ? code - 0xfee0 : code;
+        const size_t apostrophe = begins && length && narrow > 0 && narrow < 0x80 && strchr("=+-@", narrow) != NULL;
         length += !length;
         if (n + apostrophe + length >= size)
             break;

@@ -4,6 +4,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "base/hypervolume.h"
+#include "settings/settings.h"
 #include "store/run_read.h"
 #include "study/front_review.h"
 #include "study/improvement.h"
@@ -46,7 +47,7 @@ static void print_generations(const Run *run, double expected)
         putchar('\n');
     figures_print(table);
     json_decref(all);
-    if (n > 0 && run_is_screened(run))
+    if (n > 0 && settings_screens(run->settings))
         puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
     if (n > 0)
         show_expected_gain(expected);

@@ -76,11 +76,11 @@ static void add_point(Tuning *t, double u0, double u1)
 /* Warburton's device for the first mode, whose shape says which share of the mass the roof sees. */
 static Status add_warburton(Tuning *t, Err *err)
 {
-    double building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], mass;
+    SceneModes modes;
     const Building *b = scene_building(t->scenario->scene);
-    TRY(scene_frequencies(t->scenario->scene, t->search->x, building, core, both, &mass, err));
+    TRY(scene_frequencies(t->scenario->scene, t->search->x, &modes, err));
     const double roof = b->phi[(b->n - 1) * b->n];
-    const LinearDevice d = warburton_device(t->hz, mass * roof * roof);
+    const LinearDevice d = warburton_device(t->hz, modes.core_mass_kg * roof * roof);
     add_point(t, log(d.tmd_hz / (t->hz * HZ_MIN)) / log(HZ_MAX / HZ_MIN),
               log(d.tmd_damping / DAMPING_MIN) / log(DAMPING_MAX / DAMPING_MIN));
     return STATUS_OK;

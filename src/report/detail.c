@@ -147,9 +147,11 @@ static Status check_here(const Problem *p, int n_var, const DetailOptions *optio
 static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
-    double rigid_hz[FLOORS_MAX], mass;
+    SceneModes modes;
     describe(w, x, d);
-    TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
+    TRY(scene_frequencies(w->scene, x, &modes, err));
+    memcpy(d->building_hz, modes.building_hz, sizeof d->building_hz);
+    memcpy(d->core_hz, modes.core_hz, sizeof d->core_hz);
     TRY(simulate_records(p, x, d, err));
     TRY(simulate(p, x, !options->without_devices, d, err));
     return take_histories(w, x, d, err);

@@ -5,24 +5,22 @@
 #include "report/report_json.h"
 #include "settings/settings.h"
 
-static json_t *json_of_numbers(const Look *look, const char *name)
-{
-    const Run *run = &look->run;
-    const Standing *s = &look->standing;
-    const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
-    return json_of("name=%s state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld generation=%ld finished=%s "
-                   "hypervolume=%g per_second=%g seconds=%g left_s=%g",
-                   name, state_words(s->state), s->progress.simulated, s->max_evals, s->n_failed, run->n_front,
-                   last ? last->number : -1, last ? last->finished : "", s->hypervolume, progress_rate(&s->progress),
-                   s->seconds, s->left_s);
-}
-
 json_t *answer_status(const View *view, const char *name)
 {
-    json_t *o = view->look ? json_of_numbers(view->look, name) : json_of("name=%s", name);
-    if (view->why.code != STATUS_OK) {
-        json_put(o, "state=%s reason=%s", "unreadable", view->why.text);
+    json_t *o = json_of("name=%s", name);
+    if (view->look) {
+        const Run *run = &view->look->run;
+        const Standing *s = &view->look->standing;
+        const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
+        json_put(o,
+                 "state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld generation=%ld finished=%s "
+                 "hypervolume=%g per_second=%g seconds=%g left_s=%g",
+                 state_words(s->state), s->progress.simulated, s->max_evals, s->n_failed, run->n_front,
+                 last ? last->number : -1, last ? last->finished : "", s->hypervolume, progress_rate(&s->progress),
+                 s->seconds, s->left_s);
     }
+    if (view->why.code != STATUS_OK)
+        json_put(o, "state=%s reason=%s", "unreadable", view->why.text);
     return o;
 }
 
@@ -48,31 +46,18 @@ json_t *answer_front(const Look *look)
 
 /* -- some runs ----------------------------------------------------------------------------------------------------- */
 
-/* Of all fronts: from a fifth of their range below the best to the worst. */
-static void box_of(size_t n, const Look *const look[], double lower[], double reference[])
+/* Volume of the box after every generation: designs join when they come onto the front. */
+static Status growth_in(const Run *run, const double lower[], const double reference[], json_t *out, Err *err)
 {
-    const size_t m = look[0]->run.schema.n_obj;
-    double f[OBJECTIVES_MAX];
-    for (size_t k = 0; k < m; k++) {
-        lower[k] = INFINITY;
-        reference[k] = -INFINITY;
-    }
-    for (size_t r = 0; r < n; r++)
-        for (size_t i = 0; i < look[r]->run.n_front; i++) {
-            run_minimise(&look[r]->run, look[r]->run.front[i], f);
-            for (size_t k = 0; k < m; k++) {
-                lower[k] = fmin(lower[k], f[k]);
-                reference[k] = fmax(reference[k], f[k]);
-            }
-        }
-    hypervolume_box(m, lower, reference);
-}
-
-/* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each row.
- * */
-static size_t *rows_by_generation(const Run *run, size_t n)
-{
+    const size_t n = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
     const size_t none = run->table.n;
+    json_t *simulated = json_array(), *volume = json_array();
+    double f[OBJECTIVES_MAX];
+    Hypervolume *h;
+    TRY(hypervolume_create(&h, run->schema.n_obj, lower, reference, 1, err));
+
+    /* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each
+     * row. */
     size_t *first = malloc((n + none) * sizeof *first);
     for (size_t g = 0; first && g < n; g++)
         first[g] = none;
@@ -83,20 +68,8 @@ static size_t *rows_by_generation(const Run *run, size_t n)
             first[at] = i;
         }
     }
-    return first;
-}
-
-/* Volume of the box after every generation: designs join when they come onto the front. */
-static Status growth_in(const Run *run, const double lower[], const double reference[], json_t *out, Err *err)
-{
-    const size_t n = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
-    Hypervolume *h;
-    json_t *simulated = json_array(), *volume = json_array();
-    double f[OBJECTIVES_MAX];
-    TRY(hypervolume_create(&h, run->schema.n_obj, lower, reference, 1, err));
-    size_t *first = rows_by_generation(run, n);
     for (size_t g = 0; g < run->n_generations && first; g++) {
-        for (size_t i = first[run->generation[g].number]; i < run->table.n; i = first[n + i]) {
+        for (size_t i = first[run->generation[g].number]; i < none; i = first[n + i]) {
             run_minimise(run, i, f);
             hypervolume_add(h, f);
         }
@@ -111,18 +84,6 @@ static Status growth_in(const Run *run, const double lower[], const double refer
     return STATUS_OK;
 }
 
-static Status check_same(const Schema *a, const Look *look, Err *err)
-{
-    const Schema *b = &look->run.schema;
-    if (look->run.n_front == 0)
-        return fail(err, STATUS_MISSING, "%s: has no front yet", look->run.folder);
-    int same = a->n_obj == b->n_obj;
-    for (size_t k = 0; same && k < a->n_obj; k++)
-        same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
-               schema_objective(a, k)->sense == schema_objective(b, k)->sense;
-    return same ? STATUS_OK : bad_data(err, "%s: has other objectives: its front cannot be compared", look->run.folder);
-}
-
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */
 static void name_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
@@ -133,10 +94,34 @@ static void name_difference(const char *key, unsigned flags, const char *was, co
 
 Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err)
 {
-    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
+    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX], f[OBJECTIVES_MAX];
+    const Schema *a = &look[0]->run.schema;
+    for (size_t r = 0; r < n; r++) {
+        const Schema *b = &look[r]->run.schema;
+        if (look[r]->run.n_front == 0)
+            return fail(err, STATUS_MISSING, "%s: has no front yet", look[r]->run.folder);
+        int same = a->n_obj == b->n_obj;
+        for (size_t k = 0; same && k < a->n_obj; k++)
+            same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
+                   schema_objective(a, k)->sense == schema_objective(b, k)->sense;
+        if (!same)
+            return bad_data(err, "%s: has other objectives: its front cannot be compared", look[r]->run.folder);
+    }
+
+    /* A box of all fronts: from a fifth of their range below the best to the worst. */
+    for (size_t k = 0; k < a->n_obj; k++) {
+        lower[k] = INFINITY;
+        reference[k] = -INFINITY;
+    }
     for (size_t r = 0; r < n; r++)
-        TRY(check_same(&look[0]->run.schema, look[r], err));
-    box_of(n, look, lower, reference);
+        for (size_t i = 0; i < look[r]->run.n_front; i++) {
+            run_minimise(&look[r]->run, look[r]->run.front[i], f);
+            for (size_t k = 0; k < a->n_obj; k++) {
+                lower[k] = fmin(lower[k], f[k]);
+                reference[k] = fmax(reference[k], f[k]);
+            }
+        }
+    hypervolume_box(a->n_obj, lower, reference);
     json_t *runs = json_array(), *differences = json_object(), *keys = json_array();
     Status status = STATUS_OK;
     for (size_t r = 0; r < n && status == STATUS_OK; r++) {

@@ -111,50 +111,42 @@ int on_demand_is_of(const OnDemand *o, const Run *run)
 
 /* -- a design of the run ------------------------------------------------------------------------------------------- */
 
-static char *text_of(const Run *run, size_t row, const Detail *d)
-{
-    json_t *all = json_of("id=%ld objectives=%p detail=%p", run->table.row[row].id,
-                          json_numbers(run->schema.n_obj, run_f(run, row)), detail_json(d, &run->schema.order));
-    char *text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6));
-    json_decref(all);
-    return text;
-}
-
-/* What the further records of the run do is part of the detail already. */
-static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_devices, char **text, Err *err)
-{
-    Settings s = *run->settings;
-    Detail d;
-    OtherRecords others = {0};
-    s.search.threads = 1;
-    TRY(record_paths_find(&s, run->provenance, o->moved, err));
-    run_steps(run, row, &s.sim);
-    TRY(elsewhere_otherwise(&others, &s.motion, err));
-    DetailOptions options = {.floor = -1, .moved = *o->moved, .with_ladder = with_devices, .other = &s};
-    options.without_devices = !with_devices;
-    options.n_records = others.n;
-    options.records = others.source;
-    TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
-    *text = text_of(run, row, &d);
-    detail_free(&d);
-    return STATUS_OK;
-}
-
-/* The mutex is held. */
+/* One that is kept, or simulated now. What the further records of the run do is part of the detail already. The mutex
+ * is held. */
 static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err *err)
 {
     const size_t row = run_find(run, id);
     const int with_devices = run->n_front > 0 && row == run_knee(run);
     KnownDesign *place = &o->design[o->next_design];
+    Settings s = *run->settings;
+    OtherRecords others = {0};
+    Detail d;
     *text = NULL;
-    for (KnownDesign *d = o->design; d < o->design + DESIGNS_KEPT && !*text; d++)
-        if (d->text && d->id == id && d->has_devices >= with_devices)
-            *text = strdup(d->text);
+    for (KnownDesign *known = o->design; known < o->design + DESIGNS_KEPT && !*text; known++)
+        if (known->text && known->id == id && known->has_devices >= with_devices)
+            *text = strdup(known->text);
     if (*text)
         return STATUS_OK;
     if (run->settings->problem.kind != PROBLEM_TOWER || row == run->table.n)
         return fail(err, STATUS_MISSING, "%s: has no design %ld to be simulated", run->folder, id);
-    TRY(simulate(o, run, row, with_devices, text, err));
+
+    s.search.threads = 1;
+    TRY(record_paths_find(&s, run->provenance, o->moved, err));
+    run_steps(run, row, &s.sim);
+    TRY(elsewhere_otherwise(&others, &s.motion, err));
+    const DetailOptions options = {.floor = -1,
+                                   .moved = *o->moved,
+                                   .with_ladder = with_devices,
+                                   .other = &s,
+                                   .without_devices = !with_devices,
+                                   .n_records = others.n,
+                                   .records = others.source};
+    TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
+    json_t *all = json_of("id=%ld objectives=%p detail=%p", id, json_numbers(run->schema.n_obj, run_f(run, row)),
+                          detail_json(&d, &run->schema.order));
+    *text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6));
+    json_decref(all);
+    detail_free(&d);
     free(place->text);
     *place = (KnownDesign){id, with_devices, strdup(*text)};
     o->next_design = (o->next_design + 1) % DESIGNS_KEPT;
@@ -171,15 +163,12 @@ Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *
 
 /* -- the scene of a what-if ---------------------------------------------------------------------------------------- */
 
-static int is_same(const Ground *a, const Ground *b)
-{
-    return a->pga_g == b->pga_g && a->stretch == b->stretch && a->restitution == b->restitution &&
-           a->is_whole == b->is_whole;
-}
-
+/* The scene on that ground, and its response without a core. */
 static Status open_scene(OnDemand *o, const Ground *g, Err *err)
 {
-    if (o->is_open && is_same(g, &o->ground))
+    const Ground *is = &o->ground;
+    if (o->is_open && g->pga_g == is->pga_g && g->stretch == is->stretch && g->restitution == is->restitution &&
+        g->is_whole == is->is_whole)
         return STATUS_OK;
     Settings s = o->used;
     if (o->is_open)
@@ -197,24 +186,11 @@ static Status open_scene(OnDemand *o, const Ground *g, Err *err)
     return tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_NO_CORE}, &o->no_core, err);
 }
 
-/* Of whole numbers and of steps the values that they take; of others null: the page has the words of a choice. */
-static json_t *values_of(const Problem *p)
-{
-    json_t *all = json_array();
-    for (size_t d = 0; d < p->n_var; d++) {
-        const Steps *steps = problem_kind(p, d) == VARIABLE_STEPPED ? &p->steps[d] : NULL;
-        json_t *list = steps || problem_kind(p, d) == VARIABLE_WHOLE ? json_array() : json_null();
-        const size_t n = steps ? steps->n : (size_t)(p->upper[d] - p->lower[d]) + 1;
-        for (size_t i = 0; json_is_array(list) && i < n; i++)
-            json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p->lower[d] + (double)i));
-        json_array_append_new(all, list);
-    }
-    return all;
-}
-
-/* The scene of the run itself. The mutex is held. */
+/* The scene of the run itself, once. values: those that whole numbers and steps take; of other variables null, and the
+ * page has the words of a choice. The mutex is held. */
 static Status open_first(OnDemand *o, const Run *run, Err *err)
 {
+    const Problem *p = &o->problem;
     if (o->n_var > 0)
         return STATUS_OK;
     if (run->settings->problem.kind != PROBLEM_TOWER)
@@ -225,16 +201,25 @@ static Status open_first(OnDemand *o, const Run *run, Err *err)
     o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution, 0};
     TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
     TRY(open_scene(o, &o->own, err));
-    if (o->problem.n_var != run->schema.n_var)
+    if (p->n_var != run->schema.n_var)
         return bad_data(err, "%s: its building has other variables now", run->folder);
-    o->own.pga_g = motion_peak(&tower_record(tower_of(&o->problem), 0)->motion) / GRAVITY;
-    memcpy(o->lower, o->problem.lower, o->problem.n_var * sizeof *o->lower);
-    memcpy(o->upper, o->problem.upper, o->problem.n_var * sizeof *o->upper);
-    o->values = values_of(&o->problem);
-    o->n_var = o->problem.n_var;
+    o->own.pga_g = motion_peak(&tower_record(tower_of(p), 0)->motion) / GRAVITY;
+    memcpy(o->lower, p->lower, p->n_var * sizeof *o->lower);
+    memcpy(o->upper, p->upper, p->n_var * sizeof *o->upper);
+    o->values = json_array();
+    for (size_t d = 0; d < p->n_var; d++) {
+        const Steps *steps = problem_kind(p, d) == VARIABLE_STEPPED ? &p->steps[d] : NULL;
+        json_t *list = steps || problem_kind(p, d) == VARIABLE_WHOLE ? json_array() : json_null();
+        const size_t n = steps ? steps->n : (size_t)(p->upper[d] - p->lower[d]) + 1;
+        for (size_t i = 0; json_is_array(list) && i < n; i++)
+            json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p->lower[d] + (double)i));
+        json_array_append_new(o->values, list);
+    }
+    o->n_var = p->n_var;
     return STATUS_OK;
 }
 
+/* The lock is taken only until the scene was opened: then what it has stays. */
 static Status prepare(OnDemand *o, const Run *run, Err *err)
 {
     if (o->n_var > 0)
@@ -274,40 +259,12 @@ Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err)
     return STATUS_OK;
 }
 
-/* A number within bounds, rounding apart; `otherwise` where it is left out. */
-static Status take_number(const json_t *o, const char *key, double least, double most, double otherwise, double *value,
-                          Err *err)
-{
-    const json_t *given = json_object_get(o, key);
-    const double slack = 1e-9 * fabs(most);
-    *value = otherwise;
-    if (!given || json_is_null(given))
-        return STATUS_OK;
-    *value = json_number_value(given);
-    return json_is_number(given) && *value >= least - slack && *value <= most + slack
-               ? STATUS_OK
-               : bad_data(err, "%s: a number from %g to %g is wanted", key, least, most);
-}
-
-static Status take_design(const OnDemand *o, const json_t *question, double x[], Err *err)
-{
-    const json_t *given = json_object_get(question, "x");
-    if (json_array_size(given) != o->n_var)
-        return bad_data(err, "x: %zu numbers are wanted", o->n_var);
-    for (size_t j = 0; j < o->n_var; j++) {
-        const json_t *value = json_array_get(given, j);
-        const double slack = 1e-9 * (o->upper[j] - o->lower[j]);
-        x[j] = json_number_value(value);
-        if (!json_is_number(value) || !(x[j] >= o->lower[j] - slack && x[j] <= o->upper[j] + slack))
-            return bad_data(err, "x: variable %zu is not within %g and %g", j + 1, o->lower[j], o->upper[j]);
-    }
-    return STATUS_OK;
-}
-
+/* A design, and numbers within bounds, rounding apart; one that is left out is that of the run. */
 static Status take_question(const OnDemand *o, const char *text, size_t n, Question *q, Err *err)
 {
     json_error_t error;
     json_t *given = json_loadb(text, n, JSON_REJECT_DUPLICATES, &error);
+    const json_t *x = json_object_get(given, "x");
     const Ground *own = &o->own;
     const struct {
         const char *key;
@@ -318,41 +275,40 @@ static Status take_question(const OnDemand *o, const char *text, size_t n, Quest
         {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
     *q = (Question){.turn = json_integer_value(json_object_get(given, "turn")),
                     .ground.is_whole = json_integer_value(json_object_get(given, "whole")) > 0};
-    Status status =
-        json_is_object(given) ? take_design(o, given, q->x, err) : bad_data(err, "the question is no JSON object");
-    for (size_t i = 0; status == STATUS_OK && i < N_OF(numbers); i++)
-        status = take_number(given, numbers[i].key, numbers[i].least, numbers[i].most, numbers[i].otherwise,
-                             numbers[i].value, err);
+    Status status = STATUS_OK;
+    if (!json_is_object(given))
+        status = bad_data(err, "the question is no JSON object");
+    else if (json_array_size(x) != o->n_var)
+        status = bad_data(err, "x: %zu numbers are wanted", o->n_var);
+    for (size_t j = 0; j < o->n_var && status == STATUS_OK; j++) {
+        const json_t *value = json_array_get(x, j);
+        const double slack = 1e-9 * (o->upper[j] - o->lower[j]);
+        q->x[j] = json_number_value(value);
+        if (!json_is_number(value) || !(q->x[j] >= o->lower[j] - slack && q->x[j] <= o->upper[j] + slack))
+            status = bad_data(err, "x: variable %zu is not within %g and %g", j + 1, o->lower[j], o->upper[j]);
+    }
+    for (size_t i = 0; i < N_OF(numbers) && status == STATUS_OK; i++) {
+        const json_t *number = json_object_get(given, numbers[i].key);
+        const double least = numbers[i].least, most = numbers[i].most, slack = 1e-9 * fabs(most);
+        const int is_given = number && !json_is_null(number);
+        const double value = *numbers[i].value = is_given ? json_number_value(number) : numbers[i].otherwise;
+        if (is_given && !(json_is_number(number) && value >= least - slack && value <= most + slack))
+            status = bad_data(err, "%s: a number from %g to %g is wanted", numbers[i].key, least, most);
+    }
     json_decref(given);
     return status;
 }
 
 /* -- the answer ---------------------------------------------------------------------------------------------------- */
 
-/* Designs of the front that dominate f, and that it dominates. */
-static void set_place(const Run *run, const double natural[], json_t *answer)
-{
-    const size_t m = run->schema.n_obj;
-    double f[OBJECTIVES_MAX], other[OBJECTIVES_MAX];
-    long by = 0, of = 0;
-    for (size_t k = 0; k < m; k++)
-        f[k] = schema_objective(&run->schema, k)->sense * natural[k];
-    for (size_t i = 0; i < run->n_front; i++) {
-        run_minimise(run, run->front[i], other);
-        by += dominates(m, other, f) != 0;
-        of += dominates(m, f, other) != 0;
-    }
-    json_put(answer, "dominated_by=%ld dominates=%ld", by, of);
-}
-
+/* The response to a question, and where designs of the front dominate it, or it them. */
 static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question *q)
 {
     const SimResult *r = &o->result;
     const Tower *tower = tower_of(&o->problem);
     const MeasureOrder *order = tower_measures(tower);
-    double natural[OBJECTIVES_MAX];
+    double natural[OBJECTIVES_MAX], f[OBJECTIVES_MAX], other[OBJECTIVES_MAX], gap_m[FLOORS_MAX];
     Design design;
-    double gap_m[FLOORS_MAX];
     design_of(tower_design(tower), q->x, &design);
     for (int j = 0; j < tower_n_floors(tower); j++)
         gap_m[j] = design_gap(&design, j);
@@ -367,9 +323,18 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
         r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
-    if (ok && (o->n_simulations == 1 || q->ground.is_whole) && same_ground)
-        set_place(run, natural, answer);
-    return answer;
+    if (!(ok && (o->n_simulations == 1 || q->ground.is_whole) && same_ground))
+        return answer;
+    const size_t m = run->schema.n_obj;
+    long by = 0, of = 0;
+    for (size_t k = 0; k < m; k++)
+        f[k] = schema_objective(&run->schema, k)->sense * natural[k];
+    for (size_t i = 0; i < run->n_front; i++) {
+        run_minimise(run, run->front[i], other);
+        by += dominates(m, other, f) != 0;
+        of += dominates(m, f, other) != 0;
+    }
+    return json_put(answer, "dominated_by=%ld dominates=%ld", by, of);
 }
 
 Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size_t n, json_t **answer, Err *err)

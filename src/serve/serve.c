@@ -51,7 +51,6 @@ typedef struct {
     unsigned code;
     const char *type;
     char *text;                 /* malloc'd */
-    size_t n_packed;            /* bytes of text where it is gzip; 0: a text with its NUL */
     Stream *stream;             /* in the place of the text */
     char place[TOKEN_TEXT + 8]; /* of a redirection; empty: none */
     const char *allow;          /* methods; NULL: not said */
@@ -71,20 +70,14 @@ static int socket_of(struct MHD_Connection *c)
     return MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
 }
 
-/* The mutex is held. */
-static void wait_no_more(Server *s, int fd)
-{
-    for (size_t i = 0; i < s->n_waiting; i++)
-        if (s->waiting[i] == fd)
-            s->waiting[i] = -1;
-}
-
 /* A request that does not come, or comes byte by byte, holds a connection: where as many wait as there is room for, the
  * one that has waited longest is ended. */
 static void set_waiting(Server *s, int fd, int waits)
 {
     pthread_mutex_lock(&s->mutex);
-    wait_no_more(s, fd);
+    for (size_t i = 0; i < s->n_waiting; i++)
+        if (s->waiting[i] == fd)
+            s->waiting[i] = -1;
     if (waits) {
         int *place = &s->waiting[s->next++ % s->n_waiting];
         if (*place >= 0)
@@ -111,76 +104,47 @@ static void note_completed(void *user, struct MHD_Connection *c, void **request,
 
 /* -- answers ------------------------------------------------------------------------------------------------------- */
 
-static unsigned code_of(Status status)
-{
-    switch (status) {
-    case STATUS_OK:
-        return MHD_HTTP_OK;
-    case STATUS_MISSING:
-        return MHD_HTTP_NOT_FOUND;
-    case STATUS_BAD_DATA:
-        return MHD_HTTP_BAD_REQUEST;
-    default:
-        return MHD_HTTP_INTERNAL_SERVER_ERROR;
-    }
-}
-
 static ssize_t read_events(void *user, uint64_t position, char *out, size_t room);
 
-/* gzip in the place of a long text, where the client takes it: a page of two thousand designs is 1.5 MB, a third of it
- * packed. What cannot be packed stays. */
-static void pack(struct MHD_Connection *c, Answer *a)
-{
-    const char *takes = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT_ENCODING);
-    const size_t n = a->text ? strlen(a->text) : 0;
-    z_stream z = {.next_in = (Bytef *)a->text, .avail_in = (uInt)n};
-    if (n < PACKED_MIN || n > INT_MAX || !takes || !strstr(takes, "gzip") || strstr(takes, "gzip;q=0") ||
-        deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + 16, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
-        return;
-    const uLong most = deflateBound(&z, n);
-    char *packed = malloc(most);
-    z.next_out = (Bytef *)packed;
-    z.avail_out = (uInt)most;
-    if (packed && deflate(&z, Z_FINISH) == Z_STREAM_END) {
-        free(a->text);
-        a->text = packed;
-        a->n_packed = z.total_out;
-    } else
-        free(packed);
-    deflateEnd(&z);
-}
-
-static struct MHD_Response *response_of(const Answer *a)
-{
-    struct MHD_Response *r =
-        a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, free)
-                  : MHD_create_response_from_buffer(a->n_packed > 0 ? a->n_packed
-                                                    : a->text       ? strlen(a->text)
-                                                                    : 0,
-                                                    a->text, MHD_RESPMEM_MUST_FREE);
-    if (!r && a->stream)
-        free(a->stream);
-    else if (!r)
-        free(a->text);
-    return r;
-}
-
+/* A long text goes as gzip, where the client takes it: a page of two thousand designs is 1.5 MB, a third of it packed.
+ * What cannot be packed stays. */
 static enum MHD_Result send_answer(struct MHD_Connection *c, Answer *a)
 {
-    pack(c, a);
+    const char *takes = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT_ENCODING);
+    size_t n = a->text ? strlen(a->text) : 0;
+    int is_packed = 0;
+    z_stream z = {.next_in = (Bytef *)a->text, .avail_in = (uInt)n};
+    if (n >= PACKED_MIN && n <= INT_MAX && takes && strstr(takes, "gzip") && !strstr(takes, "gzip;q=0") &&
+        deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + 16, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) ==
+            Z_OK) {
+        const uLong most = deflateBound(&z, n);
+        char *packed = malloc(most);
+        z.next_out = (Bytef *)packed;
+        z.avail_out = (uInt)most;
+        is_packed = packed && deflate(&z, Z_FINISH) == Z_STREAM_END;
+        free(is_packed ? a->text : packed);
+        a->text = is_packed ? packed : a->text;
+        n = is_packed ? z.total_out : n;
+        deflateEnd(&z);
+    }
     const char *const HEADERS[][2] = {{MHD_HTTP_HEADER_CONTENT_TYPE, a->type},
                                       {MHD_HTTP_HEADER_LOCATION, a->place[0] ? a->place : NULL},
                                       {MHD_HTTP_HEADER_ALLOW, a->allow},
-                                      {MHD_HTTP_HEADER_CONTENT_ENCODING, a->n_packed > 0 ? "gzip" : NULL},
+                                      {MHD_HTTP_HEADER_CONTENT_ENCODING, is_packed ? "gzip" : NULL},
                                       {"Cache-Control", "no-store"},
                                       {"X-Content-Type-Options", "nosniff"},
                                       {"Referrer-Policy", "no-referrer"},
                                       {"Cross-Origin-Resource-Policy", "same-origin"},
                                       {"Cross-Origin-Opener-Policy", "same-origin"},
                                       {"X-Frame-Options", "DENY"}};
-    struct MHD_Response *r = response_of(a);
-    if (!r)
+    struct MHD_Response *r =
+        a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, free)
+                  : MHD_create_response_from_buffer(n, a->text, MHD_RESPMEM_MUST_FREE);
+    if (!r) {
+        free(a->stream);
+        free(a->text);
         return MHD_NO;
+    }
     for (size_t i = 0; i < N_OF(HEADERS); i++)
         if (HEADERS[i][1])
             MHD_add_response_header(r, HEADERS[i][0], HEADERS[i][1]);
@@ -235,6 +199,7 @@ static const char NO_FRONT[] =
     "<title>imtet</title></head><body><h1>No front</h1><p>%zu designs simulated, %zu failed: %s.</p>"
     "<p>This page looks again every second.</p></body></html>\n";
 
+/* The report of a run that has a front; before, how far the search is, by a page that looks again. */
 static Status show_page(Visit *v, Answer *a, Err *err)
 {
     const Look *look = v->view.look;
@@ -255,6 +220,7 @@ static Status show_front(Visit *v, Answer *a, Err *err)
     return answer_json(answer_front(v->view.look), 6, a);
 }
 
+/* Which variables move which objectives. */
 static Status show_importance(Visit *v, Answer *a, Err *err)
 {
     const Run *run = &v->view.look->run;
@@ -306,14 +272,14 @@ static Status take_note(Visit *v, Answer *a, Err *err)
     else if (run_find(run, json_integer_value(id)) == run->table.n)
         status = fail(err, STATUS_MISSING, "%s: has no design %lld", run->folder, json_integer_value(id));
     pthread_mutex_lock(&v->server->notes);
-    if (status == STATUS_OK)
-        status = notes_put(run->folder, json_integer_value(id), text, err);
+    THEN(status, notes_put(run->folder, json_integer_value(id), text, err));
     pthread_mutex_unlock(&v->server->notes);
     json_decref(given);
     TRY(status);
     return show_notes(v, a, err);
 }
 
+/* The fronts of this run and the others that the path names, in one box. */
 static Status show_against(Visit *v, Answer *a, Err *err)
 {
     Watch *w = v->server->watch;
@@ -329,8 +295,7 @@ static Status show_against(Visit *v, Answer *a, Err *err)
         look[i + 1] = other[i].look;
         name[i + 1] = status == STATUS_OK ? watch_name(w, path->number[i]) : NULL;
     }
-    if (status == STATUS_OK)
-        status = answer_against(path->n_numbers + 1, look, name, &all, err);
+    THEN(status, answer_against(path->n_numbers + 1, look, name, &all, err));
     for (size_t i = 0; i < path->n_numbers; i++)
         watch_give(&other[i]);
     TRY(status);
@@ -359,15 +324,16 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
     return answer_json(list, 6, a);
 }
 
-/* That whose last session began last. */
-static size_t newest_run(Server *s)
+/* The run whose last session began last. */
+static Status show_newest(Visit *v, Answer *a, Err *err)
 {
+    Watch *w = v->server->watch;
     size_t newest = 0;
-    char latest[24] = "";
-    for (size_t i = 0; i < watch_n(s->watch); i++) {
+    char number[24], latest[24] = "";
+    (void)err;
+    for (size_t i = 0; i < watch_n(w); i++) {
         View view;
-        Err why = {0};
-        if (watch_take(s->watch, i, GLANCE_S, &view, &why) != STATUS_OK)
+        if (watch_take(w, i, GLANCE_S, &view, &(Err){0}) != STATUS_OK)
             continue;
         const Run *run = &view.look->run;
         const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
@@ -377,14 +343,7 @@ static size_t newest_run(Server *s)
         }
         watch_give(&view);
     }
-    return newest;
-}
-
-static Status show_newest(Visit *v, Answer *a, Err *err)
-{
-    char number[24];
-    (void)err;
-    snprintf(number, sizeof number, "%zu", newest_run(v->server));
+    snprintf(number, sizeof number, "%zu", newest);
     *a = redirection(number);
     return STATUS_OK;
 }
@@ -448,15 +407,7 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
                                {"notes", 1, 0, show_notes, take_note},
                                {"against", 1, PATH_NUMBERS, show_against, NULL}};
 
-static const Route *route_of(const ServePath *path)
-{
-    for (const Route *r = ROUTES; r < ROUTES + N_OF(ROUTES); r++)
-        if (strcmp(path->word, r->word) == 0 && r->has_run == (path->run >= 0) &&
-            (r->n_numbers > 0) == (path->n_numbers > 0) && path->n_numbers <= r->n_numbers)
-            return r;
-    return NULL;
-}
-
+/* The answer to a request that is whole. */
 static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *method, const Request *r)
 {
     const Route *route = r->route;
@@ -470,11 +421,14 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = fail(&err, STATUS_MISSING, "there is no such run");
     else if (route->has_run)
         status = watch_take(s->watch, v.run, PAGE_S, &v.view, &err);
-    if (status == STATUS_OK)
-        status = show(&v, &a, &err);
+    THEN(status, show(&v, &a, &err));
     watch_give(&v.view);
     if (status != STATUS_OK)
-        a = refusal(c, code_of(status), err.text);
+        a = refusal(c,
+                    status == STATUS_MISSING    ? MHD_HTTP_NOT_FOUND
+                    : status == STATUS_BAD_DATA ? MHD_HTTP_BAD_REQUEST
+                                                : MHD_HTTP_INTERNAL_SERVER_ERROR,
+                    err.text);
     if (a.stream && strcmp(method, "HEAD") == 0) { /* libmicrohttpd would send the end of its chunks */
         free(a.stream);
         a.stream = NULL;
@@ -490,11 +444,16 @@ static void judge(const Server *s, struct MHD_Connection *c, const char *url, co
     const char *length = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
     const int posts = strcmp(method, "POST") == 0, gets = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
     const PathVerdict verdict = guard_path(s->token, url, &r->path);
+    const ServePath *p = &r->path;
+    for (const Route *at = ROUTES; at < ROUTES + N_OF(ROUTES) && verdict == PATH_OK; at++)
+        if (strcmp(p->word, at->word) == 0 && at->has_run == (p->run >= 0) &&
+            (at->n_numbers > 0) == (p->n_numbers > 0) && p->n_numbers <= at->n_numbers)
+            r->route = at;
     if (!guard_host(host) || !guard_origin(origin, host) || verdict == PATH_NONE)
         *a = refusal(c, MHD_HTTP_FORBIDDEN, "refused");
     else if (verdict == PATH_UNENDED)
         *a = redirection(strrchr(url, '/') + 1);
-    else if (verdict == PATH_UNKNOWN || !(r->route = route_of(&r->path)))
+    else if (!r->route)
         *a = refusal(c, MHD_HTTP_NOT_FOUND, "there is no such part");
     else if (!gets && !(posts && r->route->post)) {
         *a = refusal(c, MHD_HTTP_METHOD_NOT_ALLOWED, "this method is not known here");
@@ -552,19 +511,14 @@ static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
 
 /* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be
  * accepted. */
-static unsigned n_connections(void)
-{
-    struct rlimit files;
-    if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur > FILES_OWN + PEERS_MAX)
-        return PEERS_MAX;
-    return files.rlim_cur > FILES_OWN + 2 ? (unsigned)files.rlim_cur - FILES_OWN : 2;
-}
-
 static Status listen_on(Server *s, int port, Err *err)
 {
+    struct rlimit files;
+    unsigned n = PEERS_MAX;
+    if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur <= FILES_OWN + PEERS_MAX)
+        n = files.rlim_cur > FILES_OWN + 2 ? (unsigned)files.rlim_cur - FILES_OWN : 2;
     const struct sockaddr_in here = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    const unsigned n = n_connections();
     s->n_waiting = n / 2;
     s->daemon = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL |
                                      MHD_USE_ERROR_LOG,
@@ -590,10 +544,8 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err)
     pthread_mutex_init(&s->mutex, NULL);
     pthread_mutex_init(&s->notes, NULL);
     Status status = guard_token(s->token, err);
-    if (status == STATUS_OK)
-        status = watch_open(&s->watch, o->folder, &s->moved, err);
-    if (status == STATUS_OK)
-        status = listen_on(s, o->port, err);
+    THEN(status, watch_open(&s->watch, o->folder, &s->moved, err));
+    THEN(status, listen_on(s, o->port, err));
     if (status != STATUS_OK)
         serve_close(s);
     else

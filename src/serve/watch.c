@@ -39,23 +39,6 @@ struct Watch {
 
 /* -- reading ------------------------------------------------------------------------------------------------------- */
 
-static void stamp_of(const Watched *r, Stamp *s)
-{
-    static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal"};
-    char path[PATH_MAX];
-    struct stat file;
-    LockHolder holder;
-    memset(s, 0, sizeof *s);
-    for (int i = 0; i < 2; i++) {
-        folder_path(r->folder, FILES[i], path);
-        if (stat(path, &file) == 0) {
-            s->time[i] = file.st_mtim;
-            s->size[i] = file.st_size;
-        }
-    }
-    s->held = folder_is_held(r->folder, &holder);
-}
-
 static void release(Look *look)
 {
     if (look && atomic_fetch_sub(&look->n_users, 1) == 1) {
@@ -87,11 +70,11 @@ static Status look_at(const Watch *w, const char *folder, const Look *before, Lo
         else
             status = on_demand_open(&look->on_demand, &look->run, w->moved, err);
     }
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK) {
+        *out = look;
+    } else {
         run_free(&look->run);
         free(look);
-    } else {
-        *out = look;
     }
     return status;
 }
@@ -99,13 +82,25 @@ static Status look_at(const Watch *w, const char *folder, const Look *before, Lo
 /* Where it has changed, and not sooner than a tenth of a processor allows. The mutex is held. */
 static void read_again(const Watch *w, Watched *r)
 {
+    static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal"};
     View *v = &r->view;
+    char path[PATH_MAX];
+    struct stat file;
+    LockHolder holder;
     Stamp stamp;
     Err err = {0};
     Look *fresh;
     if (clock_seconds() < r->next && (v->look || v->why.code != STATUS_OK))
         return;
-    stamp_of(r, &stamp);
+    memset(&stamp, 0, sizeof stamp);
+    for (int i = 0; i < 2; i++) {
+        folder_path(r->folder, FILES[i], path);
+        if (stat(path, &file) == 0) {
+            stamp.time[i] = file.st_mtim;
+            stamp.size[i] = file.st_size;
+        }
+    }
+    stamp.held = folder_is_held(r->folder, &holder);
     if (v->look && v->why.code == STATUS_OK && memcmp(&stamp, &r->stamp, sizeof stamp) == 0)
         return;
     const double start = worked_s();
@@ -123,6 +118,7 @@ static void read_again(const Watch *w, Watched *r)
 
 /* -- which runs ---------------------------------------------------------------------------------------------------- */
 
+/* A run that is new among those that are watched. */
 static void add(const char *folder, const char *name, void *user)
 {
     Watch *w = user;
@@ -159,29 +155,22 @@ const char *watch_name(Watch *w, size_t i)
     return w->run[i]->name;
 }
 
-static Status find_runs(Watch *w, const char *folder, Err *err)
-{
-    const char *slash = strrchr(w->folder, '/');
-    w->is_run = run_is_there(w->folder);
-    if (w->is_run)
-        add(w->folder, slash && slash[1] ? slash + 1 : w->folder, w);
-    else
-        runs_each(w->folder, add, w);
-    return w->n > 0 ? STATUS_OK : fail(err, STATUS_MISSING, "%s: is no run, and holds none", folder);
-}
-
-static Status start(Watch *w, const char *folder, Err *err)
-{
-    pthread_mutex_init(&w->mutex, NULL);
-    return realpath(folder, w->folder) ? find_runs(w, folder, err) : fail_missing(err, folder);
-}
-
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)
 {
     Watch *w = *out = NULL;
     TRY_ROOM(w, 1, "runs that are watched", err);
     w->moved = moved;
-    const Status status = start(w, folder, err);
+    pthread_mutex_init(&w->mutex, NULL);
+    Status status = realpath(folder, w->folder) ? STATUS_OK : fail_missing(err, folder);
+    w->is_run = status == STATUS_OK && run_is_there(w->folder);
+    if (w->is_run) {
+        const char *slash = strrchr(w->folder, '/');
+        add(w->folder, slash && slash[1] ? slash + 1 : w->folder, w);
+    } else if (status == STATUS_OK) {
+        runs_each(w->folder, add, w);
+    }
+    if (w->n == 0)
+        THEN(status, fail(err, STATUS_MISSING, "%s: is no run, and holds none", folder));
     if (status == STATUS_OK)
         *out = w;
     else
@@ -212,26 +201,22 @@ void watch_close(Watch *w)
 
 /* -- looking ------------------------------------------------------------------------------------------------------- */
 
-/* Runs that nobody has asked for in time; one that is being read is left alone. */
-static void release_idle(Watch *w)
-{
-    for (size_t i = 0, n = watch_n(w); i < n; i++) {
-        Watched *r = w->run[i];
-        if (pthread_mutex_trylock(&r->mutex) != 0)
-            continue;
-        if (clock_seconds() > r->kept_to) {
-            release(r->view.look);
-            r->view.look = NULL;
-        }
-        pthread_mutex_unlock(&r->mutex);
-    }
-}
-
 Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err)
 {
     Watched *r = w->run[i];
     *view = (View){0};
-    release_idle(w);
+
+    /* Runs that nobody has asked for in time are released; one that is being read is left alone. */
+    for (size_t k = 0, n = watch_n(w); k < n; k++) {
+        Watched *other = w->run[k];
+        if (pthread_mutex_trylock(&other->mutex) != 0)
+            continue;
+        if (clock_seconds() > other->kept_to) {
+            release(other->view.look);
+            other->view.look = NULL;
+        }
+        pthread_mutex_unlock(&other->mutex);
+    }
     pthread_mutex_lock(&r->mutex);
     read_again(w, r);
     r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);

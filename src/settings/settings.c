@@ -348,11 +348,6 @@ static void *field_of(Settings *s, const Option *o)
     return (char *)s + o->offset;
 }
 
-static const void *field_of_const(const Settings *s, const Option *o)
-{
-    return (const char *)s + o->offset;
-}
-
 /* Index of value in "a|b|c", or -1. */
 static int word_index(const char *words, const char *value)
 {
@@ -374,20 +369,7 @@ static void format_word(char text[OPTION_TEXT_MAX], const char *words, int index
     snprintf(text, OPTION_TEXT_MAX, "%.*s", (int)strcspn(words, "|"), words);
 }
 
-static Status unknown_word(const Option *o, const char *value, Err *err)
-{
-    enum { WORDS_MAX = 24 };
-    char copy[512], *rest = copy;
-    const char *list[WORDS_MAX];
-    int n = 0;
-    snprintf(copy, sizeof copy, "%s", o->words);
-    for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
-        list[n++] = word;
-    const char *near = nearest_word(value, list, n);
-    return near ? bad_data(err, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words, near)
-                : bad_data(err, "%s: '%.60s' is not one of %s", o->key, value, o->words);
-}
-
+/* A number within the range of its setting. */
 static Status parse_number(const Option *o, const char *value, double *number, Err *err)
 {
     const char *unit = strcmp(o->unit, "-") == 0 ? "" : o->unit;
@@ -405,6 +387,7 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     return STATUS_OK;
 }
 
+/* A comma list of numbers; of bounds two. */
 static Status assign_list(Settings *s, const Option *o, const char *value, Err *err)
 {
     NumberList *list = field_of(s, o), found = {0};
@@ -428,11 +411,21 @@ static Status assign_list(Settings *s, const Option *o, const char *value, Err *
 /* A word, or the number that may stand in its place. */
 static Status assign_choice(Settings *s, const Option *o, const char *value, Err *err)
 {
+    enum { WORDS_MAX = 24 };
     double number = 0;
     const int is_switch = strcmp(o->words, CHOICE_WORDS(SWITCH_LIST)) == 0; /* as TOML writes it */
     int i = is_switch ? word_index("off|on|false|true|no|yes", value) % 2 : word_index(o->words, value);
-    if (i < 0 && !(o->number && strchr("0123456789.", value[0])))
-        return unknown_word(o, value, err);
+    if (i < 0 && !(o->number && strchr("0123456789.", value[0]))) {
+        char copy[512], *rest = copy;
+        const char *list[WORDS_MAX];
+        int n = 0;
+        snprintf(copy, sizeof copy, "%s", o->words);
+        for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
+            list[n++] = word;
+        const char *near = nearest_word(value, list, n);
+        return bad_data(err, "%s: '%.60s' is not one of %s%s%s%s", o->key, value, o->words,
+                        near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+    }
     if (i < 0) {
         TRY(parse_number(o, value, &number, err));
         i = word_index(o->words, o->standard);
@@ -472,6 +465,7 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
     return STATUS_OK;
 }
 
+/* A text that can stand in a settings file. */
 static Status assign_text(Settings *s, const Option *o, const char *value, Err *err)
 {
     if (!value[0])
@@ -611,27 +605,20 @@ void settings_make_absolute(Settings *s)
         table_change_files(s, i, make_absolute, NULL);
 }
 
-/* Length of the folder that two absolute paths have in common. */
-static size_t common_folder(const char *one, const char *other)
-{
-    size_t same = 0;
-    for (size_t i = 0;; i++) {
-        if ((!one[i] || one[i] == '/') && (!other[i] || other[i] == '/'))
-            same = i;
-        if (!one[i] || one[i] != other[i])
-            return same;
-    }
-}
-
 /* From folder, which is absolute as realpath makes it; what begins with a point is no word of the program. */
 static void make_relative(char path[OPTION_TEXT_MAX], void *folder)
 {
     const char *from = folder;
     char *to = path[0] == '/' ? NULL : realpath(path, NULL), relative[2 * PATH_MAX] = "";
+    size_t n = 0, same = 0;
     if (!to)
         return;
-    const size_t same = common_folder(from, to);
-    size_t n = 0;
+    for (size_t i = 0;; i++) { /* the folder that both have in common */
+        if ((!from[i] || from[i] == '/') && (!to[i] || to[i] == '/'))
+            same = i;
+        if (!from[i] || from[i] != to[i])
+            break;
+    }
     for (const char *c = from + same; (c = strchr(c, '/')); c++)
         n += snprintf(relative + n, sizeof relative - n, n ? "/.." : "..");
     snprintf(relative + n, sizeof relative - n, "%s%s", n ? "" : ".", to + same);
@@ -706,41 +693,21 @@ static void format_real(double value, char text[OPTION_TEXT_MAX])
     }
 }
 
-static void format_shares(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
-{
-    const double *share = field_of_const(s, o);
-    char name[OPTION_TEXT_MAX], number[OPTION_TEXT_MAX];
-    size_t n = 0;
-    snprintf(text, OPTION_TEXT_MAX, "none");
-    for (int i = 0; i < o->count; i++) {
-        if (share[i] == 0)
-            continue;
-        format_word(name, o->words, i);
-        format_real(share[i], number);
-        n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=%s", n ? " " : "", name, number);
-    }
-}
-
-static void format_list(const NumberList *list, char text[OPTION_TEXT_MAX])
-{
-    char number[OPTION_TEXT_MAX];
-    size_t n = 0;
-    snprintf(text, OPTION_TEXT_MAX, "none");
-    for (int i = 0; i < list->n && n < OPTION_TEXT_MAX; i++) {
-        format_real(list->at[i], number);
-        n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", number);
-    }
-}
-
+/* A setting as one would type it. */
 static void format_value(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
 {
-    const void *field = field_of_const(s, o);
+    const void *field = (const char *)s + o->offset;
+    const double *share = field;
+    const NumberList *list = field;
+    char name[OPTION_TEXT_MAX];
     double number = 0;
+    size_t n = 0;
     int word;
+    snprintf(text, OPTION_TEXT_MAX, "none"); /* unless a list or shares have something */
     switch (o->kind) {
     case KIND_REAL:
     case KIND_WHOLE:
-        number = o->kind == KIND_REAL ? *(const double *)field : (double)*(const long *)field;
+        number = o->kind == KIND_REAL ? *share : (double)*(const long *)field;
         if (o->words && number == OPTION_WORD)
             snprintf(text, OPTION_TEXT_MAX, "%s", o->words);
         else if (o->kind == KIND_WHOLE)
@@ -758,10 +725,20 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
             format_word(text, o->words, word);
         break;
     case KIND_SHARES:
-        format_shares(s, o, text);
+        for (int i = 0; i < o->count; i++) {
+            if (share[i] == 0)
+                continue;
+            format_word(name, o->words, i);
+            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=", n ? " " : "", name);
+            format_real(share[i], name);
+            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s", name);
+        }
         break;
     case KIND_LIST:
-        format_list(field, text);
+        for (int i = 0; i < list->n && n < OPTION_TEXT_MAX; i++) {
+            format_real(list->at[i], name);
+            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", name);
+        }
         break;
     case KIND_TEXT:
     case KIND_PATH:
@@ -791,27 +768,6 @@ void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn di
     }
 }
 
-static void describe(const Option *o, FILE *out)
-{
-    fprintf(out, "; %s", o->help);
-    if (o->kind == KIND_REAL || o->kind == KIND_WHOLE)
-        fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
-    if (o->kind == KIND_LIST)
-        fprintf(out, " [%s, %.10g..%.10g,%s comma list]", o->unit, o->min, o->max,
-                o->count ? " from and to in a" : " a");
-    if (o->kind == KIND_CHOICE && o->number)
-        fprintf(out, " (%s|%g..%g)", o->words, o->min, o->max);
-    else if (o->kind == KIND_CHOICE)
-        fprintf(out, " (%s)", o->words);
-    if (o->kind == KIND_SHARES)
-        fprintf(out, " (none or %s, each =%g..%g)", o->words, o->min, o->max);
-    if (o->kind == KIND_PATH)
-        fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
-    if (o->kind == KIND_PATH_LIST)
-        fputs(" (FILE,...)", out);
-    fputc('\n', out);
-}
-
 void settings_write(const Settings *s, FILE *out, SettingsForm form)
 {
     const char *section = "";
@@ -828,8 +784,23 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
         if (strncmp(section, o->key, (size_t)n + 1) != 0)
             fprintf(out, "%s[%.*s]\n", *section ? "\n" : "", n, o->key);
         section = o->key;
-        if (form != SETTINGS_PLAIN)
-            describe(o, out);
+        if (form != SETTINGS_PLAIN) {
+            fprintf(out, "; %s", o->help);
+            if (o->kind == KIND_REAL || o->kind == KIND_WHOLE)
+                fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
+            if (o->kind == KIND_LIST)
+                fprintf(out, " [%s, %.10g..%.10g,%s comma list]", o->unit, o->min, o->max,
+                        o->count ? " from and to in a" : " a");
+            if (o->kind == KIND_CHOICE && o->number)
+                fprintf(out, " (%s|%g..%g)", o->words, o->min, o->max);
+            else if (o->kind == KIND_CHOICE)
+                fprintf(out, " (%s)", o->words);
+            if (o->kind == KIND_SHARES)
+                fprintf(out, " (none or %s, each =%g..%g)", o->words, o->min, o->max);
+            if (o->kind == KIND_PATH)
+                fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
+            fputs(o->kind == KIND_PATH_LIST ? " (FILE,...)\n" : "\n", out);
+        }
         const char *quote = !strstr(value, " #") ? "" : strchr(value, '"') ? "'" : "\"";
         fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }

@@ -27,6 +27,7 @@ typedef struct {
     Err *first;
 } Reading;
 
+/* One line per fault; the first is the error of the whole reading. */
 static void report_fault(Reading *r, Place at, const char *text)
 {
     char where[32] = "";
@@ -134,31 +135,41 @@ static char *toml_end(char *value, const char *end, int joins)
     return NULL;
 }
 
-/* Ends a value where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
-static void cut_note(char *value)
+/* [section], or name = value, as INI and TOML have them. */
+static void take_line(Reading *r, char *line)
 {
-    char *first = value + strspn(value, " \t");
+    char *begin = skip_blanks(line), *end = begin[0] == '[' ? strchr(begin, ']') : NULL, *value = strpbrk(begin, "=:");
+    char key[128], name[64], plain[OPTION_TEXT_MAX] = "";
+    Err err = {0};
+    int i = 0;
+    trim_end(begin);
+    if (!begin[0] || strchr(";#", begin[0]))
+        return;
+    if (end) {
+        snprintf(r->section, sizeof r->section, "%.*s", (int)(end - begin) - 1, begin + 1);
+        return;
+    }
+    if (!strchr(begin, '=')) {
+        report_fault(r, place_of(r, begin), "neither [section] nor key = value");
+        return;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)(value - begin), begin);
+    trim_end(name);
+
+    /* A value ends where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
+    char *first = skip_blanks(++value);
     char *close = *first && strchr("\"'[", *first) ? toml_end(first, value + strlen(value), 0) : NULL;
     if (close && strchr(";#", *skip_blanks(close)))
         *close = 0;
     for (char *c = value; (c = strpbrk(c, ";#")); c++)
         if (c > value && (!close || c > close) && isspace((unsigned char)c[-1])) {
             *c = 0;
-            return;
+            break;
         }
-}
-
-/* name = value, from `begin` of the line at hand on. */
-static void take_pair(Reading *r, char *begin)
-{
-    char key[128], name[64], plain[OPTION_TEXT_MAX] = "", *value = strpbrk(begin, "=:");
-    Err err = {0};
-    int i = 0;
-    snprintf(name, sizeof name, "%.*s", (int)(value - begin), begin);
-    trim_end(name);
-    cut_note(++value);
     trim_end(value);
     value = skip_blanks(value);
+
+    /* The setting, once. */
     snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
     if (table_find(key, &i, &err) != STATUS_OK) {
         if (!r->is_stored || !table_is_former(key))
@@ -170,28 +181,13 @@ static void take_pair(Reading *r, char *begin)
         report_fault(r, at, err.text);
         return;
     }
-    Place *seen = &r->seen[i];
-    if (seen->line) {
+    if (r->seen[i].line) {
         fail(&err, STATUS_BAD_DATA, "%s: was set in line %d already; remove one of the two", settings_key(i),
-             seen->line);
+             r->seen[i].line);
         report_fault(r, place_of(r, begin), err.text);
     }
-    *seen = at;
+    r->seen[i] = at;
     table_change_files(r->s, i, anchor_path, r);
-}
-
-static void take_line(Reading *r, char *line)
-{
-    char *begin = skip_blanks(line), *end = begin[0] == '[' ? strchr(begin, ']') : NULL;
-    trim_end(begin);
-    if (!begin[0] || strchr(";#", begin[0]))
-        return;
-    if (end)
-        snprintf(r->section, sizeof r->section, "%.*s", (int)(end - begin) - 1, begin + 1);
-    else if (strchr(begin, '='))
-        take_pair(r, begin);
-    else
-        report_fault(r, place_of(r, begin), "neither [section] nor key = value");
 }
 
 /* At the first key that the sentence names and the file sets. */
@@ -211,28 +207,24 @@ static void report_broken(const char *text, void *user)
     report_fault(r, at, text);
 }
 
-/* The end of a line that ends at `stop`, together with those that an array of TOML goes on to. */
-static char *whole_line(char *line, char *stop, char *end, int *n_more)
-{
-    const char *begin = skip_blanks(line);
-    char *equals = strchr("[;#", *begin) ? NULL : memchr(line, '=', stop - line);
-    char *value = equals ? skip_blanks(equals + 1) : stop;
-    *n_more = 0;
-    if (*value != '[' || !toml_end(value, end, 0))
-        return stop;
-    for (const char *c = value, *close = toml_end(value, end, 0); c < close; c++)
-        *n_more += *c == '\n';
-    char *close = toml_end(value, end, 1), *last = memchr(close, '\n', end - close);
-    return last ? last : end;
-}
-
 /* text (length, and a zero behind it): its lines are closed by zeros. */
 static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
 {
     for (char *next = text, *line = text, *end = text + length; next < end; line = next) {
         char *stop = memchr(line, '\n', end - line);
-        int n_more;
-        stop = whole_line(line, stop ? stop : end, end, &n_more);
+        int n_more = 0;
+        stop = stop ? stop : end;
+
+        /* An array of TOML goes on over the lines behind it, to the end of that on which it closes. */
+        char *equals = strchr("[;#", *skip_blanks(line)) ? NULL : memchr(line, '=', stop - line);
+        char *value = equals ? skip_blanks(equals + 1) : stop;
+        char *close = *value == '[' ? toml_end(value, end, 0) : NULL;
+        for (const char *c = value; close && c < close; c++)
+            n_more += *c == '\n';
+        if (close) {
+            stop = memchr(toml_end(value, end, 1), '\n', end - close);
+            stop = stop ? stop : end;
+        }
         next = stop + 1;
         *stop = 0;
         if (r->line++ == 0 && strncmp(line, "\xEF\xBB\xBF", 3) == 0)
@@ -250,28 +242,23 @@ static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
 }
 
-/* A folder in the place of a settings file: the first two that lie in it. */
-static Status name_those_in(const char *folder, Err *err)
-{
-    char pattern[OPTION_TEXT_MAX];
-    glob_t g = {0};
-    snprintf(pattern, sizeof pattern, "%s/*.ini", folder);
-    const size_t n = glob(pattern, 0, NULL, &g) == 0 ? g.gl_pathc : 0;
-    const Status status = n == 0 ? fail(err, STATUS_MISSING,
-                                        "%s: is a folder without a run (run.sqlite) or a settings file (*.ini)", folder)
-                                 : fail(err, STATUS_MISSING, "%s: is a folder; did you mean %s%s%s?", folder,
-                                        g.gl_pathv[0], n > 1 ? " or " : "", n > 1 ? g.gl_pathv[1] : "");
-    globfree(&g);
-    return status;
-}
-
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
 {
-    char *text;
+    char *text, pattern[OPTION_TEXT_MAX];
     size_t length;
     struct stat st;
-    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode))
-        return name_those_in(path, err);
+    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode)) { /* the first two that lie in it are named */
+        glob_t g = {0};
+        snprintf(pattern, sizeof pattern, "%s/*.ini", path);
+        const size_t n = glob(pattern, 0, NULL, &g) == 0 ? g.gl_pathc : 0;
+        if (n == 0)
+            fail(err, STATUS_MISSING, "%s: is a folder without a run (run.sqlite) or a settings file (*.ini)", path);
+        else
+            fail(err, STATUS_MISSING, "%s: is a folder; did you mean %s%s%s?", path, g.gl_pathv[0], n > 1 ? " or " : "",
+                 n > 1 ? g.gl_pathv[1] : "");
+        globfree(&g);
+        return STATUS_MISSING;
+    }
     TRY(file_read(path, LARGEST, &text, &length, err));
     Reading r = {.s = s, .path = path, .faults = faults, .first = err};
     const Status status = read_text(&r, text, length, n_faults);

@@ -33,9 +33,7 @@ Status as_built_building(const AsBuilt *built, const Building *b, Building *out,
     const size_t n = (size_t)b->n, m = (size_t)b->model.n;
     const double stiffness = built->building_stiffness, damping = built->building_damping;
     if (!*store)
-        *store = malloc((n * n + 4 * n + m * m + 2 * m) * sizeof **store);
-    if (!*store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a building of %d floors", b->n);
+        TRY_ROOM(*store, n * n + 4 * n + m * m + 2 * m, "numbers of a building", err);
     double *at = *store;
     *out = *b;
     out->K = scaled(n * n, b->K, stiffness, &at);

@@ -6,36 +6,31 @@ static double mismatch(double a, double e)
     return a * (1 + e) - log1p(a) + log1p(-a * e);
 }
 
-/* The root of mismatch in e: between 0, where it is positive, and min(1, 1/a), where it is negative. */
-double contact_rebound(double a)
+/* The root of mismatch by bisection from 0, where it is positive, to `high`, where it is negative: in e for a given a,
+ * in a for a given e. NAN: the one that is looked for. */
+static double mismatch_root(double a, double e, double high)
 {
-    if (a < 1e-9)
-        return 1 - 2.0 / 3.0 * a;
-    double low = 0, high = a > 1 ? 1 / a : 1;
+    double low = 0;
     for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
-        const double e = 0.5 * (low + high);
-        if (mismatch(a, e) > 0)
-            low = e;
+        const double x = 0.5 * (low + high);
+        if (mismatch(isnan(a) ? x : a, isnan(e) ? x : e) > 0)
+            low = x;
         else
-            high = e;
+            high = x;
     }
     return 0.5 * (low + high);
 }
 
-/* The root of mismatch in a: positive above 0, where both sides vanish, and falling without bound towards 1/e. */
+double contact_rebound(double a)
+{
+    return a < 1e-9 ? 1 - 2.0 / 3.0 * a : mismatch_root(a, NAN, a > 1 ? 1 / a : 1);
+}
+
+/* Above 0, where both sides vanish, mismatch is positive and falls without bound towards 1/e. Near e = 1 it is of third
+ * order in a, and lost in rounding. */
 double contact_damping(double e)
 {
-    double low = 0, high = 1 / e;
-    if (1 - e < 1e-5) /* mismatch, of third order in a, is lost in rounding */
-        return 1.5 * (1 - e);
-    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
-        const double a = 0.5 * (low + high);
-        if (mismatch(a, e) > 0)
-            low = a;
-        else
-            high = a;
-    }
-    return 0.5 * (low + high);
+    return 1 - e < 1e-5 ? 1.5 * (1 - e) : mismatch_root(NAN, e, 1 / e);
 }
 
 double contact_hertz_indentation(double k, double m, double v)
@@ -59,9 +54,10 @@ double contact_duration_min(double hertz, double bumper)
     return bumper > 0 ? hypot(hertz, bumper) : hertz;
 }
 
-/* y > 0 with y^3 + y^2 = q by Halley's method, which here converges from any start: sqrt(p_h) in units of k_b/k. */
-static double series_root(double q)
+ContactShare contact_share(const Contact *c, double p)
 {
+    /* y > 0 with y^3 + y^2 = q by Halley's method, which here converges from any start: sqrt(p_h) in units of k_b/k. */
+    const double ratio = c->k / c->bumper, q = p * ratio * ratio;
     double y = sqrt(q / (1 + sqrt(sqrt(q))));
     for (int i = 0; i < 20; i++) {
         const double g = y * y * (y + 1) - q, slope = y * (3 * y + 2);
@@ -70,13 +66,7 @@ static double series_root(double q)
         if (!(fabs(step) > 1e-6 * y)) /* what is left is of its cube */
             break;
     }
-    return y;
-}
-
-ContactShare contact_share(const Contact *c, double p)
-{
-    const double ratio = c->k / c->bumper, root = series_root(p * ratio * ratio) / ratio;
-    const double hertz = 1.5 * c->k * root;
+    const double root = y / ratio, hertz = 1.5 * c->k * root;
     return (ContactShare){
         .root = root, .force = c->k * root * root * root, .hertz = hertz, .share = c->bumper / (hertz + c->bumper)};
 }

@@ -4,11 +4,9 @@
 #include "base/clones.h"
 #include "base/filter.h"
 #include "scene/building.h"
+#include "sim/lanes.h"
 
-typedef double v8 __attribute__((vector_size(64)));
-typedef int64_t m8 __attribute__((vector_size(64)));
-
-enum { LANES8 = 8, VECTORS = 3 /* together: each waits for its own last row */, ENTERED = 32 /* rows at once */ };
+enum { VECTORS = 3 /* together: each waits for its own last row */, ENTERED = 32 /* rows at once */ };
 
 /* Of a column between two rows: u and a of the last two, then the filter's states. */
 enum { LAST_U, BEFORE_U, LAST_A, BEFORE_A, SECTIONS, STATES = SECTIONS + 2 * FILTER_SECTIONS };
@@ -48,12 +46,12 @@ double floor_filter_spacing(double cutoff_hz)
 
 Status floor_filter_create(FloorFilter **out, int n_floors, double cutoff_hz, Err *err)
 {
-    *out = calloc(1, sizeof **out);
-    if (!*out)
-        return fail(err, STATUS_NO_MEMORY, "filter: out of memory");
-    (*out)->n = n_floors;
-    (*out)->width = ((size_t)n_floors + LANES8 - 1) & ~(size_t)(LANES8 - 1);
-    (*out)->cutoff_hz = cutoff_hz;
+    FloorFilter *f = *out = NULL;
+    TRY_ROOM(f, 1, "a filter of floors", err);
+    f->n = n_floors;
+    f->width = ((size_t)n_floors + LANES8 - 1) & ~(size_t)(LANES8 - 1);
+    f->cutoff_hz = cutoff_hz;
+    *out = f;
     return STATUS_OK;
 }
 
@@ -64,6 +62,7 @@ void floor_filter_free(FloorFilter *f)
     free(f);
 }
 
+/* Arrays of a block of rows and what follows it. */
 static void layout(void *object, Carve *c)
 {
     FloorFilter *f = object;
@@ -76,21 +75,11 @@ static void layout(void *object, Carve *c)
     CARVE(c, f->peak, f->width);
 }
 
-/* sum |g| of one pass. */
-static double norm_of(const Filter *filter, size_t rows)
-{
-    double s[FILTER_SECTIONS][2] = {{0}}, sum = 0;
-    for (size_t i = 0; i < rows; i++) {
-        double x = i == 0;
-        FILTER_STEP(filter, x, s);
-        sum += fabs(x);
-    }
-    return sum;
-}
-
+/* Another step of the samples: the filter for it, the lengths that follow from it, and memory for these. */
 static void set_spacing(FloorFilter *f, double h)
 {
     Err err = {0};
+    double s[FILTER_SECTIONS][2] = {{0}};
     free(f->store);
     f->store = NULL;
     f->h = h;
@@ -99,12 +88,18 @@ static void set_spacing(FloorFilter *f, double h)
         return;
     f->padding = filter_padding(&f->filter);
     f->block = 2 * f->padding;
-    f->norm = norm_of(&f->filter, f->padding);
+    f->norm = 0;
+    for (size_t i = 0; i < f->padding; i++) {
+        double x = i == 0;
+        FILTER_STEP(&f->filter, x, s);
+        f->norm += fabs(x);
+    }
     f->below = 3 / (4 * f->norm * f->norm);
     f->store = carve_all(layout, f);
     f->out_of_memory = !f->store;
 }
 
+/* The floors are at rest. */
 static void begin(FloorFilter *f)
 {
     f->entered = 0;
@@ -178,10 +173,6 @@ CLONED static void forward(const Filter *filter, const Entry *e, double state[],
 
 /* -- backward --------------------------------------------------------------------------------------------------- */
 
-/* Vectors are not passed between functions: not every version of a CLONED one has registers for them. */
-#define V8_WHERE(m, a, b) ((v8)(((m8)(a) & (m)) | ((m8)(b) & ~(m))))
-#define V8_ABS(a)         ((v8)((m8)(a)&INT64_MAX))
-
 /* Can these rows of y raise the largest magnitude of z? */
 CLONED static int may_rise(size_t rows, size_t width, const double y[], double norm, const double most_z[])
 {
@@ -194,20 +185,20 @@ CLONED static int may_rise(size_t rows, size_t width, const double y[], double n
         }
         over |= most * norm > *(const v8 *)(most_z + at);
     }
-    int64_t any = 0;
-    for (int i = 0; i < LANES8; i++)
-        any |= over[i];
-    return any != 0;
+    return m8_any(&over);
 }
 
-/* Both passes of rows 0..block + 1 of y from all its rows; the largest magnitude among 1..block of every column, and
- * its row. */
-static inline __attribute__((always_inline)) void backward_vectors(const int vectors, const Filter *filter, size_t rows,
-                                                                   size_t block, size_t width, const double y[],
-                                                                   double z[], double top[], double top_row[])
+/* Both passes of rows 0..block + 1 of some columns from all rows of y; the largest magnitude among 1..block of every
+ * column, and its row. */
+static inline __attribute__((always_inline)) void
+backward_vectors(const int vectors, const FloorFilter *f, size_t block, size_t column, double top[], double top_row[])
 {
+    const Filter *filter = &f->filter;
+    const size_t width = f->width;
+    const double *y = f->y + column;
+    double *z = f->z + column;
     v8 s[VECTORS][FILTER_SECTIONS][2] = {{{{0}}}}, most[VECTORS] = {{0}}, at[VECTORS] = {{0}};
-    for (size_t i = rows; i-- > 0;)
+    for (size_t i = f->filled; i-- > 0;)
 #pragma GCC unroll 3
         for (int j = 0; j < vectors; j++) {
             v8 x = ((const v8 *)(y + i * width))[j];
@@ -223,66 +214,54 @@ static inline __attribute__((always_inline)) void backward_vectors(const int vec
             at[j] = V8_WHERE(more, (v8){0} + (double)i, at[j]);
         }
     for (int j = 0; j < vectors; j++) {
-        ((v8 *)top)[j] = most[j];
-        ((v8 *)top_row)[j] = at[j];
+        ((v8 *)(top + column))[j] = most[j];
+        ((v8 *)(top_row + column))[j] = at[j];
     }
 }
 
-CLONED static void backward(const Filter *filter, size_t rows, size_t block, size_t width, const double y[], double z[],
-                            double top[], double top_row[])
+CLONED static void backward(const FloorFilter *f, size_t block, double top[], double top_row[])
 {
     size_t at = 0;
-    for (; at + VECTORS * LANES8 <= width; at += VECTORS * LANES8)
-        backward_vectors(VECTORS, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
-    for (; at < width; at += LANES8)
-        backward_vectors(1, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
+    for (; at + VECTORS * LANES8 <= f->width; at += VECTORS * LANES8)
+        backward_vectors(VECTORS, f, block, at, top, top_row);
+    for (; at < f->width; at += LANES8)
+        backward_vectors(1, f, block, at, top, top_row);
 }
 
-/* Largest magnitude of the parabola through a row of a column and its neighbours, where the row's is the largest of
- * them; else the row's. */
-static double parabola_top(const double *row, size_t width)
-{
-    const double left = *(row - width), y = *row, right = row[width];
-    if (fabs(left) > fabs(y) || fabs(right) > fabs(y))
-        return fabs(y);
-    const double bend = left - 2 * y + right, slope = 0.5 * (right - left);
-    return bend != 0 ? fabs(y - 0.5 * slope * slope / bend) : fabs(y);
-}
-
-/* Peaks of rows 1..block of y, the last of which has a neighbour. */
+/* Peaks of rows 1..block of y, the last of which has a neighbour: of the parabola through the row of the largest
+ * magnitude and its neighbours, where it is the largest of them; else of the row. */
 static void take_block(FloorFilter *f, size_t block)
 {
     _Alignas(64) double top[FLOORS_MAX], row[FLOORS_MAX];
     if (!may_rise(f->filled - 1, f->width, f->y + f->width, f->norm, f->most))
         return;
-    backward(&f->filter, f->filled, block, f->width, f->y, f->z, top, row);
-    for (size_t j = 0; j < (size_t)f->n; j++)
-        if (top[j] > f->most[j]) {
-            f->most[j] = top[j];
-            f->peak[j] = parabola_top(f->z + (size_t)row[j] * f->width + j, f->width);
-        }
+    backward(f, block, top, row);
+    for (size_t j = 0; j < (size_t)f->n; j++) {
+        if (!(top[j] > f->most[j]))
+            continue;
+        const double *z = f->z + (size_t)row[j] * f->width + j, left = *(z - f->width), y = *z, right = z[f->width];
+        const double bend = left - 2 * y + right, slope = 0.5 * (right - left);
+        const int is_top = fabs(left) <= fabs(y) && fabs(right) <= fabs(y) && bend != 0;
+        f->most[j] = top[j];
+        f->peak[j] = is_top ? fabs(y - 0.5 * slope * slope / bend) : fabs(y);
+    }
 }
 
 /* -- a run ------------------------------------------------------------------------------------------------------ */
-
-/* Before the first of the rows that wait the floors went as they go from it to the second. */
-static void resume(FloorFilter *f)
-{
-    const size_t width = f->width;
-    const double *first = f->u, *second = f->entered > 1 ? f->u + width : f->u;
-    for (size_t j = 0; j < width; j++) {
-        f->state[LAST_U * width + j] = 2 * first[j] - second[j];
-        f->state[BEFORE_U * width + j] = 3 * first[j] - 2 * second[j];
-    }
-    f->resumes = 0;
-}
 
 /* The rows that wait go through the forward pass, and every block that is complete through the backward one. */
 static void enter(FloorFilter *f)
 {
     const size_t width = f->width, full = 1 + f->block + f->padding;
-    if (f->resumes && f->entered > 0)
-        resume(f);
+    if (f->resumes && f->entered > 0) {
+        /* Before the first of these rows the floors went as they go from it to the second. */
+        const double *first = f->u, *second = f->entered > 1 ? f->u + width : f->u;
+        for (size_t j = 0; j < width; j++) {
+            f->state[LAST_U * width + j] = 2 * first[j] - second[j];
+            f->state[BEFORE_U * width + j] = 3 * first[j] - 2 * second[j];
+        }
+        f->resumes = 0;
+    }
     for (size_t first = 0; first < f->entered;) {
         const size_t left = f->entered - first, room = full - f->filled, n = left < room ? left : room;
         forward(&f->filter,
@@ -335,32 +314,30 @@ int floor_filter_is_below(const FloorFilter *f, const double acceleration[])
     return !above;
 }
 
-/* After the last row the floors go on as they went, as long as the filter lags behind, and then the ground stands
- * still. */
-static void run_out(FloorFilter *f)
+Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err)
 {
     const size_t width = f->width;
+    const double *last = f->state + LAST_U * width, *before = f->state + BEFORE_U * width;
+    if (f->out_of_memory)
+        return fail_memory(err, f->n, "floors");
+    if (!f->store)
+        return filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, f->h, err);
+
+    /* After the last row the floors go on as they went, as long as the filter lags behind. */
     enter(f);
     for (int i = 1; i <= 2; i++) {
         double *u = floor_filter_add(f, f->ground[0]);
         for (size_t j = 0; j < width; j++)
-            u[j] = f->state[LAST_U * width + j] + i * (f->state[LAST_U * width + j] - f->state[BEFORE_U * width + j]);
+            u[j] = last[j] + i * (last[j] - before[j]);
     }
     enter(f);
+
+    /* Then the ground stands still. */
     memset(f->state, 0, SECTIONS * width * sizeof *f->state);
     f->ground[0] = 0;
     for (size_t i = 0; i < f->padding; i++)
         memset(floor_filter_add(f, 0), 0, width * sizeof *f->u);
     enter(f);
-}
-
-Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err)
-{
-    if (f->out_of_memory)
-        return fail_memory(err, f->n, "floors");
-    if (!f->store)
-        return filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, f->h, err);
-    run_out(f);
     if (f->filled > 1 + f->padding)
         take_block(f, f->filled - 1 - f->padding);
     memcpy(peaks, f->peak, (size_t)f->n * sizeof *peaks);

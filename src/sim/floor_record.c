@@ -12,9 +12,7 @@ struct FloorRecord {
 
 Status floor_record_create(FloorRecord **out, int n_floors, Err *err)
 {
-    *out = calloc(1, sizeof **out);
-    if (!*out)
-        return fail(err, STATUS_NO_MEMORY, "floors: out of memory");
+    TRY_ROOM(*out, 1, "the accelerations of the floors", err);
     (*out)->width = ((size_t)n_floors + 7) & ~(size_t)7;
     return STATUS_OK;
 }
@@ -40,56 +38,38 @@ double floor_record_step(const FloorRecord *f)
     return f->h;
 }
 
-static int make_room(FloorRecord *f, size_t rows)
-{
-    if (rows <= f->room)
-        return 1;
-    const size_t room = rows > 2 * f->room ? rows : 2 * f->room;
-    double *u = realloc(f->u, room * f->width * sizeof *u);
-    f->u = u ? u : f->u;
-    double *ground = u ? realloc(f->ground, room * sizeof *ground) : NULL;
-    f->ground = ground ? ground : f->ground;
-    f->room = ground ? room : f->room;
-    f->out_of_memory |= !ground;
-    return ground != NULL;
-}
-
 double *floor_record_add(FloorRecord *f, double ground)
 {
-    if (!make_room(f, f->rows + 1))
-        return NULL;
+    if (f->rows == f->room) {
+        const size_t room = f->room > 0 ? 2 * f->room : 1;
+        double *u = realloc(f->u, room * f->width * sizeof *u);
+        f->u = u ? u : f->u;
+        double *wider = u ? realloc(f->ground, room * sizeof *wider) : NULL;
+        f->ground = wider ? wider : f->ground;
+        f->room = wider ? room : f->room;
+        f->out_of_memory |= !wider;
+        if (!wider)
+            return NULL;
+    }
     f->ground[f->rows] = ground;
     return f->u + f->rows++ * f->width;
 }
 
-static void differentiate(FloorRecord *f)
-{
-    const size_t width = f->width, last = f->rows - 1;
-    const double per_h2 = 1 / (f->h * f->h);
-    double before[FLOORS_MAX];
-    memcpy(before, f->u, width * sizeof *f->u);
-    for (size_t i = 1; i < last; i++) {
-        double *row = f->u + i * width;
-        for (size_t j = 0; j < width; j++) {
-            const double now = row[j];
-            row[j] = per_h2 * (before[j] - 2 * now + row[width + j]) + f->ground[i];
-            before[j] = now;
-        }
-    }
-    for (size_t j = 0; j < width; j++) {
-        f->u[last * width + j] = f->ground[last];
-        f->u[j] = f->ground[0];
-    }
-}
-
 Status floor_record_accelerations(FloorRecord *f, const double **rows, size_t *n, size_t *width, Err *err)
 {
+    const double per_h2 = 1 / (f->h * f->h);
+    double before[FLOORS_MAX];
     if (f->out_of_memory)
         return fail_memory(err, f->rows, "samples");
-    if (f->rows > 0)
-        differentiate(f);
     *rows = f->u;
     *n = f->rows;
     *width = f->width;
+    for (size_t i = 0; i < f->rows; i++)
+        for (size_t j = 0; j < f->width; j++) {
+            double *u = f->u + i * f->width + j;
+            const double now = *u, ground = f->ground[i];
+            *u = i > 0 && i + 1 < f->rows ? per_h2 * (before[j] - 2 * now + u[f->width]) + ground : ground;
+            before[j] = now;
+        }
     return STATUS_OK;
 }

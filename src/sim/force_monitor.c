@@ -4,15 +4,12 @@
 #include "base/clones.h"
 #include "base/units.h"
 #include "scene/neighbour.h"
+#include "sim/lanes.h"
 
 /* Eight outputs, followed together:
  *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base
  *           shear, overturning moment
  *   slow    building: V_1, the overturning moment, V_2..V_n; velocities of the floors */
-typedef double v8 __attribute__((vector_size(64)));
-typedef int64_t m8 __attribute__((vector_size(64)));
-enum { LANES8 = 8 };
-
 /* [s] Slow points that follow sooner are left out, but for the last; contacts are shorter. */
 static const double SLOW_SPACING = 4e-3;
 
@@ -63,22 +60,7 @@ static int eights(int n)
     return (n + LANES8 - 1) / LANES8;
 }
 
-static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_core)
-{
-    const size_t row = LANES8 * sizeof(double);
-    double *const building = carve(c, 2 * nb + n, row);
-    double *const core = has_core ? carve(c, 3 * n + 1, row) : NULL;
-    if (!c->base)
-        return;
-    g->room = building;
-    g->building_squares = building + nb * LANES8;
-    g->plastic = building + 2 * nb * LANES8;
-    g->core = core;
-    g->core_squares = core ? core + n * LANES8 : NULL;
-    g->force = core ? core + 2 * n * LANES8 : NULL;
-    g->ground = core ? core + 3 * n * LANES8 : NULL;
-}
-
+/* A group that may have outputs of the core has tables of it, and of what its modes left out add. */
 static void layout(void *object, Carve *c)
 {
     ForceMonitor *m = object;
@@ -86,8 +68,18 @@ static void layout(void *object, Carve *c)
     CARVE(c, m->due, m->n_groups);
     for (int i = 0; i < N_REACHES; i++)
         CARVE(c, m->limit[i], eights(m->n_groups) * LANES8);
-    for (int i = 0; i < m->n_groups; i++)
-        layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i < m->at_slow);
+    for (int i = 0; i < m->n_groups; i++) {
+        Group none, *g = c->base ? &m->group[i] : &none;
+        CARVE(c, g->room, LANES8 * m->nb);
+        CARVE(c, g->building_squares, LANES8 * m->nb);
+        CARVE(c, g->plastic, LANES8 * m->n);
+        if (i >= m->at_slow)
+            continue;
+        CARVE(c, g->core, LANES8 * m->n);
+        CARVE(c, g->core_squares, LANES8 * m->n);
+        CARVE(c, g->force, LANES8 * m->n);
+        CARVE(c, g->ground, LANES8);
+    }
 }
 
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
@@ -159,53 +151,46 @@ static void put_row(ForceMonitor *m, int at, int i, int count, const double outp
     }
 }
 
-/* A plastic drift of storey j takes its part of the shear of that storey, and its moment from all feet below. */
-static void set_plastic_rows(ForceMonitor *m, const Building *b)
+/* The tables of outputs, a row per mode, and per storey that yields. joined: the core moves in the building's modes. */
+static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, int joined)
 {
-    for (int j = 0; j < m->n; j++) {
-        double outputs[FLOORS_MAX + 1] = {0};
-        outputs[1] = -b->yield_n_m[j] * b->storey_m[j];
-        outputs[j > 0 ? j + 1 : 0] = -b->yield_n_m[j];
-        put_row(m, m->at_both, j, 2, outputs, ROW_PLASTIC);
-        put_row(m, m->at_slow, j, m->n + 1, outputs, ROW_PLASTIC);
-    }
-    for (int i = m->at_both; i < m->at_velocity; i++)
-        for (int k = 0; k < LANES8 * m->n; k++)
-            m->group[i].reach[REACH_PLASTIC][k % LANES8] += fabs(m->group[i].plastic[k]);
-}
-
-static void set_building_rows(ForceMonitor *m, const Building *b)
-{
-    const int n = m->n;
+    const int n = m->n, modes = joined ? m->nb : n;
     const BuildingModel *model = &b->model;
-    double outputs[FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX], base;
+    const double *phi = joined ? model->phi : core ? core->phi : NULL;
+    double outputs[2 * FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX];
+
+    /* Modes of the building: base shear, overturning moment, shears of the other storeys; the floors' velocities. */
     for (int i = 0; i < m->nb; i++) {
         storey_forces(m, b->K, model->phi + i, model->n, outputs + 1, moments);
-        base = outputs[1];
+        outputs[0] = outputs[1];
         outputs[1] = moments[0];
-        outputs[0] = base;
         for (int j = 0; j < n; j++)
             velocities[j] = model->phi[j * model->n + i];
         put_row(m, m->at_both, i, 2, outputs, ROW_BUILDING);
         put_row(m, m->at_slow, i, n + 1, outputs, ROW_BUILDING);
         put_row(m, m->at_velocity, i, n, velocities, ROW_BUILDING);
     }
-}
 
-/* Of `modes` modes of shape phi. */
-static void set_core_rows(ForceMonitor *m, const CoreBeam *core, int modes, const double phi[], RowKind of)
-{
-    const int n = m->n;
-    double outputs[2 * FLOORS_MAX + 1] = {0};
+    /* Modes of the core. Those at the base stand beside the building's, where these are its modes too. */
+    memset(outputs, 0, sizeof outputs);
     for (int i = 0; i < modes; i++) {
         if (core) {
             storey_forces(m, core->K, phi + i, modes, outputs, outputs + n);
             outputs[2 * n] = phi[(core->top - 1) * modes + i];
         }
-        put_row(m, 0, i, 2 * n + 1, outputs, of);
-        double *both = (of == ROW_CORE ? m->group[m->at_both].core : m->group[m->at_both].building) + i * LANES8;
-        for (int k = 0; k < 2; k++) /* beside the building's, where these are its modes too */
-            both[k] = outputs[k * n] + (of == ROW_CORE ? 0 : both[k]);
+        put_row(m, 0, i, 2 * n + 1, outputs, joined ? ROW_BUILDING : ROW_CORE);
+        double *both = (joined ? m->group[m->at_both].building : m->group[m->at_both].core) + i * LANES8;
+        for (int k = 0; k < 2; k++)
+            both[k] = outputs[k * n] + (joined ? both[k] : 0);
+    }
+
+    /* A plastic drift of storey j takes its part of the shear of that storey, and its moment from all feet below. */
+    for (int j = 0; j < n && b->yields; j++) {
+        memset(outputs, 0, sizeof outputs);
+        outputs[1] = -b->yield_n_m[j] * b->storey_m[j];
+        outputs[j > 0 ? j + 1 : 0] = -b->yield_n_m[j];
+        put_row(m, m->at_both, j, 2, outputs, ROW_PLASTIC);
+        put_row(m, m->at_slow, j, n + 1, outputs, ROW_PLASTIC);
     }
 }
 
@@ -218,17 +203,6 @@ static void set_squares(int n, const double rows[], const double omega[], double
     }
 }
 
-static void set_reaches(ForceMonitor *m, const Building *b, const CoreBeam *core)
-{
-    for (int i = 0; i < m->n_groups; i++) {
-        Group *g = &m->group[i];
-        if (g->building)
-            set_squares(m->nb, g->building, g->of_velocities ? NULL : b->model.omega, g->building_squares);
-        if (g->core && m->own_modes > 0)
-            set_squares(m->n, g->core, core->omega, g->core_squares);
-    }
-}
-
 void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core, int joined,
                        const double thickness[2])
 {
@@ -237,11 +211,8 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->core = core;
     m->nc = core ? n : 0;
     m->own_modes = joined ? 0 : m->nc;
-    for (int i = 0; i < m->n_groups; i++) {
-        m->group[i].building = joined || i >= m->at_both ? m->group[i].room : NULL;
-        memset(m->group[i].reach, 0, sizeof m->group[i].reach);
-    }
     m->with_storeys = !o->sim.measures_only;
+    m->yields = b->yields;
     m->weight_n = 0;
     for (int s = 0; s < n; s++)
         m->z[s + 1] = m->z[s] + b->storey_m[s];
@@ -249,39 +220,24 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
         m->weight_n += b->M[i] * GRAVITY;
     m->thickness[0] = core ? thickness[0] : 0;
     m->thickness[1] = core ? thickness[1] : 0;
-    set_building_rows(m, b);
-    set_core_rows(m, core, joined ? m->nb : n,
-                  joined ? b->model.phi
-                  : core ? core->phi
-                         : NULL,
-                  joined ? ROW_BUILDING : ROW_CORE);
-    m->yields = b->yields;
-    if (b->yields)
-        set_plastic_rows(m, b);
-    set_reaches(m, b, core);
+    for (int i = 0; i < m->n_groups; i++)
+        m->group[i].building = joined || i >= m->at_both ? m->group[i].room : NULL;
+    set_rows(m, b, core, joined);
+
+    /* What bounds the outputs (ForceReach): rows squared, over w^2 of displacements; sums over plastic drifts. */
+    for (int i = 0; i < m->n_groups; i++) {
+        Group *g = &m->group[i];
+        memset(g->reach, 0, sizeof g->reach);
+        for (int k = 0; k < LANES8 * n && b->yields && i >= m->at_both && i < m->at_velocity; k++)
+            g->reach[REACH_PLASTIC][k % LANES8] += fabs(g->plastic[k]);
+        if (g->building)
+            set_squares(m->nb, g->building, g->of_velocities ? NULL : b->model.omega, g->building_squares);
+        if (g->core && m->own_modes > 0)
+            set_squares(n, g->core, core->omega, g->core_squares);
+    }
 }
 
 /* -- points ----------------------------------------------------------------------------------------------------- */
-
-/* What the modes left out add: quasi-static answers to the contacts and to the ground. */
-static void set_residual(const ForceMonitor *m, Group *g)
-{
-    memset(g->force, 0, sizeof(double) * (size_t)((m->n + 1) * LANES8)); /* and the ground */
-    for (int i = m->core_modes; i < m->own_modes; i++) {
-        const double *row = g->core + i * LANES8, omega = m->core->omega[i], flexibility = 1 / (omega * omega);
-        for (int k = 0; k < LANES8; k++) {
-            g->ground[k] -= m->core->gamma[i] * flexibility * row[k];
-            for (int j = 0; j < m->n; j++)
-                g->force[j * LANES8 + k] -= m->core->phi[j * m->n + i] * flexibility * row[k];
-        }
-    }
-    memset(&g->reach[REACH_FORCE], 0, sizeof g->reach[REACH_FORCE]);
-    for (int k = 0; k < LANES8; k++) {
-        g->reach[REACH_GROUND][k] = fabs(g->ground[k]);
-        for (int j = 0; j < m->n; j++)
-            g->reach[REACH_FORCE][k] = fmax(g->reach[REACH_FORCE][k], fabs(g->force[j * LANES8 + k]));
-    }
-}
 
 /* Is there a core, are the building's storeys wanted? */
 static int is_followed(const ForceMonitor *m, int group)
@@ -304,27 +260,32 @@ void force_monitor_start(ForceMonitor *m, int core_modes, double end)
         g->rose = 0;
         for (int k = 0; k < LANES8; k++)
             g->peak[k] = k < g->outputs ? 0 : HUGE_VAL;
-        if (g->core)
-            set_residual(m, g);
         if (is_followed(m, i))
             m->due[m->n_due++] = i;
+        if (!g->core)
+            continue;
+
+        /* What the modes left out add: quasi-static answers to the contacts and to the ground. */
+        memset(g->force, 0, sizeof(double) * (size_t)((m->n + 1) * LANES8)); /* and the ground */
+        for (int l = m->core_modes; l < m->own_modes; l++) {
+            const double *row = g->core + l * LANES8, omega = m->core->omega[l], flexibility = 1 / (omega * omega);
+            for (int k = 0; k < LANES8; k++) {
+                g->ground[k] -= m->core->gamma[l] * flexibility * row[k];
+                for (int j = 0; j < m->n; j++)
+                    g->force[j * LANES8 + k] -= m->core->phi[j * m->n + l] * flexibility * row[k];
+            }
+        }
+        for (int k = 0; k < LANES8; k++) {
+            g->reach[REACH_GROUND][k] = fabs(g->ground[k]);
+            g->reach[REACH_FORCE][k] = 0;
+            for (int j = 0; j < m->n; j++)
+                g->reach[REACH_FORCE][k] = fmax(g->reach[REACH_FORCE][k], fabs(g->force[j * LANES8 + k]));
+        }
     }
     memset(&m->sum, 0, sizeof m->sum);
     memset(m->open, 0, sizeof m->open);
     if (m->contact)
         m->contact(NULL, m->contact_user);
-}
-
-/* Vectors are not passed between functions: not every version of a CLONED one has registers for them. */
-#define V8_WHERE(m, a, b) ((v8)(((m8)(a) & (m)) | ((m8)(b) & ~(m))))
-#define V8_ABS(a)         ((v8)((m8)(a)&INT64_MAX))
-
-static inline __attribute__((always_inline)) int any(const m8 *mask)
-{
-    m8 bits = *mask;
-    bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
-    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
-    return (bits[0] | bits[1]) != 0;
 }
 
 /* sum += x_i rows_i, of which every second goes to `more`: each sum waits for its own last product. */
@@ -340,21 +301,17 @@ static inline __attribute__((always_inline)) int any(const m8 *mask)
             sum += row_[i_] * (x)[i_];                                                                                 \
     } while (0)
 
-/* Largest magnitude of the parabola through (-h0, y0), (0, y1), (h1, y2), |y1| the largest. */
-static double parabola_top(double h0, double h1, double y0, double y1, double y2)
-{
-    const double d0 = (y1 - y0) / h0, d1 = (y2 - y1) / h1, curvature = (d1 - d0) / (h0 + h1);
-    const double slope = d0 + curvature * h0;
-    return curvature == 0 ? fabs(y1) : fabs(y1 - 0.25 * slope * slope / curvature);
-}
-
-/* Raises peaks to the parabola's of those outputs of the last point that are the largest of three. */
+/* Raises peaks to the parabola's of those outputs of the last point that are the largest of three: through (-h0, y0),
+ * (0, y1), (h1, y2), |y1| the largest. */
 static __attribute__((noinline)) void raise_tops(Group *g, const m8 *tops, const v8 *now, double t)
 {
     const double h0 = g->t[0] - g->t[1], h1 = t - g->t[0];
-    for (int k = 0; k < LANES8; k++)
+    for (int k = 0; k < LANES8; k++) {
+        const double y1 = g->last[k], d0 = (y1 - g->first[k]) / h0, d1 = ((*now)[k] - y1) / h1;
+        const double curvature = (d1 - d0) / (h0 + h1), slope = d0 + curvature * h0;
         if ((*tops)[k])
-            g->peak[k] = fmax(g->peak[k], parabola_top(h0, h1, g->first[k], g->last[k], (*now)[k]));
+            g->peak[k] = fmax(g->peak[k], curvature == 0 ? fabs(y1) : fabs(y1 - 0.25 * slope * slope / curvature));
+    }
 }
 
 /* The outputs of a group at a point. */
@@ -378,7 +335,7 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
     *out = now + more;
 }
 
-CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
+CLONED void force_monitor_point(ForceMonitor *m, const ForcePoint *p)
 {
     m->rising = 0;
     for (int i = 0; i < m->n_due; i++) {
@@ -395,10 +352,10 @@ CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
         if (g->rose && g->points > 1) {
             const v8 beside = V8_WHERE(first > y, first, y);
             const m8 tops = V8_ABS(g->last) >= V8_WHERE(beside > g->peak, beside, g->peak);
-            if (any(&tops))
+            if (m8_any(&tops))
                 raise_tops(g, &tops, &now, p->t);
         }
-        g->rose = any(&higher);
+        g->rose = m8_any(&higher);
         m->rising += g->rose;
         if (g->rose) {
             g->peak = V8_WHERE(y > g->peak, y, g->peak);
@@ -410,11 +367,6 @@ CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
         g->t[0] = p->t;
         g->points++;
     }
-}
-
-void force_monitor_point(ForceMonitor *m, const ForcePoint *p)
-{
-    follow(m, p);
 }
 
 /* -- what may rise ---------------------------------------------------------------------------------------------- */
@@ -483,7 +435,7 @@ CLONED static int find_over(const ForceMonitor *m, const ForceReach *r, m8 over[
         over[b] = ~(sum <= 1);
         all |= over[b];
     }
-    return any(&all);
+    return m8_any(&all);
 }
 
 /* The same of a group whose limits are set anew, if they are out of date. */
@@ -532,11 +484,10 @@ void force_monitor_contact(ForceMonitor *m, int floor, double impulse, double lo
 {
     SimContact *c = &m->open[floor];
     const int side = index_of(c->side);
-    c->impulse += impulse;
+    force_monitor_impulse(m, floor, impulse);
     c->lost += lost;
     c->force = fmax(c->force, force);
     c->indentation = fmax(c->indentation, indentation);
-    m->sum.contact_impulse_ns[side][floor] += impulse;
     m->sum.contact_force_n[side][floor] = fmax(m->sum.contact_force_n[side][floor], force);
     m->sum.indentation_m[side][floor] = fmax(m->sum.indentation_m[side][floor], indentation);
 }
@@ -566,18 +517,9 @@ void force_monitor_end(ForceMonitor *m, int floor, double t, double speed)
         m->contact(c, m->contact_user);
 }
 
-static void close_open_contacts(ForceMonitor *m, double t)
-{
-    for (int j = 0; j < m->n; j++)
-        if (m->open[j].open) {
-            m->open[j].duration = t - m->open[j].t;
-            if (m->contact)
-                m->contact(&m->open[j], m->contact_user);
-        }
-}
-
 /* -- results ---------------------------------------------------------------------------------------------------- */
 
+/* Stresses of the core's storeys, where its section has a shape, and how near its walls come to buckling. */
 static void report_stresses(const ForceMonitor *m, SimForces *out)
 {
     const CoreOptions *o = &m->options.core;
@@ -601,23 +543,6 @@ static void report_stresses(const ForceMonitor *m, SimForces *out)
     }
 }
 
-static void report_contacts(const ForceMonitor *m, SimForces *out)
-{
-    for (int side = 0; side < SIDES; side++)
-        for (int j = 0; j < m->n; j++)
-            out->contact_force_max_n = fmax(out->contact_force_max_n, out->contact_force_n[side][j]);
-}
-
-/* The springs carry the base's shear and moment. */
-static void report_foundation(const ForceMonitor *m, SimForces *out)
-{
-    const Foundation f = m->nc > 0 ? m->core->base : (Foundation){0};
-    const double weight = m->nc > 0 ? f.weight_n + GRAVITY * m->core->mass_kg : 0;
-    out->base_rotation_rad = f.rotation > 0 ? out->core_overturning_nm / f.rotation : NAN;
-    out->base_translation_m = f.translation > 0 ? out->core_base_shear_n / f.translation : NAN;
-    out->uplift_ratio = f.radius_m > 0 ? out->core_overturning_nm / foundation_uplift_nm(&f, weight) : NAN;
-}
-
 /* Of output k of the groups from `at` on. */
 static double peak_of(const ForceMonitor *m, int at, int k)
 {
@@ -627,7 +552,12 @@ static double peak_of(const ForceMonitor *m, int at, int k)
 void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
 {
     const int n = m->n;
-    close_open_contacts(m, t);
+    for (int j = 0; j < n; j++)
+        if (m->open[j].open) {
+            m->open[j].duration = t - m->open[j].t;
+            if (m->contact)
+                m->contact(&m->open[j], m->contact_user);
+        }
     *out = m->sum;
     for (int s = 0; s < n; s++) {
         out->building_shear_n[s] = m->with_storeys || s == 0 ? peak_of(m, m->at_slow, s > 0 ? s + 1 : 0) : NAN;
@@ -643,13 +573,21 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
     out->base_shear_n = m->nc > 0 ? peak_of(m, m->at_both, 0) : out->building_base_shear_n;
     out->overturning_nm = m->nc > 0 ? peak_of(m, m->at_both, 1) : out->building_overturning_nm;
     out->base_shear_ratio = m->weight_n > 0 ? out->base_shear_n / m->weight_n : 0;
-    report_contacts(m, out);
+    for (int side = 0; side < SIDES; side++)
+        for (int j = 0; j < n; j++)
+            out->contact_force_max_n = fmax(out->contact_force_max_n, out->contact_force_n[side][j]);
     report_stresses(m, out);
     if (m->nc == 0)
         out->core_base_shear_n = out->core_overturning_nm = out->core_top_m = NAN;
-    report_foundation(m, out);
     if (!out->stress_known)
         out->core_stress_pa = out->core_shear_stress_pa = NAN;
     if (!out->buckling_known)
         out->core_buckling_ratio = NAN;
+
+    /* The springs of the foundation carry the shear and the moment of the base. */
+    const Foundation f = m->nc > 0 ? m->core->base : (Foundation){0};
+    const double weight = m->nc > 0 ? f.weight_n + GRAVITY * m->core->mass_kg : 0;
+    out->base_rotation_rad = f.rotation > 0 ? out->core_overturning_nm / f.rotation : NAN;
+    out->base_translation_m = f.translation > 0 ? out->core_base_shear_n / f.translation : NAN;
+    out->uplift_ratio = f.radius_m > 0 ? out->core_overturning_nm / foundation_uplift_nm(&f, weight) : NAN;
 }

@@ -1,51 +1,42 @@
 #include "sim/model.h"
 
+#include "base/carve.h"
 #include "base/clones.h"
+#include "sim/lanes.h"
 
 static int padded(int n)
 {
     return (n + 7) & ~7;
 }
 
+/* m_pad: the most that there may be. */
+static void layout(void *object, Carve *c)
+{
+    SimModel *m = object;
+    CARVE(c, m->R, m->m_pad * m->n_pad);
+    CARVE(c, m->RT, m->m_pad * m->n_pad);
+    CARVE(c, m->B, m->m_pad * (m->n + 1));
+    CARVE(c, m->omega, m->m_pad);
+    CARVE(c, m->zeta, m->m_pad);
+    CARVE(c, m->gamma, m->m_pad);
+    CARVE(c, m->gap, m->n_pad);
+    CARVE(c, m->mass_eff, m->n_pad);
+    CARVE(c, m->middle, m->n_pad);
+    CARVE(c, m->like, m->m_pad);
+}
+
 Status model_create(SimModel *model, int n, int nb_max, Err *err)
 {
     memset(model, 0, sizeof *model);
-    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n + 1);
-    const size_t need = (2 * n_pad + (size_t)n + 1 + 3) * m_max + 3 * n_pad;
-    double *p = aligned_alloc(64, need * sizeof *p);
-    model->like = malloc((size_t)nb_max * sizeof *model->like);
-    model->store = p;
-    if (!p || !model->like) {
-        model_free(model);
+    model->n = n;
+    model->n_pad = padded(n);
+    model->m_pad = padded(nb_max + n + 1);
+    model->store = carve_all(layout, model);
+    if (!model->store)
         return fail_memory(err, n, "floors");
-    }
     for (int i = 0; i < nb_max; i++)
         model->like[i] = i < n ? i : -1;
-    model->n = n;
-    model->n_pad = (int)n_pad;
-    model->R = p;
-    model->RT = model->R + m_max * n_pad;
-    model->B = model->RT + m_max * n_pad;
-    model->omega = model->B + m_max * (size_t)(n + 1);
-    model->zeta = model->omega + m_max;
-    model->gamma = model->zeta + m_max;
-    model->gap = model->gamma + m_max;
-    model->mass_eff = model->gap + n_pad;
-    model->middle = model->mass_eff + n_pad;
-    memset(model->middle, 0, n_pad * sizeof *p);
     return STATUS_OK;
-}
-
-/* phi: row by row `stride` numbers apart */
-static void set_mode(SimModel *model, int i, double omega, double zeta, double gamma, const double phi[], int stride,
-                     double sign)
-{
-    const int n = model->n;
-    model->omega[i] = omega;
-    model->zeta[i] = zeta;
-    model->gamma[i] = gamma;
-    for (int j = 0; j < n; j++)
-        model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = sign * phi[j * stride];
 }
 
 /* [m] A floor beside which there is nothing on one side moves freely so far: no floor gets there, and distances from
@@ -64,17 +55,6 @@ Status model_set_gaps(SimModel *model, const double right[], const double left[]
     return STATUS_OK;
 }
 
-static void set_storeys(SimModel *model, const BuildingOptions *o, const Building *b)
-{
-    model->yields = b->yields;
-    model->storey_law =
-        (StoreyLaw){o->hysteresis, o->bouc_wen_exponent, o->strength_degradation, o->stiffness_degradation};
-    for (int j = 0; j < b->n; j++) {
-        model->yield_m[j] = b->yield_m[j] > 0 ? b->yield_m[j] : 1e300;
-        model->yield_n_m[j] = b->yield_n_m[j];
-    }
-}
-
 Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
                  Err *err)
 {
@@ -85,6 +65,9 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     model->m = model->nb + model->nc;
     model->n_devices = model->has_mass = 0;
     model->m_pad = padded(model->m);
+    model->core_mass_kg = core ? core->mass_kg : 0;
+
+    /* The modes, those of the core with the opposite sign; padded ones move nothing. */
     memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     for (int i = 0; i < model->m_pad; i++) {
@@ -92,20 +75,36 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->zeta[i] = 0.5;
         model->gamma[i] = 0;
     }
-    for (int i = 0; i < model->nb; i++)
-        set_mode(model, i, building->omega[i], building->zeta[i], building->gamma[i], building->phi + i, building->n,
-                 1);
+    for (int i = 0; i < model->nb; i++) {
+        model->omega[i] = building->omega[i];
+        model->zeta[i] = building->zeta[i];
+        model->gamma[i] = building->gamma[i];
+        for (int j = 0; j < n; j++)
+            model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = building->phi[j * building->n + i];
+    }
+    for (int k = 0, i = model->nb; k < model->nc; k++, i++) {
+        model->omega[i] = core->omega[k];
+        model->zeta[i] = core->zeta[k];
+        model->gamma[i] = core->gamma[k];
+        for (int j = 0; j < n; j++)
+            model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = -core->phi[j * n + k];
+    }
     memcpy(model->like, building->like, (size_t)model->nb * sizeof *model->like);
-    for (int i = 0; i < model->nc; i++)
-        set_mode(model, model->nb + i, core->omega[i], core->zeta[i], core->gamma[i], core->phi + i, n, -1);
     for (int j = 0; j < model->n_pad; j++) {
         double sum = 0;
         for (int i = 0; i < model->m; i++)
             sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + j];
         model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
     }
-    set_storeys(model, &o->building, b);
-    model->core_mass_kg = core ? core->mass_kg : 0;
+
+    /* Storeys and contacts. */
+    model->yields = b->yields;
+    model->storey_law = (StoreyLaw){o->building.hysteresis, o->building.bouc_wen_exponent,
+                                    o->building.strength_degradation, o->building.stiffness_degradation};
+    for (int j = 0; j < n; j++) {
+        model->yield_m[j] = b->yield_m[j] > 0 ? b->yield_m[j] : 1e300;
+        model->yield_n_m[j] = b->yield_n_m[j];
+    }
     TRY(contact_make(&model->contact[0], &o->contact, err));
     for (int j = 1; j < n; j++)
         model->contact[j] = model->contact[0];
@@ -161,11 +160,11 @@ void model_plastic_forces(const SimModel *model, const double p[], double f[])
         f[j] = model->yield_n_m[j] * p[j] - (j + 1 < model->n ? model->yield_n_m[j + 1] * p[j + 1] : 0);
 }
 
-/* The floors at rest under f: sum_i R_ij (R_i f) / w_i^2 over the building's modes. */
-static void floors_at_rest(const SimModel *model, const double f[], double u[])
+void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
 {
-    memset(u, 0, (size_t)model->n * sizeof *u);
-    for (int i = 0; i < model->nb; i++) {
+    double f[FLOORS_MAX], u[FLOORS_MAX] = {0};
+    model_plastic_forces(model, p, f);
+    for (int i = 0; i < model->nb; i++) { /* the floors at rest: sum_i R_ij (R_i f) / w_i^2 */
         const double *row = model->R + (size_t)i * (size_t)model->n_pad;
         double load = 0;
         for (int j = 0; j < model->n; j++)
@@ -173,13 +172,6 @@ static void floors_at_rest(const SimModel *model, const double f[], double u[])
         for (int j = 0; j < model->n; j++)
             u[j] += row[j] * load / (model->omega[i] * model->omega[i]);
     }
-}
-
-void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
-{
-    double f[FLOORS_MAX], u[FLOORS_MAX];
-    model_plastic_forces(model, p, f);
-    floors_at_rest(model, f, u);
     r->yields = 1;
     for (int j = 0; j < model->n; j++) {
         r->plastic_drift_m[j] = p[j];
@@ -192,11 +184,8 @@ void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
 void model_free(SimModel *model)
 {
     free(model->store);
-    free(model->like);
     memset(model, 0, sizeof *model);
 }
-
-typedef double v8 __attribute__((vector_size(64)));
 
 /* Three vectors of floors from a pair of sums each: six chains of multiply-adds hide their latency. */
 CLONED void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[])

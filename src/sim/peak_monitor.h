@@ -75,6 +75,7 @@ static inline void peak_monitor_break(PeakMonitor *p, int at_last)
     p->arc = at_last && p->count > 0;
 }
 
+/* Peaks of every floor and the largest of all floors. */
 static inline void peak_monitor_report(const PeakMonitor *p, SimResult *result)
 {
     for (int j = 0; j < p->n; j++) {

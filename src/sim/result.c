@@ -72,33 +72,31 @@ const ResultPart RESULT_PARTS[] = {FIELD(PART_LONG, 0, impacts),
                                    FIELD(PART_NUMBER, 0, seconds),
                                    {0}};
 
-/* Value i of the member. */
-static double value_at(PartShape shape, const void *member, size_t i)
-{
-    switch (shape) {
-    case PART_LONG:
-    case PART_COUNTS:
-        return (double)((const long *)member)[i];
-    case PART_INT:
-    case PART_FLAG:
-        return *(const int *)member;
-    case PART_STOREY:
-        return *(const int *)member + 1;
-    default:
-        return ((const double *)member)[i];
-    }
-}
-
 size_t result_part(const SimResult *r, unsigned scene, const ResultPart *part, double values[], size_t *rows)
 {
     const unsigned has = scene | (r->forces_known ? IF_FORCES : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
                          (r->forces.buckling_known ? IF_BUCKLING : 0u) | (r->bumper_strain > 0 ? IF_BUMPER : 0u) |
                          (r->yields ? IF_YIELDING : 0u);
     const size_t n = part->shape < PART_FLOORS ? 1 : (size_t)(part->shape == PART_MODES ? r->n_modes : r->n_floors);
+    const void *member = (const char *)r + part->at;
     *rows = part->shape >= PART_SIDES ? SIDES : 1;
     if (part->needs & ~has)
         return 0;
-    for (size_t i = 0; i < *rows * n; i++)
-        values[i] = value_at(part->shape, (const char *)r + part->at, i / n * FLOORS_MAX + i % n);
+    for (size_t i = 0; i < *rows * n; i++) {
+        const size_t at = i / n * FLOORS_MAX + i % n;
+        switch (part->shape) {
+        case PART_LONG:
+        case PART_COUNTS:
+            values[i] = (double)((const long *)member)[at];
+            break;
+        case PART_INT:
+        case PART_FLAG:
+        case PART_STOREY:
+            values[i] = *(const int *)member + (part->shape == PART_STOREY);
+            break;
+        default:
+            values[i] = ((const double *)member)[at];
+        }
+    }
     return n;
 }

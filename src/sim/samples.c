@@ -2,22 +2,17 @@
 
 #include "base/units.h"
 
-static void add_mode(const SimSample *s, int i, double energy[N_ENERGIES])
-{
-    const double wq = s->omega[i] * s->q[i], kinetic = 0.5 * s->v[i] * s->v[i], strain = 0.5 * wq * wq;
-    const double damped = s->damped_j[i];
-    const int in_building = i < s->n_building;
-    energy[in_building ? ENERGY_KINETIC : ENERGY_CORE] += kinetic;
-    energy[in_building ? ENERGY_STRAIN : ENERGY_CORE] += strain;
-    energy[in_building ? ENERGY_DAMPED_BUILDING : ENERGY_DAMPED_CORE] += damped;
-}
-
 void sample_energies(const SimSample *s, double energy[N_ENERGIES])
 {
     for (int k = 0; k < N_ENERGIES; k++)
         energy[k] = s->damped_j ? 0 : NAN;
-    for (int i = 0; s->damped_j && i < s->n_modes; i++)
-        add_mode(s, i, energy);
+    for (int i = 0; s->damped_j && i < s->n_modes; i++) {
+        const double wq = s->omega[i] * s->q[i];
+        const int in_building = i < s->n_building;
+        energy[in_building ? ENERGY_KINETIC : ENERGY_CORE] += 0.5 * s->v[i] * s->v[i];
+        energy[in_building ? ENERGY_STRAIN : ENERGY_CORE] += 0.5 * wq * wq;
+        energy[in_building ? ENERGY_DAMPED_BUILDING : ENERGY_DAMPED_CORE] += s->damped_j[i];
+    }
     energy[ENERGY_INPUT] = s->input_j;
     energy[ENERGY_CONTACTS] = s->contacts_j;
 }
@@ -38,6 +33,7 @@ void sample_row(const SimWorker *worker, const SimSample *s, size_t n_floors, do
     sample_energies(s, row + (SAMPLE_PARTS - 1) * n_floors);
 }
 
+/* A run that is repeated begins anew at t = 0. */
 static void note(const SimSample *s, void *user)
 {
     Track *t = user;

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/linalg.h"
+#include "base/stat.h"
 #include "base/units.h"
 #include "motion/forces.h"
 #include "scene/neighbour.h"
@@ -57,24 +58,6 @@ double sim_steps_per_contact(const SimOptions *o)
                                     : 0;
 }
 
-static Status set_tail_input(Scene *scene, Err *err)
-{
-    double *input;
-    TRY_ROOM(input, scene->motion->n, "samples of a motion", err);
-    scene->run.tail_input = scene->tail_input = input;
-    return tail_input(&scene->building.model, scene->motion, input, err);
-}
-
-static Status set_neighbour(Scene *scene, Err *err)
-{
-    const SceneOptions *o = &scene->options;
-    TRY_ROOM(scene->neighbour, 1, "a neighbour", err);
-    TRY(core_make(scene->neighbour, &o->core, &o->building, &scene->building, 0, 0, err));
-    const size_t n = (size_t)scene->building.n;
-    scene->building.hash ^= hash_fnv1a(scene->neighbour->K, n * n * sizeof *scene->neighbour->K, HASH_SEED);
-    return STATUS_OK;
-}
-
 /* Dashpots that a user gives are left out of the modes, and are no longer small beside the springs from here on: at
  * omega C / K 0.18 J1 errs by 0.2 %, at 1.8 by 31 % (against the coupled equations). */
 static const double DASHPOT_SHARE_MAX = 0.3;
@@ -119,17 +102,26 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (scene->run.duration == 0 && motion)
         scene->run.duration = motion_duration(motion);
     Status status = building_load(&scene->building, &o->building, err);
-    if (status == STATUS_OK)
-        status = design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err);
-    if (status == STATUS_OK && neighbour_is_given(&o->core))
-        status = set_neighbour(scene, err);
-    if (status == STATUS_OK)
-        status = check_dashpots(scene, err);
+    THEN(status, design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err));
+    if (status == STATUS_OK && neighbour_is_given(&o->core)) {
+        scene->neighbour = calloc(1, sizeof *scene->neighbour);
+        status = scene->neighbour ? core_make(scene->neighbour, &o->core, &o->building, &scene->building, 0, 0, err)
+                                  : fail_memory(err, 1, "a neighbour");
+    }
+    if (status == STATUS_OK && scene->neighbour) {
+        const size_t n = (size_t)scene->building.n;
+        scene->building.hash ^= hash_fnv1a(scene->neighbour->K, n * n * sizeof *scene->neighbour->K, HASH_SEED);
+    }
+    THEN(status, check_dashpots(scene, err));
     if (status == STATUS_OK && motion && motion->n_force > scene->building.n)
         status = bad_data(err, "motion.forces: column floor_%02d_n; the building has %d floors", motion->n_force,
                           scene->building.n);
-    if (status == STATUS_OK && motion)
-        status = set_tail_input(scene, err);
+    if (status == STATUS_OK && motion) {
+        double *input = calloc(motion->n, sizeof *input);
+        scene->run.tail_input = scene->tail_input = input;
+        status = input ? tail_input(&scene->building.model, motion, input, err)
+                       : fail_memory(err, motion->n, "samples of a motion");
+    }
     if (status == STATUS_OK)
         *out = scene;
     else
@@ -167,39 +159,32 @@ const DesignSpace *scene_design(const Scene *scene)
     return &scene->design;
 }
 
-Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
-                         double zero_gap_hz[], double *core_mass_kg, Err *err)
+Status scene_frequencies(const Scene *scene, const double x[], SceneModes *out, Err *err)
 {
-    const int n = scene->building.n;
     CoreOptions options = scene->options.core;
     CoreBeam *core;
-    TRY_ROOM(core, 1, "a core", err);
     Design d;
+    TRY_ROOM(core, 1, "a core", err);
     design_of(&scene->design, x, &d);
     if (d.side > 0)
         options.width_m = d.side;
     Status status = core_make(core, &options, &scene->options.building, &scene->building, d.t_base, d.t_top, err);
-    if (status == STATUS_OK)
-        status = building_joined_hz(core, &scene->building, zero_gap_hz, err);
-    for (int i = 0; i < n && status == STATUS_OK; i++) {
-        building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
-        core_hz[i] = i < core->top ? core->omega[i] / (2 * M_PI) : NAN;
+    THEN(status, building_joined_hz(core, &scene->building, out->joined_hz, err));
+    for (int i = 0; i < scene->building.n && status == STATUS_OK; i++) {
+        out->building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
+        out->core_hz[i] = i < core->top ? core->omega[i] / (2 * M_PI) : NAN;
     }
-    *core_mass_kg = core->mass_kg;
+    out->core_mass_kg = core->mass_kg;
     free(core);
     return status;
 }
 
-/* A link or friction link on every floor, the tuned mass. */
-static int sim_devices_max(const DesignSpace *s)
-{
-    return (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0);
-}
-
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
 {
-    *out = NULL;
-    SimWorker *w;
+    const DesignSpace *s = &scene->design;
+    /* A link or friction link on every floor, the tuned mass. */
+    const int devices_max = (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0);
+    SimWorker *w = *out = NULL;
     TRY_ROOM(w, 1, "a simulator", err);
     w->scene = scene;
     w->options = &scene->options;
@@ -213,7 +198,7 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n,
-                                            scene->building.yields, sim_devices_max(&scene->design), err);
+                                            scene->building.yields, devices_max, err);
     if (status == STATUS_OK)
         *out = w;
     else
@@ -325,76 +310,31 @@ void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion 
     core_nodes(model, s, s->v, out->core_dot);
 }
 
-static void check_result(SimResult *r, double energy_balance_max)
-{
-    const double all[] = {r->j1_m,           r->j2_m,    r->j3_g,       r->energy_balance_error,
-                          r->input_energy_j, r->ed1_pct, r->ed5_10_pct, r->edcs_pct};
-    const size_t n = sizeof all / sizeof all[0] - (r->input_energy_j > 0 ? 0 : 3); /* shares of nothing are undefined */
-    for (size_t i = 0; i < n && r->outcome == RUN_OK; i++)
-        if (!isfinite(all[i]))
-            r->outcome = RUN_NOT_FINITE;
-    if (r->outcome == RUN_OK && r->energy_balance_error > energy_balance_max) {
-        r->outcome = RUN_ENERGY_BALANCE;
-        snprintf(r->reason, sizeof r->reason, "energy-balance error %.3g of the input, allowed %.3g",
-                 r->energy_balance_error, energy_balance_max);
-    }
-    if (r->outcome != RUN_OK && !r->reason[0])
-        snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
-}
-
-static Status run_engine(SimWorker *w, SimResult *result, Err *err)
+/* One run, repeated with shorter steps while its energy balance stays open. A result that is not finite has failed. */
+static Status run_engine(SimWorker *w, SimResult *r, Err *err)
 {
     const Scene *scene = w->scene;
-    for (int i = 0; i < (scene->engine->refines ? N_REFINEMENTS : 1); i++) {
-        w->run.refinement = REFINEMENTS[i];
-        TRY(scene->engine->run(&w->model, scene->motion, &w->run, result, err));
-        result->repeated = i;
-        check_result(result, sim_energy_balance_max(&w->options->sim));
-        if (result->outcome != RUN_ENERGY_BALANCE)
+    const double open_max = sim_energy_balance_max(&w->options->sim);
+    for (int k = 0; k < (scene->engine->refines ? N_REFINEMENTS : 1); k++) {
+        w->run.refinement = REFINEMENTS[k];
+        TRY(scene->engine->run(&w->model, scene->motion, &w->run, r, err));
+        r->repeated = k;
+        const double all[] = {r->j1_m,           r->j2_m,    r->j3_g,       r->energy_balance_error,
+                              r->input_energy_j, r->ed1_pct, r->ed5_10_pct, r->edcs_pct};
+        const size_t n = N_OF(all) - (r->input_energy_j > 0 ? 0 : 3); /* shares of nothing are undefined */
+        if (r->outcome == RUN_OK && !all_finite(n, all))
+            r->outcome = RUN_NOT_FINITE;
+        if (r->outcome == RUN_OK && r->energy_balance_error > open_max) {
+            r->outcome = RUN_ENERGY_BALANCE;
+            snprintf(r->reason, sizeof r->reason, "energy-balance error %.3g of the input, allowed %.3g",
+                     r->energy_balance_error, open_max);
+        }
+        if (r->outcome != RUN_OK && !r->reason[0])
+            snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
+        if (r->outcome != RUN_ENERGY_BALANCE)
             break;
     }
     return STATUS_OK;
-}
-
-/* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface
- * steel (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections
- * 4.2, 6.1 */
-static const double YIELD_PRESSURE = 1.6;
-
-static void set_contact_figures(const ContactOptions *o, SimResult *r)
-{
-    r->indentation_ratio = r->indentation_max_m / o->radius_m;
-    r->contact_pressure_pa =
-        o->youngs_modulus_pa / (M_PI * (1 - o->poisson * o->poisson)) * sqrt(fmax(r->indentation_ratio, 0));
-    r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE * o->yield_stress_pa;
-    r->bumper_strain = r->bumper_compression_m / o->bumper_thickness_m;
-    r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;
-}
-
-static Status filter_floors(SimWorker *w, SimResult *r, Err *err)
-{
-    if (w->run.sample != take_floors || r->outcome != RUN_OK)
-        return STATUS_OK;
-    TRY(floor_filter_peaks(w->filter, r->peak_filtered_g, err));
-    for (int j = 0; j < r->n_floors; j++) {
-        r->peak_filtered_g[j] /= GRAVITY;
-        r->j3_filtered_g = fmax(r->j3_filtered_g, r->peak_filtered_g[j]);
-    }
-    r->filtered_known = 1;
-    return STATUS_OK;
-}
-
-static void set_drift_ratios(const double storey_m[], SimResult *r)
-{
-    for (int s = 0; s < r->n_floors; s++) {
-        r->plastic_drift_ratio = fmax(r->plastic_drift_ratio, fabs(r->plastic_drift_m[s]) / storey_m[s]);
-        r->residual_drift_ratio = fmax(r->residual_drift_ratio, fabs(r->residual_drift_m[s]) / storey_m[s]);
-        r->drift_ratio[s] = r->peak_drift_m[s] / storey_m[s];
-        if (r->drift_ratio[s] > r->drift_ratio_max) {
-            r->drift_ratio_max = r->drift_ratio[s];
-            r->drift_ratio_storey = s;
-        }
-    }
 }
 
 Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
@@ -411,25 +351,21 @@ Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
     return STATUS_OK;
 }
 
-/* As built: the modulus is that of the whole neighbour. */
-static void take_neighbour(SimWorker *w)
-{
-    const CoreOptions *o = &w->options->core;
-    const double stiffness = o->youngs_modulus_pa / w->scene->options.core.youngs_modulus_pa;
-    const int n = w->building->n;
-    w->core = *w->scene->neighbour;
-    for (int i = 0; i < n * n; i++)
-        w->core.K[i] *= stiffness;
-    for (int i = 0; i < n; i++) {
-        w->core.omega[i] *= sqrt(stiffness);
-        w->core.zeta[i] = o->damping;
-    }
-}
-
+/* The core of a design; or the neighbour, as it was built: the modulus is that of all of it. */
 static Status make_core(SimWorker *w, const Design *d, Err *err)
 {
-    if (w->scene->neighbour) {
-        take_neighbour(w);
+    const CoreBeam *neighbour = w->scene->neighbour;
+    const int n = w->building->n;
+    if (neighbour) {
+        const CoreOptions *o = &w->options->core;
+        const double stiffness = o->youngs_modulus_pa / w->scene->options.core.youngs_modulus_pa;
+        w->core = *neighbour;
+        for (int i = 0; i < n * n; i++)
+            w->core.K[i] *= stiffness;
+        for (int i = 0; i < n; i++) {
+            w->core.omega[i] *= sqrt(stiffness);
+            w->core.zeta[i] = o->damping;
+        }
         return STATUS_OK;
     }
     if (d->side > 0 && w->options != &w->own_options) {
@@ -438,7 +374,7 @@ static Status make_core(SimWorker *w, const Design *d, Err *err)
     }
     if (d->side > 0)
         w->own_options.core.width_m = d->side;
-    return core_beam_make(&w->core, &w->options->core, w->building->n, w->building->storey_m, d->t_base, d->t_top, err);
+    return core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, d->t_base, d->t_top, err);
 }
 
 void sim_worker_device(SimWorker *worker, const LinearDevice *device)
@@ -451,11 +387,25 @@ void sim_worker_until(SimWorker *worker, double seconds)
     worker->run.duration = fmin(worker->scene->run.duration, seconds);
 }
 
-/* The dashpot of the tuned mass: c = 2 zeta m w, its spring m w^2. */
-static void add_devices(SimWorker *w, const Design *d, double exponent)
+/* The model of a design with its gaps, bumpers and devices. core NULL: none. exponent: of links. */
+static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, double exponent, Err *err)
 {
     SimModel *model = &w->model;
-    const double omega = 2 * M_PI * d->mass_hz;
+    TRY(model_set(model, w->options, w->building, core, NULL, err));
+    if (core)
+        TRY(model_set_gaps(model, d->gap[0], d->gap[1], err));
+    for (int j = w->core.top; j < model->n; j++) { /* above a neighbour */
+        model->gap[j] = 1e300;
+        model->middle[j] = 0;
+    }
+    /* As built: the modulus is that of all parts of the contact. */
+    const double built = w->options->contact.youngs_modulus_pa / w->scene->options.contact.youngs_modulus_pa;
+    for (int j = 0; j < model->n; j++)
+        if (d->bumper[j] >= 0)
+            model->contact[j].bumper = built * d->bumper[j];
+
+    /* The tuned mass, a mode more, comes before the devices, and its device behind them: spring m w^2, dashpot
+     * c = 2 zeta m w. */
     if (d->mass_kg > 0)
         model_add_mass(model, d->mass_kg);
     for (int j = 0; j < w->core.top; j++)
@@ -465,6 +415,7 @@ static void add_devices(SimWorker *w, const Design *d, double exponent)
                                        .damping = d->link[j] + d->friction[j],
                                        .exponent = d->friction[j] > 0 ? 0 : exponent},
                              0);
+    const double omega = 2 * M_PI * d->mass_hz;
     if (d->mass_kg > 0)
         model_add_device(model,
                          &(Device){.floor = model->n - 1,
@@ -472,42 +423,10 @@ static void add_devices(SimWorker *w, const Design *d, double exponent)
                                    .damping = 2 * d->mass_damping * d->mass_kg * omega,
                                    .exponent = 1},
                          1);
-}
-
-/* core NULL: none. exponent: of links. */
-static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, double exponent, Err *err)
-{
-    TRY(model_set(&w->model, w->options, w->building, core, NULL, err));
-    if (core)
-        TRY(model_set_gaps(&w->model, d->gap[0], d->gap[1], err));
-    for (int j = w->core.top; j < w->model.n; j++) { /* above a neighbour */
-        w->model.gap[j] = 1e300;
-        w->model.middle[j] = 0;
-    }
-    /* as built: the modulus is that of all parts of the contact */
-    const double built = w->options->contact.youngs_modulus_pa / w->scene->options.contact.youngs_modulus_pa;
-    for (int j = 0; j < w->model.n; j++)
-        if (d->bumper[j] >= 0)
-            w->model.contact[j].bumper = built * d->bumper[j];
-    add_devices(w, d, exponent);
     return STATUS_OK;
 }
 
-static void count_devices(const SimWorker *w, const Design *d, SimResult *result)
-{
-    const PriceOptions *price = &w->options->design.prices;
-    int stops = 0, bumpers = 0, links = 0;
-    for (int j = 0; j < w->core.top; j++) {
-        const int is_stop = design_gap(d, j) < DESIGN_OPEN_M;
-        stops += is_stop;
-        bumpers += is_stop && d->bumper[j] > 0;
-        links += design_has_link(d, j);
-    }
-    result->n_devices = stops + links + (d->mass_kg > 0);
-    result->cost =
-        stops * price->gap + bumpers * price->bumper + links * price->link + 1e-3 * d->mass_kg * price->tuned_mass_t;
-}
-
+/* Floors and core without gaps: the building's model is that of both while the engine runs. */
 static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *err)
 {
     Joined joined;
@@ -516,10 +435,8 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
     w->building = &joined.building;
     if (status == STATUS_OK && w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
-    if (status == STATUS_OK)
-        status = model_set(&w->model, w->options, w->building, NULL, NULL, err);
-    if (status == STATUS_OK)
-        status = run_engine(w, result, err);
+    THEN(status, model_set(&w->model, w->options, w->building, NULL, NULL, err));
+    THEN(status, run_engine(w, result, err));
     if (status == STATUS_OK)
         joined_book(&joined, result);
     w->building = own;
@@ -539,10 +456,21 @@ static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *resu
     if (w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, core, 0, (double[]){d.t_base, d.t_top});
     Status status = set_model(w, core, &d, kind == SCENE_IMPACT ? w->options->design.link_exponent : 1, err);
-    if (status == STATUS_OK)
-        status = run_engine(w, result, err);
-    count_devices(w, &d, result);
+    THEN(status, run_engine(w, result, err));
     w->run.work = work;
+
+    /* What the devices cost. */
+    const PriceOptions *price = &w->options->design.prices;
+    int stops = 0, bumpers = 0, links = 0;
+    for (int j = 0; j < w->core.top; j++) {
+        const int is_stop = design_gap(&d, j) < DESIGN_OPEN_M;
+        stops += is_stop;
+        bumpers += is_stop && d.bumper[j] > 0;
+        links += design_has_link(&d, j);
+    }
+    result->n_devices = stops + links + (d.mass_kg > 0);
+    result->cost =
+        stops * price->gap + bumpers * price->bumper + links * price->link + 1e-3 * d.mass_kg * price->tuned_mass_t;
     return status;
 }
 
@@ -552,6 +480,45 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     if (kind != SCENE_NO_CORE)
         design_of(&w->scene->design, x, &d);
     return sim_run_built(w, kind, &d, result, err);
+}
+
+/* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface
+ * steel (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections
+ * 4.2, 6.1 */
+static const double YIELD_PRESSURE = 1.6;
+
+/* What a result has beside what the engine says: filtered peaks, drift over storey height, measures of contacts. */
+static Status complete(SimWorker *w, SimResult *r, Err *err)
+{
+    const double *storey_m = w->building->storey_m;
+    const ContactOptions *o = &w->options->contact;
+    if (w->run.sample == take_floors && r->outcome == RUN_OK) {
+        TRY(floor_filter_peaks(w->filter, r->peak_filtered_g, err));
+        for (int j = 0; j < r->n_floors; j++) {
+            r->peak_filtered_g[j] /= GRAVITY;
+            r->j3_filtered_g = fmax(r->j3_filtered_g, r->peak_filtered_g[j]);
+        }
+        r->filtered_known = 1;
+    }
+    for (int s = 0; s < r->n_floors; s++) {
+        r->plastic_drift_ratio = fmax(r->plastic_drift_ratio, fabs(r->plastic_drift_m[s]) / storey_m[s]);
+        r->residual_drift_ratio = fmax(r->residual_drift_ratio, fabs(r->residual_drift_m[s]) / storey_m[s]);
+        r->drift_ratio[s] = r->peak_drift_m[s] / storey_m[s];
+        if (r->drift_ratio[s] > r->drift_ratio_max) {
+            r->drift_ratio_max = r->drift_ratio[s];
+            r->drift_ratio_storey = s;
+        }
+    }
+    r->indentation_ratio = r->indentation_max_m / o->radius_m;
+    r->contact_pressure_pa =
+        o->youngs_modulus_pa / (M_PI * (1 - o->poisson * o->poisson)) * sqrt(fmax(r->indentation_ratio, 0));
+    r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE * o->yield_stress_pa;
+    r->bumper_strain = r->bumper_compression_m / o->bumper_thickness_m;
+    r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;
+    r->repair = w->options->sim.repair;
+    if (r->settled_s == 0)
+        r->settled_s = w->run.duration; /* of an engine that follows contacts to the end */
+    return STATUS_OK;
 }
 
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
@@ -570,15 +537,10 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
         if (kind == SCENE_LINKS) /* what acts on a floor from the core */
             result->forces.contact_force_max_n = result->dashpot_n;
     }
-    if (result->settled_s == 0)
-        result->settled_s = w->run.duration; /* of an engine that follows contacts to the end */
-    TRY(filter_floors(w, result, err));
-    set_drift_ratios(w->building->storey_m, result);
+    TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)
         result->cost += 1e-3 * result->mcore_kg * w->options->design.prices.core_t;
-    result->repair = w->options->sim.repair;
-    set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }

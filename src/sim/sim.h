@@ -43,10 +43,13 @@ int scene_n_floors(const Scene *scene);
 const Building *scene_building(const Scene *scene);
 const DesignSpace *scene_design(const Scene *scene); /* the variables of a design x: SceneOptions.design */
 
-/* Undamped natural frequencies [Hz], ascending, the n_floors lowest, NAN where a neighbour has fewer; each array has
- * room for FLOORS_MAX. x: a design of scene_design. */
-Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
-                         double zero_gap_hz[], double *core_mass_kg, Err *err);
+/* Undamped natural frequencies [Hz], ascending, the n_floors lowest, NAN where a neighbour has fewer. x: a design of
+ * scene_design. */
+typedef struct {
+    double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX], joined_hz[FLOORS_MAX]; /* joined: with gaps of zero */
+    double core_mass_kg;
+} SceneModes;
+Status scene_frequencies(const Scene *scene, const double x[], SceneModes *out, Err *err);
 
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err);
 void sim_worker_free(SimWorker *worker); /* NULL is fine */

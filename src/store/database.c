@@ -56,6 +56,7 @@ long column_whole(sqlite3_stmt *row, int column, long otherwise)
 
 /* -- faults -------------------------------------------------------------------------------------------------------- */
 
+/* The fault in our words, and what to do about it. */
 static Status explain(const char *path, int code, const char *said, Err *err)
 {
     switch (code & 0xff) {
@@ -98,26 +99,6 @@ Status database_damaged(const Database *d, Err *err, const char *format, ...)
 }
 
 /* -- statements ---------------------------------------------------------------------------------------------------- */
-
-static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
-{
-    const char *text;
-    const void *bytes;
-    double number;
-    switch (type) {
-    case 'i':
-        return sqlite3_bind_int64(s, i, va_arg(*values, long));
-    case 'd':
-        number = va_arg(*values, double);
-        return isfinite(number) ? sqlite3_bind_double(s, i, number) : sqlite3_bind_null(s, i);
-    case 't':
-        text = va_arg(*values, const char *);
-        return text ? sqlite3_bind_text(s, i, text, -1, SQLITE_TRANSIENT) : sqlite3_bind_null(s, i);
-    default:
-        bytes = va_arg(*values, const void *);
-        return sqlite3_bind_blob64(s, i, bytes, va_arg(*values, size_t), SQLITE_TRANSIENT);
-    }
-}
 
 /* The statement moves to the front; the one that was not used for longest goes. */
 Status database_statement(Database *d, const char *sql, sqlite3_stmt **s, Err *err)
@@ -166,8 +147,27 @@ Status database_do(Database *d, Err *err, const char *sql, const char *types, ..
     TRY(database_statement(d, sql, &s, err));
     va_list values;
     va_start(values, types);
-    for (int i = 0; code == SQLITE_OK && types[i]; i++)
-        code = bind_value(s, i + 1, types[i], &values);
+    for (int i = 1; code == SQLITE_OK && types[i - 1]; i++) {
+        const char *text;
+        const void *bytes;
+        double number;
+        switch (types[i - 1]) {
+        case 'i':
+            code = sqlite3_bind_int64(s, i, va_arg(values, long));
+            break;
+        case 'd':
+            number = va_arg(values, double);
+            code = isfinite(number) ? sqlite3_bind_double(s, i, number) : sqlite3_bind_null(s, i);
+            break;
+        case 't':
+            text = va_arg(values, const char *);
+            code = text ? sqlite3_bind_text(s, i, text, -1, SQLITE_TRANSIENT) : sqlite3_bind_null(s, i);
+            break;
+        default:
+            bytes = va_arg(values, const void *);
+            code = sqlite3_bind_blob64(s, i, bytes, va_arg(values, size_t), SQLITE_TRANSIENT);
+        }
+    }
     va_end(values);
     return code == SQLITE_OK ? database_run(d, s, err) : complain(d, err);
 }
@@ -282,21 +282,13 @@ static Status take_word(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-/* A view or a virtual table in the place of a table could compute rows without end. */
-static Status check_tables(Database *d, Err *err)
+/* Ours, of a format that is known, and whole. A view or a virtual table in the place of a table could compute rows
+ * without end. */
+static Status check(Database *d, Err *err)
 {
     static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE type <> 'table' OR "
                                   "coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%'";
-    double n;
-    TRY(database_number(d, FOREIGN, &n, err));
-    return n == 0 ? STATUS_OK
-                  : fail(err, STATUS_IO, "%s: is no database of a run: it holds views or triggers", d->path);
-}
-
-/* Ours, of a format that is known, and whole. */
-static Status check(Database *d, Err *err)
-{
-    double application, format;
+    double application, format, foreign;
     char word[200] = "";
     TRY(database_number(d, "PRAGMA application_id", &application, err));
     TRY(database_number(d, "PRAGMA user_version", &format, err));
@@ -307,24 +299,13 @@ static Status check(Database *d, Err *err)
                     "%s: has format %g, this program reads %d; %s imtet wrote it: only that one can resume it, its "
                     "front.csv and settings.ini can be read by anyone",
                     d->path, format, DATABASE_FORMAT, format > DATABASE_FORMAT ? "a newer" : "an older");
-    TRY(check_tables(d, err));
+    TRY(database_number(d, FOREIGN, &foreign, err));
+    if (foreign > 0)
+        return fail(err, STATUS_IO, "%s: is no database of a run: it holds views or triggers", d->path);
     TRY(database_each(d, "PRAGMA quick_check(1)", take_word, word, err));
     for (char *end; (end = strchr(word, '\n'));) /* of several lines */
         *end = ' ';
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
-}
-
-/* A damaged file may claim a row of a gigabyte: none is longer than the file and its journal. */
-static void bound_rows(Database *d)
-{
-    enum { SLACK = 1 << 20 };
-    char journal[PATH_MAX + 8];
-    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
-    snprintf(journal, sizeof journal, "%s-wal", d->path);
-    stat(d->path, &file);
-    stat(journal, &beside);
-    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
-                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
 }
 
 void database_grow(Database *d)
@@ -332,50 +313,50 @@ void database_grow(Database *d)
     sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, INT_MAX);
 }
 
+/* What was opened: no row is longer than the file and its journal, as a damaged file may claim; a writer commits for
+ * good, and remembers which file it has. */
 static Status prepare(Database *d, DatabaseMode mode, Err *err)
 {
-    if (mode == DATABASE_WRITE)
+    enum { SLACK = 1 << 20 };
+    char journal[PATH_MAX + 8];
+    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
+    snprintf(journal, sizeof journal, "%s-wal", d->path);
+    const int is_there = stat(d->path, &file) == 0;
+    stat(journal, &beside);
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
+                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
+    if (mode == DATABASE_WRITE) {
         TRY(database_do(d, err, d->is_shared ? "PRAGMA journal_mode=DELETE" : "PRAGMA journal_mode=WAL", ""));
-    if (mode == DATABASE_WRITE)
         TRY(database_do(d, err, "PRAGMA synchronous=FULL", ""));
-    struct stat there;
-    if (mode == DATABASE_WRITE && stat(d->path, &there) == 0) {
-        d->device = there.st_dev;
-        d->file = there.st_ino;
+    }
+    if (mode == DATABASE_WRITE && is_there) {
+        d->device = file.st_dev;
+        d->file = file.st_ino;
     }
     TRY(database_number(d, "PRAGMA data_version", &d->version, err));
     return check(d, err);
 }
 
-/* A folder that may not be written to has no place for the memory by which processes share a journal: it is read
- * without, and without locks, for nobody writes there; with no journal the file is all. */
-static Status open_without_locks(Database **out, const char *path, Err *err)
+/* Another way to open a file for reading, where the first one needs what the folder does not allow. A commit that a
+ * killed writer left half done is rolled back by whoever may write. A folder that may not be written to has no place
+ * for the memory by which processes share a journal: the file is read without, and without locks, for nobody writes
+ * there; with no journal the file is all. */
+static Status open_otherwise(Database **out, const char *path, Err *err)
 {
-    char real[PATH_MAX], journal[PATH_MAX + 8], uri[3 * PATH_MAX + 40] = "file:";
+    char folder[PATH_MAX], real[PATH_MAX], journal[PATH_MAX + 8], uri[3 * PATH_MAX + 40] = "file:";
     size_t n = strlen(uri);
-    for (const char *c = real_path(path, real); *c; c++)
+    folder_of(path, folder);
+    const char *name = real_path(path, real);
+    if (access(path, W_OK) == 0 && access(folder, W_OK) == 0) {
+        TRY(open_file(out, path, name, SQLITE_OPEN_READWRITE, err));
+        return prepare(*out, DATABASE_READ, err);
+    }
+    for (const char *c = name; *c; c++)
         n += sprintf(uri + n, strchr("%?#", *c) ? "%%%02X" : "%c", (unsigned char)*c);
     snprintf(journal, sizeof journal, "%s-wal", path);
     strcpy(uri + n, access(journal, F_OK) == 0 ? "?vfs=unix-none" : "?immutable=1");
     TRY(open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err));
-    bound_rows(*out);
     TRY(database_do(*out, err, "PRAGMA locking_mode=EXCLUSIVE", ""));
-    return check(*out, err);
-}
-
-static int may_write_beside(const char *path)
-{
-    char folder[PATH_MAX];
-    folder_of(path, folder);
-    return access(path, W_OK) == 0 && access(folder, W_OK) == 0;
-}
-
-/* A commit that a killed writer left half done is rolled back by whoever may write. */
-static Status open_and_recover(Database **out, const char *path, Err *err)
-{
-    char real[PATH_MAX];
-    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE, err));
-    bound_rows(*out);
     return prepare(*out, DATABASE_READ, err);
 }
 
@@ -392,12 +373,11 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
         return fail_sub(err, STATUS_IO, SUB_EMPTY, "%s: is empty, no database of a run", path);
     TRY(open_file(out, path, real_path(path, real),
                   mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
-    bound_rows(*out);
     Status status = prepare(*out, mode, err);
     const int code = sqlite3_errcode((*out)->db) & 0xff;
     if (status != STATUS_OK && mode == DATABASE_READ && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY)) {
         database_close(*out);
-        status = may_write_beside(path) ? open_and_recover(out, path, err) : open_without_locks(out, path, err);
+        status = open_otherwise(out, path, err);
     }
     if (status != STATUS_OK) {
         database_close(*out);
@@ -418,28 +398,24 @@ void database_remove_journal(const char *path)
     }
 }
 
-/* A copy from the file that is still open, in the place of the one that is gone; its journal went with it. */
-static Status put_back(Database *d, Err *err)
-{
-    char temporary[PATH_MAX + 8];
-    snprintf(temporary, sizeof temporary, "%s.tmp", d->path);
-    unlink(temporary);
-    TRY(database_do(d, err, "VACUUM INTO ?", "t", temporary));
-    database_remove_journal(d->path);
-    if (rename(temporary, d->path) != 0)
-        return fail_errno(err, d->path, "was removed while the run went on, and cannot be put back");
-    return fail(err, STATUS_IO,
-                "%s: was removed while the run went on; what it held was put back: the same command resumes the run",
-                d->path);
-}
-
 Status database_check_place(Database *d, Err *err)
 {
-    char journal[PATH_MAX + 8];
+    char journal[PATH_MAX + 8], temporary[PATH_MAX + 8];
     struct stat there;
     snprintf(journal, sizeof journal, "%s-wal", d->path);
-    if (stat(d->path, &there) != 0)
-        return put_back(d, err);
+    if (stat(d->path, &there) != 0) {
+        /* A copy from the file that is still open, in the place of the one that is gone; its journal went with it. */
+        snprintf(temporary, sizeof temporary, "%s.tmp", d->path);
+        unlink(temporary);
+        TRY(database_do(d, err, "VACUUM INTO ?", "t", temporary));
+        database_remove_journal(d->path);
+        if (rename(temporary, d->path) != 0)
+            return fail_errno(err, d->path, "was removed while the run went on, and cannot be put back");
+        return fail(
+            err, STATUS_IO,
+            "%s: was removed while the run went on; what it held was put back: the same command resumes the run",
+            d->path);
+    }
     if (there.st_ino != d->file || there.st_dev != d->device)
         return fail(err, STATUS_IO, "%s: another file took its place while the run went on", d->path);
     if (d->is_shared || access(journal, F_OK) == 0)

@@ -68,17 +68,7 @@ static Numbers numbers_of(const Schema *s, const Evaluation *e, const double f[]
     }
 }
 
-static void put_heads(FILE *f, const Schema *s, Part part)
-{
-    static const char *const WORDS[] = {
-        [PART_ID] = "id", [PART_ORIGIN] = ",generation,kind,outcome,reason", [PART_VIOLATION] = ",violation"};
-    const Numbers n = numbers_of(s, &(Evaluation){0}, NULL, part);
-    fputs(part <= PART_VIOLATION ? WORDS[part] : "", f);
-    for (size_t i = 0; i < n.n; i++)
-        fprintf(f, ",%s%s%s", n.begin ? n.begin : "", n.column[n.of ? n.of[i] : i].name, n.end ? n.end : "");
-    fputs(part == PART_SD && s->has_spread ? ",replicates" : "", f);
-}
-
+/* The cells of a part of a design. */
 static void put_cells(FILE *f, const Run *run, size_t row, Part part)
 {
     const double none = NAN;
@@ -100,6 +90,7 @@ static void put_cells(FILE *f, const Run *run, size_t row, Part part)
         print_cells(f, 1, e->replicates > 0 ? &(double){e->replicates} : &none);
 }
 
+/* A member of an object: null where no value is known. */
 static void put_list(FILE *f, const char *key, size_t n, const double values[])
 {
     size_t k = 0;
@@ -120,28 +111,24 @@ static void put_value(FILE *f, const char *before, json_t *value)
     json_decref(value);
 }
 
-static void put_design(FILE *f, const Schema *s, const double x[])
-{
-    char word[KIND_WORD_MAX];
-    fputs(",\"x\":[", f);
-    for (size_t j = 0; j < s->n_var; j++) {
-        fputs(j > 0 ? "," : "", f);
-        if (schema_word(s, j, x[j], word))
-            fprintf(f, "\"%s\"", word);
-        else
-            print_number(f, x[j]);
-    }
-    fputc(']', f);
-}
-
+/* A design as an object of JSON. */
 static void put_object(FILE *f, const Run *run, size_t i)
 {
+    char word[KIND_WORD_MAX];
     const Evaluation *e = &run->table.row[i];
     const Schema *s = &run->schema;
     fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\"", i == 0 ? "\n" : ",\n", e->id,
             e->generation, kind_word(e->kind), outcome_word(e->outcome));
     put_value(f, ",\"reason\":", json_words(e->reason));
-    put_design(f, s, e->x);
+    fputs(",\"x\":[", f);
+    for (size_t j = 0; j < s->n_var; j++) {
+        fputs(j > 0 ? "," : "", f);
+        if (schema_word(s, j, e->x[j], word))
+            fprintf(f, "\"%s\"", word);
+        else
+            print_number(f, e->x[j]);
+    }
+    fputc(']', f);
     put_list(f, ",\"f\":", s->n_obj, e->f);
     fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
     put_list(f, ",\"sd\":", s->n_obj, e->sd);
@@ -166,6 +153,7 @@ typedef struct {
     const size_t *rows;
 } Many;
 
+/* Designs first .. end - 1 of the list as lines of a table, or as objects. */
 static void put_some(FILE *f, const Many *m, size_t first, size_t end)
 {
     for (size_t i = first; i < end; i++) {
@@ -209,36 +197,44 @@ static Status put_all(FILE *f, const Many *m, size_t n, Err *err)
 
 Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err)
 {
-    const Part *parts = PARTS[table];
-    for (const Part *p = parts; table != EXPORT_PAGE && *p; p++)
-        put_heads(f, &run->schema, *p);
-    if (table != EXPORT_PAGE)
-        fputc('\n', f);
-    return put_all(f, &(Many){run, parts, rows}, n, err);
+    static const char *const WORDS[] = {
+        [PART_ID] = "id", [PART_ORIGIN] = ",generation,kind,outcome,reason", [PART_VIOLATION] = ",violation"};
+    const Schema *s = &run->schema;
+    for (const Part *p = PARTS[table]; table != EXPORT_PAGE && *p; p++) {
+        const Numbers heads = numbers_of(s, &(Evaluation){0}, NULL, *p);
+        fputs(*p <= PART_VIOLATION ? WORDS[*p] : "", f);
+        for (size_t i = 0; i < heads.n; i++)
+            fprintf(f, ",%s%s%s", heads.begin ? heads.begin : "", heads.column[heads.of ? heads.of[i] : i].name,
+                    heads.end ? heads.end : "");
+        fputs(*p == PART_SD && s->has_spread ? ",replicates" : "", f);
+    }
+    fputs(table != EXPORT_PAGE ? "\n" : "", f);
+    return put_all(f, &(Many){run, PARTS[table], rows}, n, err);
 }
 
 /* -- files of the run's folder ------------------------------------------------------------------------------------- */
 
-static Status write_inside(const char *folder, const char *name, const Run *run, ExportTable table, size_t n,
-                           const size_t rows[], Err *err)
+/* A table in the folder of a run. */
+static Status write_inside(const char *folder, const Run *run, ExportTable table, size_t n, const size_t rows[],
+                           Err *err)
 {
     char path[PATH_MAX];
     Output o;
-    folder_path(folder, name, path);
+    folder_path(folder, table == EXPORT_FRONT ? "front.csv" : "nearest.csv", path);
     TRY(output_open_inside(&o, path, err));
     return output_end(&o, export_designs(o.stream, run, table, n, rows, err), err);
 }
 
 Status export_front(const Run *run, Err *err)
 {
-    return write_inside(run->folder, "front.csv", run, EXPORT_FRONT, run->n_front, run->front, err);
+    return write_inside(run->folder, run, EXPORT_FRONT, run->n_front, run->front, err);
 }
 
 Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
 {
     char path[PATH_MAX];
     if (n > 0)
-        return write_inside(folder, "nearest.csv", run, EXPORT_NEAREST, n, rows, err);
+        return write_inside(folder, run, EXPORT_NEAREST, n, rows, err);
     folder_path(folder, "nearest.csv", path);
     unlink(path);
     return STATUS_OK;
@@ -251,45 +247,31 @@ static void put_setting(const char *key, const char *value, void *user)
     json_object_set_new(user, key, json_words(value));
 }
 
-static json_t *json_settings(const Settings *s)
-{
-    json_t *o = json_object();
-    settings_each(s, put_setting, o);
-    return o;
-}
-
-static json_t *json_columns(const Schema *schema)
-{
-    json_t *list = json_array();
-    for (size_t c = 0; c < schema->n_var + schema->n_obj + schema->n_extra; c++) {
-        const int is_objective = c >= schema->n_var && c < schema->n_var + schema->n_obj;
-        json_array_append_new(list, json_of("name=%s role=%s sense=%s", schema->column[c].name,
-                                            c < schema->n_var         ? "variable"
-                                            : is_objective            ? "objective"
-                                            : schema->order.n_obj > 0 ? "measure"
-                                                                      : "constraint",
-                                            !is_objective                   ? NULL
-                                            : schema->column[c].sense > 0.0 ? "min"
-                                                                            : "max"));
-    }
-    return list;
-}
-
-static json_t *json_generation(const RunGeneration *g)
-{
-    return json_of("number=%ld simulated=%ld failed=%ld front=%ld surrogate_error=%g hypervolume=%g", g->number,
-                   g->simulated, g->failed, g->front, g->surrogate_error, g->hypervolume);
-}
-
 Status export_json(FILE *f, const Run *run, Err *err)
 {
-    put_value(f, "{\"settings\":", json_settings(run->settings));
-    put_value(f, ",\n\"columns\":", json_columns(&run->schema));
+    const Schema *s = &run->schema;
+    json_t *settings = json_object(), *columns = json_array();
+    settings_each(run->settings, put_setting, settings);
+    for (size_t c = 0; c < s->n_var + s->n_obj + s->n_extra; c++) {
+        const int is_objective = c >= s->n_var && c < s->n_var + s->n_obj;
+        json_array_append_new(columns, json_of("name=%s role=%s sense=%s", s->column[c].name,
+                                               c < s->n_var         ? "variable"
+                                               : is_objective       ? "objective"
+                                               : s->order.n_obj > 0 ? "measure"
+                                                                    : "constraint",
+                                               !is_objective              ? NULL
+                                               : s->column[c].sense > 0.0 ? "min"
+                                                                          : "max"));
+    }
+    put_value(f, "{\"settings\":", settings);
+    put_value(f, ",\n\"columns\":", columns);
     fputs(",\n\"evaluations\":[", f);
     TRY(put_all(f, &(Many){run, NULL, NULL}, run->table.n, err));
     fputs("],\n\"generations\":[", f);
-    for (size_t g = 0; g < run->n_generations; g++)
-        put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
+    for (const RunGeneration *g = run->generation; g < run->generation + run->n_generations; g++)
+        put_value(f, g == run->generation ? "\n" : ",\n",
+                  json_of("number=%ld simulated=%ld failed=%ld front=%ld surrogate_error=%g hypervolume=%g", g->number,
+                          g->simulated, g->failed, g->front, g->surrogate_error, g->hypervolume));
     fputs("]}\n", f);
     return ferror(f) ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
 }

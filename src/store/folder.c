@@ -60,20 +60,6 @@ Status folder_advise(const char *path, Status status, Err *err)
                : status;
 }
 
-static Status make_folders(const char *folder, Err *err)
-{
-    char part[PATH_MAX];
-    for (const char *end = folder + 1;; end++) {
-        if (*end && *end != '/')
-            continue;
-        snprintf(part, sizeof part, "%.*s", (int)(end - folder), folder);
-        if (mkdir(part, 0777) != 0 && errno != EEXIST)
-            return fail_errno(err, part, "cannot be made a folder");
-        if (!*end)
-            return STATUS_OK;
-    }
-}
-
 /* -- the lock ------------------------------------------------------------------------------------------------------ */
 
 static void read_holder(int fd, LockHolder *holder)
@@ -84,28 +70,6 @@ static void read_holder(int fd, LockHolder *holder)
         sscanf(text, "%ld %71s %zu", &holder->pid, holder->host, &holder->n_stored);
 }
 
-static int is_gone(const LockHolder *holder)
-{
-    char host[72] = "";
-    gethostname(host, sizeof host - 1);
-    return strcmp(host, holder->host) == 0 && kill((pid_t)holder->pid, 0) != 0 && errno == ESRCH;
-}
-
-/* The system takes moments to tear a killed process down, and one that is killed while it starts a worker leaves the
- * lock to it until that one has begun its own program: every holder gets PATIENCE, 1.5 s, to let go. */
-static int try_lock(int fd)
-{
-    enum { PATIENCE = 75, PAUSE_NS = 20000000 };
-    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-    for (int i = 0; fcntl(fd, F_OFD_SETLK, &whole) != 0; i++) {
-        const int cause = errno;
-        if ((cause != EAGAIN && cause != EACCES) || i == PATIENCE)
-            return cause;
-        nanosleep(&(struct timespec){.tv_nsec = PAUSE_NS}, NULL);
-    }
-    return 0;
-}
-
 /* Padded, so that a later line is as long. */
 static Status write_holder(int fd, size_t n_stored)
 {
@@ -113,30 +77,6 @@ static Status write_holder(int fd, size_t n_stored)
     gethostname(host, sizeof host - 1);
     const int n = snprintf(text, sizeof text, "%ld %s %-12zu\n", (long)getpid(), host, n_stored);
     return pwrite(fd, text, n, 0) == n && ftruncate(fd, n) == 0 ? STATUS_OK : STATUS_IO;
-}
-
-static Status lock_take(Folder *folder, const char *path, Err *err)
-{
-    LockHolder holder;
-    const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (fd < 0)
-        return fail_errno(err, path, "cannot be written");
-    const int cause = try_lock(fd);
-    read_holder(fd, &holder);
-    if (cause != 0) {
-        close(fd);
-        return cause == EAGAIN || cause == EACCES
-                   ? fail(err, STATUS_IO, "%s: is in use by process %ld on %s", folder->path, holder.pid, holder.host)
-                   : fail(err, STATUS_IO, "%s: cannot be locked: %s", path, strerror(cause));
-    }
-    if (write_holder(fd, holder.n_stored) != STATUS_OK) {
-        fail_errno(err, path, "cannot be written");
-        close(fd);
-        return err->code;
-    }
-    folder->lock = fd;
-    folder->n_stored = holder.n_stored;
-    return STATUS_OK;
 }
 
 /* On a full disk the number before stays, which is no more than there are. */
@@ -160,7 +100,7 @@ void folder_release(Folder *folder)
 
 int folder_is_held(const char *folder, LockHolder *holder)
 {
-    char path[PATH_MAX];
+    char path[PATH_MAX], host[72] = "";
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     folder_path(folder, "lock", path);
     const int fd = open(path, O_RDONLY | O_CLOEXEC);
@@ -169,18 +109,60 @@ int folder_is_held(const char *folder, LockHolder *holder)
     const int held = fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
     read_holder(fd, holder);
     close(fd);
-    return held && !is_gone(holder);
+    gethostname(host, sizeof host - 1);
+    const int is_gone = strcmp(host, holder->host) == 0 && kill((pid_t)holder->pid, 0) != 0 && errno == ESRCH;
+    return held && !is_gone;
 }
 
 /* -- taking it ----------------------------------------------------------------------------------------------------- */
 
+/* Makes the folder, with those above it, and takes its lock. The system takes moments to tear a killed process down,
+ * and one that is killed while it starts a worker leaves the lock to it until that one has begun its own program: every
+ * holder gets PATIENCE, 1.5 s, to let go. */
 static Status take_lock(Folder *folder, Err *err)
 {
+    enum { PATIENCE = 75, PAUSE_NS = 20000000 };
     char path[PATH_MAX];
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    LockHolder holder;
     folder->is_new = access(folder->path, F_OK) != 0;
-    TRY(make_folders(folder->path, err));
+    for (const char *end = folder->path + 1;; end++) {
+        if (*end && *end != '/')
+            continue;
+        snprintf(path, sizeof path, "%.*s", (int)(end - folder->path), folder->path);
+        if (mkdir(path, 0777) != 0 && errno != EEXIST)
+            return fail_errno(err, path, "cannot be made a folder");
+        if (!*end)
+            break;
+    }
     folder_path(folder->path, "lock", path);
-    return lock_take(folder, path, err);
+    const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (fd < 0)
+        return fail_errno(err, path, "cannot be written");
+    int cause = 0, is_held = 0;
+    for (int i = 0; fcntl(fd, F_OFD_SETLK, &whole) != 0; i++) {
+        cause = errno;
+        is_held = cause == EAGAIN || cause == EACCES;
+        if (!is_held || i == PATIENCE)
+            break;
+        cause = 0;
+        nanosleep(&(struct timespec){.tv_nsec = PAUSE_NS}, NULL);
+    }
+    read_holder(fd, &holder);
+    Status status = STATUS_OK;
+    if (cause != 0)
+        status = is_held
+                     ? fail(err, STATUS_IO, "%s: is in use by process %ld on %s", folder->path, holder.pid, holder.host)
+                     : fail(err, STATUS_IO, "%s: cannot be locked: %s", path, strerror(cause));
+    else if (write_holder(fd, holder.n_stored) != STATUS_OK)
+        status = fail_errno(err, path, "cannot be written");
+    if (status != STATUS_OK) {
+        close(fd);
+        return status;
+    }
+    folder->lock = fd;
+    folder->n_stored = holder.n_stored;
+    return STATUS_OK;
 }
 
 /* Free: no run, nothing that one has left, and no process. */
@@ -191,10 +173,14 @@ static int is_free(const Folder *folder, int is_own)
     return !is_held && holder.n_stored == 0 && !folder_has(folder->path, "run.sqlite");
 }
 
-/* It is looked at again once the lock is held: another process may have had a whole run meanwhile. */
-static Status take_free_folder(Folder *folder, const char *path, Err *err)
+/* A free folder is looked at again once its lock is held: another process may have had a whole run meanwhile. */
+Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
 {
-    for (int i = 2;; i++) {
+    int n = snprintf(folder->path, sizeof folder->path, "%s", path);
+    folder->lock = -1;
+    for (int i = 2; n < (int)sizeof folder->path; i++) {
+        if (!fresh)
+            return take_lock(folder, err);
         if (is_free(folder, 0)) {
             const Status status = take_lock(folder, err);
             if (status != STATUS_OK && is_free(folder, 0))
@@ -203,17 +189,9 @@ static Status take_free_folder(Folder *folder, const char *path, Err *err)
                 return STATUS_OK;
             folder_release(folder);
         }
-        if (snprintf(folder->path, sizeof folder->path, "%s-%d", path, i) >= (int)sizeof folder->path)
-            return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
+        n = snprintf(folder->path, sizeof folder->path, "%s-%d", path, i);
     }
-}
-
-Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
-{
-    folder->lock = -1;
-    if (snprintf(folder->path, sizeof folder->path, "%s", path) >= (int)sizeof folder->path)
-        return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
-    return fresh ? take_free_folder(folder, path, err) : take_lock(folder, err);
+    return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
 }
 
 /* -- files --------------------------------------------------------------------------------------------------------- */

@@ -5,26 +5,17 @@
 
 static const char NOTES[] = "notes.json";
 
-static int are_notes(json_t *all)
-{
-    const char *key;
-    json_t *text;
-    int ok = json_is_object(all);
-    json_object_foreach(all, key, text) ok = ok && json_is_string(text);
-    return ok;
-}
-
 Status notes_read(const char *folder, json_t **notes, Err *err)
 {
     char path[PATH_MAX];
+    const char *key;
+    json_t *text;
     json_error_t error = {0};
     folder_path(folder, NOTES, path);
-    if (!folder_has(folder, NOTES)) {
-        *notes = json_object();
-        return STATUS_OK;
-    }
-    *notes = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (are_notes(*notes))
+    *notes = folder_has(folder, NOTES) ? json_load_file(path, JSON_REJECT_DUPLICATES, &error) : json_object();
+    int are_notes = json_is_object(*notes);
+    json_object_foreach(*notes, key, text) are_notes &= json_is_string(text);
+    if (are_notes)
         return STATUS_OK;
     json_decref(*notes);
     *notes = NULL;
@@ -54,19 +45,11 @@ Status notes_of_run(const Run *run, json_t **notes, Err *err)
     return status;
 }
 
-static Status write_notes(const char *path, const json_t *notes, Err *err)
-{
-    Output o;
-    TRY(output_open_inside(&o, path, err));
-    json_dumpf(notes, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS); /* a failed write is seen on closing */
-    fputc('\n', o.stream);
-    return output_close(&o, err);
-}
-
 Status notes_put(const char *folder, long id, const char *text, Err *err)
 {
     char path[PATH_MAX], key[24];
     json_t *notes;
+    Output o;
     snprintf(key, sizeof key, "%ld", id);
     if (strlen(text) > NOTE_MAX)
         return bad_data(err, "a note has at most %d bytes", NOTE_MAX);
@@ -76,7 +59,12 @@ Status notes_put(const char *folder, long id, const char *text, Err *err)
         json_object_set_new(notes, key, json_string(text));
     else
         json_object_del(notes, key);
-    const Status status = write_notes(path, notes, err);
+    Status status = output_open_inside(&o, path, err);
+    if (status == STATUS_OK) {
+        json_dumpf(notes, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS); /* a failed write is seen on closing */
+        fputc('\n', o.stream);
+        status = output_close(&o, err);
+    }
     json_decref(notes);
     return status;
 }

@@ -15,80 +15,47 @@ static const char OWN_FILES[] = "/proc/self/fd";
 
 /* A file without a name, of which a process that is killed leaves nothing. Where the file system has none, a new file:
  * what lies there under that name, a prepared link say, is removed. */
-static FILE *open_new(const char *path)
-{
-    char folder[PATH_MAX];
-    folder_of(path, folder);
-    unlink(path);
-    const int fd = access(OWN_FILES, X_OK) == 0 ? open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666) : -1;
-    return fd >= 0 ? fdopen(fd, "w") : fopen(path, "wxe");
-}
-
-/* The temporary file gets its name, if it has none yet. */
-static Status give_name(const Output *o, Err *err)
-{
-    char own[64];
-    struct stat is;
-    snprintf(own, sizeof own, "%s/%d", OWN_FILES, fileno(o->stream));
-    if (!o->temporary[0] || fstat(fileno(o->stream), &is) != 0 || is.st_nlink > 0)
-        return STATUS_OK;
-    return linkat(AT_FDCWD, own, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW) == 0
-               ? STATUS_OK
-               : fail_errno(err, o->path, "cannot be written");
-}
-
 static Status open_at(Output *o, const char *path, int in_place, Err *err)
 {
+    char folder[PATH_MAX];
     memset(o, 0, sizeof *o);
     const int to_stdout = strcmp(path, "-") == 0;
     const int n = snprintf(o->path, sizeof o->path, "%s", path);
     const int m = snprintf(o->temporary, sizeof o->temporary, "%s.%ld.tmp", path, (long)getpid());
     if (n >= PATH_MAX || m >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
-    if (in_place || to_stdout)
+    if (in_place || to_stdout) {
         o->temporary[0] = 0;
-    /* Not /dev/stdout: opening that again would cut off what a file behind it holds already. */
-    o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : in_place ? fopen(o->path, "w") : open_new(o->temporary);
+        /* Not /dev/stdout: opening that again would cut off what a file behind it holds already. */
+        o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(o->path, "w");
+    } else {
+        folder_of(o->temporary, folder);
+        unlink(o->temporary);
+        const int fd = access(OWN_FILES, X_OK) == 0 ? open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666) : -1;
+        o->stream = fd >= 0 ? fdopen(fd, "w") : fopen(o->temporary, "wxe");
+    }
     if (!o->stream)
         return fail_errno(err, path, "cannot be written");
     return STATUS_OK;
 }
 
-static int is_database(const char *path)
+Status output_open(Output *o, const char *path, Err *err)
 {
     static const char MAGIC[] = "SQLite format 3";
     char head[sizeof MAGIC] = "";
-    FILE *f = fopen(path, "re");
-    const int is = f && fread(head, sizeof MAGIC - 1, 1, f) == 1 && strcmp(head, MAGIC) == 0;
+    struct stat there;
+    const int is_there = lstat(path, &there) == 0, is_file = is_there && S_ISREG(there.st_mode);
+    FILE *f = is_file ? fopen(path, "re") : NULL;
+    const int is_database = f && fread(head, sizeof MAGIC - 1, 1, f) == 1 && strcmp(head, MAGIC) == 0;
     if (f)
         fclose(f);
-    return is;
-}
-
-Status output_open(Output *o, const char *path, Err *err)
-{
-    struct stat there;
-    if (lstat(path, &there) == 0 && S_ISREG(there.st_mode) && is_database(path))
-        return misused(err, "%s is a database, which is not replaced; name another file", path);
-    return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
+    return is_database ? misused(err, "%s is a database, which is not replaced; name another file", path)
+                       : open_at(o, path, is_there && !is_file, err);
 }
 
 Status output_open_inside(Output *o, const char *path, Err *err)
 {
     return open_at(o, path, 0, err);
-}
-
-/* Flushed to the disk, or STATUS_IO. */
-static Status output_sync(FILE *stream, const char *path, Err *err)
-{
-    errno = 0;
-    if (fflush(stream) != 0 || ferror(stream))
-        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path,
-                    errno ? strerror(errno) : "an earlier write failed, as on a full disk");
-    /* A pipe or a terminal has no disk to wait for. */
-    if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
-        return fail_errno(err, path, "cannot be brought to the disk");
-    return STATUS_OK;
 }
 
 void output_sync_folder(const char *path)
@@ -104,11 +71,26 @@ void output_sync_folder(const char *path)
 
 Status output_close(Output *o, Err *err)
 {
-    Status status = output_sync(o->stream, o->path, err);
-    if (status == STATUS_OK)
-        status = give_name(o, err);
-    if (fclose(o->stream) != 0 && status == STATUS_OK)
+    char own[64];
+    struct stat is;
+    const int fd = fileno(o->stream);
+    Status status = STATUS_OK;
+
+    /* On the disk; a pipe or a terminal has none to wait for. */
+    errno = 0;
+    if (fflush(o->stream) != 0 || ferror(o->stream))
+        status = fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path,
+                      errno ? strerror(errno) : "an earlier write failed, as on a full disk");
+    else if (fsync(fd) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
+        status = fail_errno(err, o->path, "cannot be brought to the disk");
+
+    /* The temporary file gets its name, if it has none yet, and then its place. */
+    snprintf(own, sizeof own, "%s/%d", OWN_FILES, fd);
+    if (status == STATUS_OK && o->temporary[0] && fstat(fd, &is) == 0 && is.st_nlink == 0 &&
+        linkat(AT_FDCWD, own, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW) != 0)
         status = fail_errno(err, o->path, "cannot be written");
+    if (fclose(o->stream) != 0)
+        THEN(status, fail_errno(err, o->path, "cannot be written"));
     o->stream = NULL;
     if (!o->temporary[0])
         return status;
@@ -140,6 +122,7 @@ Status output_end(Output *o, Status status, Err *err)
 
 char *digits_of(char *from, char *to, double value); /* digits.cpp: returns where they end */
 
+/* Numbers with their fewest digits; what is not finite is `missing`. */
 static void put_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
 {
     char text[32];

@@ -42,21 +42,18 @@ const char *program_revision(void)
 }
 
 /* Random123 does not say its version; the Debian release does. */
-static json_t *libraries(void)
+json_t *program_description(void)
 {
     char sundials[32] = "unknown", nlopt[32];
     int major, minor, fix;
     SUNDIALSGetVersion(sundials, sizeof sundials);
     nlopt_version(&major, &minor, &fix);
     snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
-    return json_of("sqlite=%s sundials=%s nlopt=%s openblas=%s jansson=%s random123=%s", sqlite3_libversion(), sundials,
-                   nlopt, openblas_get_config(), jansson_version_str(), "as packaged by the system");
-}
-
-json_t *program_description(void)
-{
+    json_t *libraries =
+        json_of("sqlite=%s sundials=%s nlopt=%s openblas=%s jansson=%s random123=%s", sqlite3_libversion(), sundials,
+                nlopt, openblas_get_config(), jansson_version_str(), "as packaged by the system");
     return json_of("program=%s version=%s revision=%s compiler=%s flags=%s libraries=%p", "imtet", IMTET_VERSION,
-                   IMTET_REVISION, COMPILER, IMTET_CFLAGS, libraries());
+                   IMTET_REVISION, COMPILER, IMTET_CFLAGS, libraries);
 }
 
 void program_identity(size_t n, char text[])
@@ -70,24 +67,17 @@ void program_identity(size_t n, char text[])
     json_decref(all);
 }
 
-/* PRETTY_NAME of the operating system: with it the versions of all packages are known. */
-static void system_name(char name[128])
-{
-    char line[256];
-    snprintf(name, 128, "unknown");
-    FILE *f = fopen("/etc/os-release", "r");
-    while (f && fgets(line, sizeof line, f))
-        sscanf(line, "PRETTY_NAME=\"%127[^\"\n]", name);
-    if (f)
-        fclose(f);
-}
-
+/* Host, operating system and the kernels that this processor gets. */
 static json_t *machine(int threads)
 {
-    char host[256] = "unknown", system[128], started[24];
+    char host[256] = "unknown", system[128] = "unknown", started[24], line[256];
     gethostname(host, sizeof host - 1);
-    system_name(system);
     utc_now(started);
+    FILE *f = fopen("/etc/os-release", "r"); /* with its name the versions of all packages are known */
+    while (f && fgets(line, sizeof line, f))
+        sscanf(line, "PRETTY_NAME=\"%127[^\"\n]", system);
+    if (f)
+        fclose(f);
     return json_of("host=%s system=%s kernel=%s blas=%s threads=%d started=%s", host, system, fast_kernel_name(),
                    linalg_kernel_name(), threads, started);
 }
@@ -140,23 +130,21 @@ static char *hex(uint64_t hash, char text[24])
     return text;
 }
 
-static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
+/* The records and the building of a tower; of another problem its command. */
+static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
 {
     char record[24], records[24], forces[24], matrices[24];
+    if (!t) {
+        json_t *all = json_of("command=%s", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+        return s->problem.constraints > 0 ? json_put(all, "constraints=%ld", s->problem.constraints) : all;
+    }
+    const Scenario *w = tower_record(t, 0);
     return json_of(
         "record=%s record_format=%s record_channel=%s record_processed=%s record_fnv1a=%s records=%s "
         "records_fnv1a=%s forces=%s forces_fnv1a=%s samples=%ld step_s=%g building=%s floors=%d matrices_fnv1a=%s",
         w->record.record, w->motion.format, w->motion.channel, w->motion.processed, hex(hashes->record, record),
         w->record.records, hex(hashes->records, records), w->record.forces, hex(hashes->forces, forces), w->motion.n,
         w->motion.dt_s, w->options.building.model, scene_n_floors(w->scene), hex(hashes->matrices, matrices));
-}
-
-static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
-{
-    if (t)
-        return inputs_of_tower(tower_record(t, 0), hashes);
-    json_t *all = json_of("command=%s", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
-    return s->problem.constraints > 0 ? json_put(all, "constraints=%ld", s->problem.constraints) : all;
 }
 
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)

@@ -100,40 +100,6 @@ void run_minimise(const Run *run, size_t row, double f[])
         f[k] = minimised(run, row, k);
 }
 
-/* The front of the search, or all that were ever on it where designs have other values than the search knew, and the
- * polished designs, which it was found without. */
-static void mark_candidates(Run *run)
-{
-    for (size_t i = 0; i < run->table.n; i++) {
-        RunPlace *p = &run->place[i];
-        if (run->table.row[i].kind == KIND_POLISHED || (run->finer.n > 0 && p->entered != NEVER))
-            p->on_front = 1;
-    }
-}
-
-static Status drop_dominated(Run *run, Err *err)
-{
-    NdTree *tree;
-    NdChange change;
-    double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
-    Status status = F ? nd_tree_create(&tree, run->schema.n_obj, err) : fail_memory(err, 1, "the front");
-    for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
-        RunPlace *p = &run->place[i];
-        p->on_front &= p->ok && !(run->table.row[i].violation > 0.0);
-        if (!p->on_front)
-            continue;
-        run_minimise(run, i, F + i * run->schema.n_obj);
-        status = nd_tree_insert(tree, F, i, &change, err);
-        p->on_front = change.is_in;
-        for (size_t k = 0; status == STATUS_OK && k < change.n_removed; k++)
-            run->place[change.removed[k]].on_front = 0;
-    }
-    if (F)
-        nd_tree_free(tree);
-    free(F);
-    return status;
-}
-
 static int run_has_polished(const Run *run)
 {
     return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
@@ -149,17 +115,40 @@ static void list_front(Run *run)
 
 Status run_form_front(Run *run, Err *err)
 {
+    const size_t m = run->schema.n_obj;
+    NdTree *tree = NULL;
+    NdChange change;
+    double *F = calloc(run->table.n * m + 1, sizeof *F);
     free(run->front);
-    TRY_ROOM(run->front, run->table.n + 1, "designs", err);
-    TRY(drop_dominated(run, err));
-    list_front(run);
-    return STATUS_OK;
+    run->front = calloc(run->table.n + 1, sizeof *run->front);
+    Status status = F && run->front ? nd_tree_create(&tree, m, err) : fail_memory(err, run->table.n + 1, "designs");
+    for (size_t i = 0; status == STATUS_OK && i < run->table.n; i++) {
+        RunPlace *p = &run->place[i];
+        p->on_front &= p->ok && !(run->table.row[i].violation > 0.0);
+        if (!p->on_front)
+            continue;
+        run_minimise(run, i, F + i * m);
+        status = nd_tree_insert(tree, F, i, &change, err);
+        p->on_front = change.is_in;
+        for (size_t k = 0; status == STATUS_OK && k < change.n_removed; k++)
+            run->place[change.removed[k]].on_front = 0;
+    }
+    nd_tree_free(tree);
+    free(F);
+    if (status == STATUS_OK)
+        list_front(run);
+    return status;
 }
 
+/* Candidates are the front of the search, or all that were ever on it where designs have other values than the search
+ * knew, and the polished designs, which it was found without. */
 Status run_settle_front(Run *run, Err *err)
 {
-    if (run->finer.n > 0 || run_has_polished(run)) {
-        mark_candidates(run);
+    const int has_finer = run->finer.n > 0;
+    if (has_finer || run_has_polished(run)) {
+        for (size_t i = 0; i < run->table.n; i++)
+            run->place[i].on_front |=
+                run->table.row[i].kind == KIND_POLISHED || (has_finer && run->place[i].entered != NEVER);
         return run_form_front(run, err);
     }
     TRY_ROOM(run->front, run->table.n + 1, "designs", err);
@@ -167,41 +156,25 @@ Status run_settle_front(Run *run, Err *err)
     return STATUS_OK;
 }
 
-int run_is_screened(const Run *run)
-{
-    return settings_screens(run->settings);
-}
-
-/* As in the search; the first replicate of all records is one here. */
-static LevelCosts costs_of(const Run *run)
-{
-    const Settings *s = run->settings;
-    const int by_record = s->search.fidelity == FIDELITY_RECORDS;
-    const size_t n = by_record ? suite_count(&s->motion) : 1, first = by_record ? race_first(n) : 1;
-    const size_t whole = n * (size_t)s->sim.replicates;
-    return (LevelCosts){first, whole - first, whole};
-}
-
-/* The cheap level has no spread. */
-static size_t cost_of(const Run *run, const LevelCosts *cost, size_t row)
-{
-    EvaluationKind kind = run->table.row[row].kind;
-    const double *sd = run->table.row[row].sd; /* NULL: of one simulation of every record */
-    if (kind == KIND_UNFINISHED && run_is_screened(run))
-        kind = sd && isfinite(sd[0]) ? KIND_FINISHED : KIND_SCREENED;
-    return kind == KIND_SCREENED   ? cost->cheap
-           : kind == KIND_FINISHED ? cost->rest
-           : kind == KIND_POLISHED ? 0
-                                   : cost->whole;
-}
-
 size_t run_evaluations(const Run *run, size_t first)
 {
-    const LevelCosts cost = costs_of(run);
+    /* As in the search; the first replicate of all records is one here. */
+    const Settings *s = run->settings;
+    const int by_record = s->search.fidelity == FIDELITY_RECORDS;
+    const size_t n = by_record ? suite_count(&s->motion) : 1, cheap = by_record ? race_first(n) : 1;
+    const size_t whole = n * (size_t)s->sim.replicates;
     size_t sum = 0;
-    for (size_t i = first; i < run->table.n; i++)
-        sum += cost_of(run, &cost, i);
-    return sum / cost.whole;
+    for (size_t i = first; i < run->table.n; i++) {
+        const double *sd = run->table.row[i].sd; /* NULL: of one simulation of every record; the cheap level has none */
+        EvaluationKind kind = run->table.row[i].kind;
+        if (kind == KIND_UNFINISHED && settings_screens(s))
+            kind = sd && isfinite(sd[0]) ? KIND_FINISHED : KIND_SCREENED;
+        sum += kind == KIND_SCREENED   ? cheap
+               : kind == KIND_FINISHED ? whole - cheap
+               : kind == KIND_POLISHED ? 0
+                                       : whole;
+    }
+    return sum / whole;
 }
 
 void run_drop_polished(Run *run)
@@ -262,21 +235,6 @@ size_t run_knee(const Run *run)
     return knee;
 }
 
-/* Square of the scaled distance to the nearest of the rows. */
-static double apart2(const Run *run, const FrontBox *box, size_t row, size_t n, const size_t rows[])
-{
-    double least = DBL_MAX;
-    for (size_t c = 0; c < n; c++) {
-        double sum = 0.0;
-        for (size_t k = 0; k < run->schema.n_obj; k++) {
-            const double d = run_scaled(run, box, row, k) - run_scaled(run, box, rows[c], k);
-            sum += d * d;
-        }
-        least = fmin(least, sum);
-    }
-    return least;
-}
-
 size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[])
 {
     size_t chosen = 0;
@@ -290,7 +248,17 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
             const size_t row = run->front[i];
             if (!with_polished && run->table.row[row].kind == KIND_POLISHED)
                 continue;
-            const double merit = chosen == 0 ? -run_distance2(run, &box, row) : apart2(run, &box, row, chosen, rows);
+
+            /* The square of the scaled distance to the nearest of those chosen; of the first to the ideal point. */
+            double merit = chosen == 0 ? -run_distance2(run, &box, row) : DBL_MAX;
+            for (size_t c = 0; c < chosen; c++) {
+                double sum = 0.0;
+                for (size_t k = 0; k < run->schema.n_obj; k++) {
+                    const double d = run_scaled(run, &box, row, k) - run_scaled(run, &box, rows[c], k);
+                    sum += d * d;
+                }
+                merit = fmin(merit, sum);
+            }
             if (merit > most) {
                 most = merit;
                 found = row;
@@ -374,26 +342,6 @@ Status run_why_empty(const Run *run, Err *err)
                 run->folder);
 }
 
-/* Of the ids of the run; it has some. */
-static long nearest_id(const Run *run, long id)
-{
-    long nearest = run->table.row[0].id;
-    for (size_t i = 1; i < run->table.n; i++)
-        if (labs(run->table.row[i].id - id) < labs(nearest - id))
-            nearest = run->table.row[i].id;
-    return nearest;
-}
-
-static Status pick_id(const Run *run, long id, size_t *row, Err *err)
-{
-    *row = run_find(run, id);
-    if (*row < run->table.n)
-        return STATUS_OK;
-    return run->table.n == 0
-               ? run_why_empty(run, err)
-               : bad_data(err, "%s: has no design %ld; the nearest id is %ld", run->folder, id, nearest_id(run, id));
-}
-
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
 {
     static const char BEST[] = "best_";
@@ -401,8 +349,18 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
     char *end;
     size_t k = 0;
     const long id = strtol(word, &end, 10);
-    if (end != word && !*end)
-        return pick_id(run, id, row, err);
+    if (end != word && !*end) {
+        *row = run_find(run, id);
+        if (*row < run->table.n)
+            return STATUS_OK;
+        if (run->table.n == 0)
+            return run_why_empty(run, err);
+        long nearest = run->table.row[0].id;
+        for (size_t i = 1; i < run->table.n; i++)
+            if (labs(run->table.row[i].id - id) < labs(nearest - id))
+                nearest = run->table.row[i].id;
+        return bad_data(err, "%s: has no design %ld; the nearest id is %ld", run->folder, id, nearest);
+    }
     if (!is_best && strcmp(word, "knee") != 0)
         return bad_data(err,
                         "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?",

@@ -110,8 +110,6 @@ Status run_settle_front(Run *run, Err *err);
 /* The front of the designs whose place is marked as on it: ok, feasible, and dominated by no other of them. */
 Status run_form_front(Run *run, Err *err);
 
-int run_is_screened(const Run *run); /* search.fidelity acts */
-
 /* Of search.max_evals, those of the rows from `first` on: a screened design is its share of an evaluation (one of
  * sim.replicates, or records of race_first), finished it is the rest. Of a generation that is not finished no more than
  * it will be: rows without spreads are taken as screened. */

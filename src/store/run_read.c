@@ -30,13 +30,7 @@ static long input_of(const Run *run, const char *key, long most)
     return n > 0 && n <= most ? n : 0;
 }
 
-/* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
-static int floors_of(const Run *run, int n_var)
-{
-    const int n = design_space_floors(&run->settings->design, core_section(&run->settings->core), n_var);
-    return n > 0 ? n : (int)input_of(run, "floors", FLOORS_MAX);
-}
-
+/* Settings, provenance and what follows from them: the columns of the run. */
 static Status take_head(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
@@ -55,7 +49,13 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     run->polished_at = column_whole(row, 5, 0);
     const int is_tower = run->settings->problem.kind == PROBLEM_TOWER;
     run->settings->problem.constraints = input_of(run, "constraints", CONSTRAINTS_MAX);
-    TRY(schema_of(&run->schema, run->settings, is_tower ? floors_of(run, (int)n_var) : 0, err));
+    /* The floors of the building: by the variables that are one per floor, else as the provenance says. */
+    int n_floors = 0;
+    if (is_tower)
+        n_floors = design_space_floors(&run->settings->design, core_section(&run->settings->core), (int)n_var);
+    if (is_tower && n_floors <= 0)
+        n_floors = (int)input_of(run, "floors", FLOORS_MAX);
+    TRY(schema_of(&run->schema, run->settings, n_floors, err));
     return run->schema.n_var == (size_t)n_var ? STATUS_OK : database_damaged(l->d, err, "it has %ld variables", n_var);
 }
 
@@ -79,17 +79,7 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-static Status check_front(const Loading *l, Err *err)
-{
-    const Run *run = l->run;
-    uint64_t members = 0;
-    for (size_t i = 0; i < run->n_marks; i++)
-        members ^= run->mark[i].left == NEVER ? digest_member(run->mark[i].id) : 0;
-    return run->n_generations == 0 || (long)members == run->generation[run->n_generations - 1].members
-               ? STATUS_OK
-               : database_damaged(l->d, err, "its front is not what was written");
-}
-
+/* All but the rows. The designs that are on the front must be those of which the last generation has the digest. */
 static Status load_head(Loading *l, Err *err)
 {
     Run *run = l->run;
@@ -103,10 +93,16 @@ static Status load_head(Loading *l, Err *err)
     TRY(records_read(l->d, TABLE_SESSION, &run->session, &run->n_sessions, err));
     TRY(records_read(l->d, TABLE_FRONT, &run->mark, &run->n_marks, err));
     TRY(database_each(l->d, "SELECT generation, bytes, digest FROM state ORDER BY copy", take_state, l, err));
-    if (run->n_generations > 0)
-        run->n_finished = run->generation[run->n_generations - 1].simulated;
-    run->state_is_damaged |= run->n_generations > 0 && !run->state;
-    return check_front(l, err);
+    if (run->n_generations == 0)
+        return STATUS_OK;
+    const RunGeneration *last = &run->generation[run->n_generations - 1];
+    uint64_t members = 0;
+    for (size_t i = 0; i < run->n_marks; i++)
+        members ^= run->mark[i].left == NEVER ? digest_member(run->mark[i].id) : 0;
+    run->n_finished = last->simulated;
+    run->state_is_damaged |= !run->state;
+    return (long)members == last->members ? STATUS_OK
+                                          : database_damaged(l->d, err, "its front is not what was written");
 }
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
@@ -124,12 +120,10 @@ static Status take_row(const Evaluation *e, void *user, Err *err)
                : database_damaged(l->d, err, "evaluation %ld is missing", expected);
 }
 
-static Status make_places(Loading *l, Err *err)
+/* When a design was on the front, whether it succeeded, of how many simulations it is. */
+static Status make_places(Run *run, Err *err)
 {
-    Run *run = l->run;
-    run->place = calloc(run->table.n + 1, sizeof *run->place);
-    if (!run->place)
-        return fail_memory(err, run->table.n, "evaluations");
+    TRY_ROOM(run->place, run->table.n + 1, "evaluations", err);
     for (size_t i = 0, m = 0; i < run->table.n; i++) {
         Evaluation *e = &run->table.row[i];
         RunPlace *place = &run->place[i];
@@ -153,45 +147,37 @@ static int is_known_to_search(const Evaluation *r)
     return r->kind != KIND_UNFINISHED && r->kind != KIND_POLISHED;
 }
 
-static Status insert_row(Archive *a, const Run *run, size_t i, Err *err)
-{
-    double f[OBJECTIVES_MAX];
-    const size_t m = run->schema.n_obj;
-    for (size_t k = 0; k < m; k++)
-        f[k] = schema_objective(&run->schema, k)->sense * run->table.f[i * m + k];
-    return pareto_archive_insert(a, 1, run_x(run, i), f, NULL, &(unsigned char){run->place[i].ok != 0},
-                                 (unsigned char)run->table.row[i].kind, run->table.row[i].generation, err);
-}
-
-/* Row i of the run is row `at` of the archive. */
-static void take_design(Run *run, size_t i, const Archive *a, size_t at)
-{
-    const size_t m = run->schema.n_obj;
-    Evaluation *r = &run->table.row[i];
-    if (a->replicates[at] == 0)
-        return;
-    r->replicates = (int)(a->replicates[at] * run->schema.replicates);
-    for (size_t k = 0; k < m && a->usable[at]; k++) {
-        run->F[i * m + k] = schema_objective(&run->schema, k)->sense * a->F[at * m + k];
-        if (a->n_replicates > 0)
-            r->sd[k] = a->sd[at * m + k] * sqrt((double)run->schema.replicates);
-    }
-}
-
-/* Designs as the search sees them, each with the mean of its evaluations. */
+/* Designs as the search sees them, in its archive: each with the mean of its evaluations. */
 static Status join_repeats(Run *run, Err *err)
 {
+    const size_t m = run->schema.n_obj;
+    double f[OBJECTIVES_MAX];
     Archive a;
-    TRY(pareto_archive_init(&a, run->table.n, run->schema.n_var, run->schema.n_obj, 0, err));
+    TRY(pareto_archive_init(&a, run->table.n, run->schema.n_var, m, 0, err));
     Status status = STATUS_OK;
-    for (size_t i = 0; i < run->table.n && status == STATUS_OK; i++)
-        if (is_known_to_search(&run->table.row[i]))
-            status = insert_row(&a, run, i, err);
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *r = &run->table.row[i];
+        for (size_t k = 0; k < m; k++)
+            f[k] = schema_objective(&run->schema, k)->sense * r->f[k];
+        if (is_known_to_search(r))
+            THEN(status, pareto_archive_insert(&a, 1, r->x, f, NULL, &(unsigned char){run->place[i].ok != 0},
+                                               (unsigned char)r->kind, r->generation, err));
+    }
     if (status == STATUS_OK)
         pareto_archive_update_noise(&a);
-    for (size_t i = 0, at = 0; i < run->table.n && status == STATUS_OK; i++)
-        if (is_known_to_search(&run->table.row[i]))
-            take_design(run, i, &a, at++);
+    for (size_t i = 0, at = 0; i < run->table.n && status == STATUS_OK; i++) {
+        Evaluation *r = &run->table.row[i];
+        if (!is_known_to_search(r))
+            continue;
+        if (a.replicates[at] > 0)
+            r->replicates = (int)(a.replicates[at] * run->schema.replicates);
+        for (size_t k = 0; k < m && a.replicates[at] > 0 && a.usable[at]; k++) {
+            run->F[i * m + k] = schema_objective(&run->schema, k)->sense * a.F[at * m + k];
+            if (a.n_replicates > 0)
+                r->sd[k] = a.sd[at * m + k] * sqrt((double)run->schema.replicates);
+        }
+        at++;
+    }
     pareto_archive_free(&a);
     return status;
 }
@@ -201,6 +187,7 @@ static Status take_finer(const Evaluation *e, void *run, Err *err)
     return evaluation_table_append(&((Run *)run)->finer, e, err);
 }
 
+/* Designs that a study names have the numbers of their simulation with more steps. */
 static Status join_finer(Loading *l, Err *err)
 {
     Run *run = l->run;
@@ -225,6 +212,7 @@ static Status join_finer(Loading *l, Err *err)
     return STATUS_OK;
 }
 
+/* All evaluations: those of the search in the order of their ids, then the polished ones. */
 static Status load_rows(Loading *l, Err *err)
 {
     Run *run = l->run;
@@ -243,7 +231,7 @@ static Status load_rows(Loading *l, Err *err)
         return fail_memory(err, n, "evaluations");
     if (n > 0 && run->F != run->table.f)
         memcpy(run->F, run->table.f, n * s->n_obj * sizeof *run->F);
-    TRY(make_places(l, err));
+    TRY(make_places(run, err));
     if (s->is_noisy && n > 0)
         TRY(join_repeats(run, err));
     TRY(join_finer(l, err));
@@ -255,32 +243,21 @@ static Status load_rows(Loading *l, Err *err)
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
-/* As one state of a run that is worked on. */
-static Status load(Run *run, Database *d, const char *folder, int with_rows, Err *err)
+Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *err)
 {
     Loading l = {.run = run, .d = d};
     memset(run, 0, sizeof *run);
-    TRY(database_do(d, err, "BEGIN", ""));
+    TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
     Status status = load_head(&l, err);
-    if (status == STATUS_OK && with_rows)
-        status = load_rows(&l, err);
+    if (parts == RUN_WHOLE)
+        THEN(status, load_rows(&l, err));
     evaluation_table_free(&l.polished);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
-    status = status == STATUS_OK ? end : status;
+    THEN(status, end);
     snprintf(run->folder, sizeof run->folder, "%s", folder);
     if (status != STATUS_OK)
         run_free(run);
     return status;
-}
-
-Status run_load_head(Run *run, Database *d, const char *folder, Err *err)
-{
-    return load(run, d, folder, 0, err);
-}
-
-Status run_load(Run *run, Database *d, const char *folder, Err *err)
-{
-    return load(run, d, folder, 1, err);
 }
 
 int run_is_there(const char *folder)
@@ -321,8 +298,7 @@ Status run_read(Run *run, const char *folder, Err *err)
     TRY(run_wanted(folder, err));
     folder_path(folder, "run.sqlite", path);
     Status status = database_open(&d, path, DATABASE_READ, err);
-    if (status == STATUS_OK)
-        status = run_load(run, d, folder, err);
+    THEN(status, run_load(run, d, folder, RUN_WHOLE, err));
     database_close(d);
     return folder_advise(folder, status, err);
 }

@@ -1,6 +1,6 @@
 /* store/run_read.h -- a run read from its database, also while it is worked on.
  *
- * Ownership  run_read, run_load and run_load_head allocate, run_free releases
+ * Ownership  run_read and run_load allocate, run_free releases
  * Errors     no database there: STATUS_MISSING; damaged: STATUS_IO; the Run is empty then */
 #pragma once
 
@@ -15,7 +15,7 @@ typedef void (*RunFolderFn)(const char *folder, const char *name, void *user);
 int runs_each(const char *folder, RunFolderFn take, void *user);
 
 Status run_read(Run *run, const char *folder, Err *err);
-Status run_load(Run *run, Database *d, const char *folder, Err *err);
 
-/* All but the rows: no table, no front, but the marks of it. */
-Status run_load_head(Run *run, Database *d, const char *folder, Err *err);
+/* RUN_HEAD: all but the rows: no table, no front, but the marks of it. */
+typedef enum { RUN_HEAD, RUN_WHOLE } RunParts;
+Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *err);

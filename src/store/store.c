@@ -100,32 +100,15 @@ static Status open_database(RunStore *store, Err *err)
     return database_open(&store->db, path, DATABASE_WRITE, err);
 }
 
-/* Nothing tells a journal that was lost from one that was never there but the number beside it. */
-static Status check_nothing_lost(const RunStore *store, Err *err)
-{
-    if (store->folder.n_stored <= store->n_stored)
-        return STATUS_OK;
-    return fail(
-        err, STATUS_IO,
-        "%s: %zu evaluations were stored, as its file `lock` says; run.sqlite %s%zu: %s is missing. Put it back; to "
-        "go on without those evaluations remove `lock`; for another run: --new",
-        store_folder(store), store->folder.n_stored, store->has_run ? "has " : "is not there, ", store->n_stored,
-        store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
-}
-
-/* An evaluation that belongs to no later generation than the one that was cut short; others are left of a transaction
- * that was lost. */
-static int is_of_the_next(const RunStore *store, const Evaluation *e)
-{
-    const Run *run = &store->run;
-    return e->generation <= (run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0);
-}
-
+/* An unfinished evaluation belongs to no later generation than the one that was cut short; others are left of a
+ * transaction that was lost. */
 static Status take_open_row(const Evaluation *e, void *user, Err *err)
 {
     RunStore *store = user;
+    const Run *run = &store->run;
+    const long cut_short = run->n_generations > 0 ? run->generation[run->n_generations - 1].number + 1 : 0;
     store->n_stored += e->kind == KIND_UNFINISHED;
-    if (e->kind == KIND_UNFINISHED && is_of_the_next(store, e)) {
+    if (e->kind == KIND_UNFINISHED && e->generation <= cut_short) {
         TRY(evaluation_table_append(&store->unfinished, e, err));
         store->unfinished.row[store->unfinished.n - 1].id = number_of(store, e->id);
     }
@@ -139,19 +122,20 @@ static Status take_open_row(const Evaluation *e, void *user, Err *err)
     return STATUS_OK;
 }
 
-/* What a session needs: not the rows of finished generations, which pass by when the search is resumed. */
-static Status read_open_rows(RunStore *store, Err *err)
+/* The run that is there, with what a session needs of it: not the rows of finished generations, which pass by when the
+ * search is resumed. */
+static Status load_run(RunStore *store, Err *err)
 {
-    const Run *run = &store->run;
+    Run *run = &store->run;
     const Schema *s = &run->schema;
-    evaluation_table_free(&store->unfinished);
+    TRY(open_database(store, err));
+    TRY(run_load(run, store->db, store_folder(store), RUN_HEAD, err));
+    store->has_run = 1;
+    database_grow(store->db);
     store->unfinished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
-    store->n_polished = 0;
     store->n_known = store->n_stored = run->n_finished;
     TRY(rows_each(store->db, ROWS_EVALUATION, s, "kind IS NULL OR kind = 'polished'", take_open_row, store, err));
-    free(store->was_on_front);
     TRY_ROOM(store->was_on_front, store->n_known + 1, "designs", err);
-    store->front = 0;
     for (size_t i = 0; i < run->n_marks; i++) {
         const RunMark *m = &run->mark[i];
         const long number = number_of(store, m->id);
@@ -161,15 +145,6 @@ static Status read_open_rows(RunStore *store, Err *err)
         store->front ^= digest_member(m->id);
     }
     return STATUS_OK;
-}
-
-static Status load_run(RunStore *store, Err *err)
-{
-    TRY(open_database(store, err));
-    TRY(run_load_head(&store->run, store->db, store_folder(store), err));
-    store->has_run = 1;
-    database_grow(store->db);
-    return read_open_rows(store, err);
 }
 
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
@@ -187,8 +162,14 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(store_folder(store), "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);
-    if (status == STATUS_OK)
-        status = check_nothing_lost(store, err);
+    /* Nothing tells a journal that was lost from one that was never there but the number beside it. */
+    if (status == STATUS_OK && store->folder.n_stored > store->n_stored)
+        status = fail(err, STATUS_IO,
+                      "%s: %zu evaluations were stored, as its file `lock` says; run.sqlite %s%zu: %s is missing. Put "
+                      "it back; to "
+                      "go on without those evaluations remove `lock`; for another run: --new",
+                      store_folder(store), store->folder.n_stored, store->has_run ? "has " : "is not there, ",
+                      store->n_stored, store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
     if (status == STATUS_OK)
         *out = store;
     else
@@ -211,10 +192,14 @@ Status store_forget_empty(RunStore *store, Err *err)
     return unlink(path) == 0 || errno == ENOENT ? STATUS_OK : fail_errno(err, path, "cannot be removed");
 }
 
-static Status write_origin(const RunStore *store, const Settings *used, const char *provenance, Err *err)
+/* Ready for a session: settings and provenance stand beside the database, and the log can be written to. */
+static Status make_ready(RunStore *store, const Settings *used, const char *provenance, Err *err)
 {
+    const Schema *schema = store->schema;
     char path[PATH_MAX];
     Output o;
+    store->waiting = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra);
+    folder_note(&store->folder, store->n_stored);
     folder_path(store_folder(store), "settings.ini", path);
     TRY(output_open_inside(&o, path, err));
     settings_write(used, o.stream, SETTINGS_PLAIN);
@@ -222,16 +207,7 @@ static Status write_origin(const RunStore *store, const Settings *used, const ch
     folder_path(store_folder(store), "provenance.json", path);
     TRY(output_open_inside(&o, path, err));
     fprintf(o.stream, "%s\n", provenance);
-    return output_close(&o, err);
-}
-
-/* Ready for a session. */
-static Status make_ready(RunStore *store, const Settings *used, const char *provenance, Err *err)
-{
-    const Schema *schema = store->schema;
-    store->waiting = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra);
-    folder_note(&store->folder, store->n_stored);
-    TRY(write_origin(store, used, provenance, err));
+    TRY(output_close(&o, err));
     TRY(folder_log(store_folder(store), "", err));
     store->is_ready = 1;
     return STATUS_OK;
@@ -250,6 +226,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
 
 /* -- transactions -------------------------------------------------------------------------------------------------- */
 
+/* Whether there is something to commit, told to the thread that does. */
 static void set_open(RunStore *store, int is_open)
 {
     pthread_mutex_lock(&store->lock);
@@ -260,6 +237,7 @@ static void set_open(RunStore *store, int is_open)
     pthread_mutex_unlock(&store->lock);
 }
 
+/* A transaction, unless one is open already. */
 static Status begin(RunStore *store, Err *err)
 {
     if (store->is_lost)
@@ -284,8 +262,7 @@ static Status lose(RunStore *store, Status status)
 
 static Status commit(RunStore *store, Status status, Err *err)
 {
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, "COMMIT", "");
+    THEN(status, database_do(store->db, err, "COMMIT", ""));
     if (status != STATUS_OK)
         return lose(store, status);
     set_open(store, 0);
@@ -298,7 +275,7 @@ static const Schema *schema_of_store(const RunStore *store)
     return store->schema ? store->schema : &store->run.schema;
 }
 
-static Status insert_row(RunStore *store, RowTable table, const Evaluation *e, Err *err)
+static Status insert_row(RunStore *store, RunTable table, const Evaluation *e, Err *err)
 {
     RowColumns *columns = &store->columns[table];
     if (!columns->place)
@@ -322,8 +299,8 @@ static Status insert_waiting(RunStore *store, Err *err)
     *err = store->why;
     store->waiting = evaluation_table(rows.n_var, rows.n_obj, rows.n_extra);
     pthread_mutex_unlock(&store->lock);
-    if (status == STATUS_OK && rows.n > 0)
-        status = begin(store, err);
+    if (rows.n > 0)
+        THEN(status, begin(store, err));
     for (size_t i = 0; i < rows.n && status == STATUS_OK; i++) {
         status = insert(store, &rows.row[i], err);
         store->n_stored += status == STATUS_OK;
@@ -391,28 +368,23 @@ Status store_flush(RunStore *store, Err *err)
 
 /* -- a session ----------------------------------------------------------------------------------------------------- */
 
-/* Without what is_of_the_next has left out. */
-static Status renew_unfinished(RunStore *store, Err *err)
-{
-    TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i",
-                    store->run.n_finished));
-    for (size_t i = 0; i < store->unfinished.n; i++)
-        TRY(insert(store, &store->unfinished.row[i], err));
-    store->n_stored = store->run.n_finished + store->unfinished.n;
-    return STATUS_OK;
-}
-
-/* At once: with the new limits alone a run that is killed before its next session would be finished for good. */
+/* At once: with the new limits alone a run that is killed before its next session would be finished for good. What
+ * take_open_row has left out goes. */
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err)
 {
+    const EvaluationTable *unfinished = &store->unfinished;
     store->schema = schema;
     TRY(begin(store, err));
-    Status status = renew_unfinished(store, err);
-    if (status == STATUS_OK)
-        status = tables_set_settings(store->db, used, &store->run, err);
-    if (status == STATUS_OK && goes_on)
-        status = database_do(store->db, err, "UPDATE session SET is_final = 0 WHERE is_final; DELETE FROM finer", "");
+    Status status =
+        database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", store->run.n_finished);
+    for (size_t i = 0; i < unfinished->n; i++)
+        THEN(status, insert(store, &unfinished->row[i], err));
+    THEN(status, tables_set_settings(store->db, used, &store->run, err));
+    if (goes_on)
+        THEN(status,
+             database_do(store->db, err, "UPDATE session SET is_final = 0 WHERE is_final; DELETE FROM finer", ""));
     TRY(commit(store, status, err));
+    store->n_stored = store->run.n_finished + unfinished->n;
     return make_ready(store, used, store->run.provenance, err);
 }
 
@@ -481,8 +453,7 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
     const size_t n = store->waiting.n;
     Status status = store->status;
     *err = store->why;
-    if (status == STATUS_OK)
-        status = evaluation_table_append(&store->waiting, e, err);
+    THEN(status, evaluation_table_append(&store->waiting, e, err));
     if (status != STATUS_OK)
         store->waiting.n = n; /* without half a row */
     pthread_cond_signal(&store->news);
@@ -492,45 +463,39 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
 
-/* A box about the first designs that succeeded, when all of their generation are there, as those of the first sample
- * are from the first step on: from a fifth of their range below the best to the worst. */
-static Status create_cover(RunStore *store, const Archive *a, int is_last, Err *err)
-{
-    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
-    size_t first = 0, end;
-    while (first < a->n && !a->ok[first])
-        first++;
-    for (end = first; end < a->n && a->generation[end] == a->generation[first];)
-        end++;
-    if (first == a->n || (end == a->n && a->generation[first] > 0 && !is_last))
-        return STATUS_OK;
-    for (size_t k = 0; k < a->n_obj; k++) {
-        lower[k] = reference[k] = a->Y[first * a->n_obj + k];
-        for (size_t i = first; i < end; i++)
-            if (a->ok[i]) {
-                lower[k] = fmin(lower[k], a->Y[i * a->n_obj + k]);
-                reference[k] = fmax(reference[k], a->Y[i * a->n_obj + k]);
-            }
-    }
-    hypervolume_box(a->n_obj, lower, reference);
-    return hypervolume_create(&store->hypervolume, a->n_obj, lower, reference, 1, err);
-}
-
-/* Only designs on the front count: one that an earlier one dominates adds nothing. Where repeats move designs and take
- * them off the front, all of it is measured again. */
+/* The box is about the first designs that succeeded, when all of their generation are there, as those of the first
+ * sample are from the first step on: from a fifth of their range below the best to the worst. Only designs on the front
+ * count: one that an earlier one dominates adds nothing. Where repeats move designs and take them off the front, all of
+ * it is measured again. */
 static Status measure_front(RunStore *store, const Archive *a, int is_last, Err *err)
 {
+    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
     if (a->n_replicates > 0) {
         hypervolume_free(store->hypervolume);
         store->hypervolume = NULL;
         store->n_measured = 0;
     }
-    if (!store->hypervolume)
-        TRY(create_cover(store, a, is_last, err));
-    if (!store->hypervolume)
-        return STATUS_OK;
-    for (size_t i = a->n;
-         i-- > store->n_measured;) /* later designs dominate more: fewer samples are left for the others */
+    if (!store->hypervolume) {
+        size_t first = 0, end;
+        while (first < a->n && !a->ok[first])
+            first++;
+        for (end = first; end < a->n && a->generation[end] == a->generation[first];)
+            end++;
+        if (first == a->n || (end == a->n && a->generation[first] > 0 && !is_last))
+            return STATUS_OK;
+        for (size_t k = 0; k < a->n_obj; k++) {
+            lower[k] = reference[k] = a->Y[first * a->n_obj + k];
+            for (size_t i = first; i < end; i++)
+                if (a->ok[i]) {
+                    lower[k] = fmin(lower[k], a->Y[i * a->n_obj + k]);
+                    reference[k] = fmax(reference[k], a->Y[i * a->n_obj + k]);
+                }
+        }
+        hypervolume_box(a->n_obj, lower, reference);
+        TRY(hypervolume_create(&store->hypervolume, a->n_obj, lower, reference, 1, err));
+    }
+    /* Later designs dominate more: fewer samples are left for the others. */
+    for (size_t i = a->n; i-- > store->n_measured;)
         if (a->on_front[i])
             hypervolume_add(store->hypervolume, a->F + i * a->n_obj);
     store->n_measured = a->n;
@@ -539,39 +504,13 @@ static Status measure_front(RunStore *store, const Archive *a, int is_last, Err 
 
 /* -- generations --------------------------------------------------------------------------------------------------- */
 
-/* Rows that have entered get kind and generation. Behind the last step what another program or machine had asked for
- * before it was cut short is left over; before, it is told or replaced, and counted anew. */
-static Status store_rows(RunStore *store, const Archive *a, int is_last, Err *err)
-{
-    const long last = a->n > 0 ? id_of(store, a->n - 1) : 0;
-    char count[96];
-    double behind;
-    for (size_t i = store->n_known; i < a->n; i++)
-        TRY(rows_finish(store->db, id_of(store, i), a->kind[i], a->generation[i], err));
-    if (is_last)
-        TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", last));
-    snprintf(count, sizeof count, "SELECT count(*) FROM evaluation WHERE kind IS NULL AND id > %ld", last);
-    TRY(database_number(store->db, count, &behind, err));
-    store->n_stored = a->n + (size_t)behind;
-    return STATUS_OK;
-}
-
-static Status store_front_change(RunStore *store, const SearchView *v, size_t i, Err *err)
-{
-    const Archive *a = v->all;
-    const long id = id_of(store, i), generation = v->generation;
-    store->front ^= digest_member(id);
-    if (a->on_front[i])
-        return database_do(store->db, err,
-                           "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE "
-                           "SET left = NULL",
-                           "ii", id, generation);
-    return database_do(store->db, err, "UPDATE front SET left = ? WHERE evaluation = ?", "ii", generation, id);
-}
-
+/* Designs that have come onto the front or left it since the last generation. */
 static Status store_front_changes(RunStore *store, const SearchView *v, Err *err)
 {
     enum { BLOCK = 64 };
+    static const char ENTERED[] = "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO "
+                                  "UPDATE SET left = NULL",
+                      LEFT[] = "UPDATE front SET left = ?2 WHERE evaluation = ?1";
     const Archive *a = v->all;
     unsigned char *flags = realloc(store->was_on_front, a->n + 1);
     if (!flags)
@@ -584,16 +523,38 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
             i += BLOCK - 1; /* nothing has changed here */
             continue;
         }
-        if (a->on_front[i] != flags[i])
-            TRY(store_front_change(store, v, i, err));
+        if (a->on_front[i] == flags[i])
+            continue;
         flags[i] = a->on_front[i];
+        store->front ^= digest_member(id_of(store, i));
+        TRY(database_do(store->db, err, flags[i] ? ENTERED : LEFT, "ii", id_of(store, i), v->generation));
     }
     return STATUS_OK;
 }
 
-static Status store_moment(RunStore *store, const SearchView *v, double seconds, Err *err)
+/* All that a generation changes: kinds of its rows, front, record, session, state of the search. */
+static Status put_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
     const Archive *a = v->all;
+    const long last = a->n > 0 ? id_of(store, a->n - 1) : 0;
+    char count[96];
+    double behind;
+    if (!v->state)
+        return fail_memory(err, 1, "the state of the search");
+
+    /* Rows that have entered get kind and generation. Behind the last step what another program or machine had asked
+     * for before it was cut short is left over; before, it is told or replaced, and counted anew. */
+    for (size_t i = store->n_known; i < a->n; i++)
+        TRY(rows_finish(store->db, id_of(store, i), a->kind[i], a->generation[i], err));
+    if (v->reason != STOP_NONE)
+        TRY(database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", last));
+    snprintf(count, sizeof count, "SELECT count(*) FROM evaluation WHERE kind IS NULL AND id > %ld", last);
+    TRY(database_number(store->db, count, &behind, err));
+    store->n_stored = a->n + (size_t)behind;
+
+    /* The front; what the search named before is another front's. */
+    TRY(store_front_changes(store, v, err));
+    TRY(database_do(store->db, err, "DELETE FROM finer", ""));
     RunGeneration g = {.number = v->generation,
                        .simulated = a->n,
                        .failed = a->n_failed,
@@ -603,29 +564,14 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                        .seconds = seconds,
                        .members = store->front};
     utc_now(g.finished);
-    return record_put(store->db, TABLE_GENERATION, &g, err);
-}
-
-/* Twice: one that the disk has damaged gives way to its copy. */
-static Status store_state(RunStore *store, const SearchView *v, Err *err)
-{
-    const long generation = v->generation;
-    for (long copy = 1; copy <= 2; copy++)
-        TRY(database_do(store->db, err, "INSERT OR REPLACE INTO state VALUES (?, ?, ?, ?)", "iibi", copy, generation,
-                        v->state, v->n_state, state_digest(generation, v->state, v->n_state)));
-    return STATUS_OK;
-}
-
-static Status put_generation(RunStore *store, const SearchView *v, double seconds, Err *err)
-{
-    if (!v->state)
-        return fail_memory(err, 1, "the state of the search");
-    TRY(store_rows(store, v->all, v->reason != STOP_NONE, err));
-    TRY(store_front_changes(store, v, err));
-    TRY(database_do(store->db, err, "DELETE FROM finer", "")); /* what the search named before is another front's */
-    TRY(store_moment(store, v, seconds, err));
+    TRY(record_put(store->db, TABLE_GENERATION, &g, err));
     TRY(put_session(store, err));
-    return store_state(store, v, err);
+
+    /* The state of the search, twice: one that the disk has damaged gives way to its copy. */
+    for (long copy = 1; copy <= 2; copy++)
+        TRY(database_do(store->db, err, "INSERT OR REPLACE INTO state VALUES (?, ?, ?, ?)", "iibi", copy, g.number,
+                        v->state, v->n_state, state_digest(g.number, v->state, v->n_state)));
+    return STATUS_OK;
 }
 
 /* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
@@ -640,8 +586,7 @@ static Status write_generation(RunStore *store, const SearchView *v, const Sessi
     store->session.waited_s = s->waiting;
     store->session.surrogate_s = s->choosing;
     Status status = put_generation(store, v, s->run, err);
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, "RELEASE generation", "");
+    THEN(status, database_do(store->db, err, "RELEASE generation", ""));
     if (status != STATUS_OK)
         return database_in_transaction(store->db) &&
                        database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") == STATUS_OK
@@ -679,7 +624,7 @@ Status store_event(RunStore *store, json_t *event, Err *err)
 Status store_read(RunStore *store, Run *run, Err *err)
 {
     TRY(store_flush(store, err));
-    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), err), err);
+    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), RUN_WHOLE, err), err);
 }
 
 Status store_write_front(RunStore *store, Run *run, Err *err)
@@ -691,24 +636,17 @@ Status store_write_front(RunStore *store, Run *run, Err *err)
     return status;
 }
 
-static Status end_session(RunStore *store, const char *stopped, int is_final, double session, Err *err)
+Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
 {
     RunSession *s = &store->session;
+    Run last = {0};
+    Status status = store_flush(store, err);
     utc_now(s->ended);
     snprintf(s->stopped, sizeof s->stopped, "%s", stopped);
     s->is_final = is_final;
     s->seconds = session;
-    return put_session(store, err);
-}
-
-Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
-{
-    Run last = {0};
-    Status status = store_flush(store, err);
-    if (status == STATUS_OK)
-        status = end_session(store, stopped, is_final, session, err);
-    if (status == STATUS_OK)
-        status = store_write_front(store, &last, err);
+    THEN(status, put_session(store, err));
+    THEN(status, store_write_front(store, &last, err));
     store_free(store);
     if (run && status == STATUS_OK)
         *run = last;
@@ -732,7 +670,7 @@ void store_free(RunStore *store)
     free(store->polished);
     evaluation_table_free(&store->unfinished);
     hypervolume_free(store->hypervolume);
-    for (RowTable t = 0; t < N_ROW_TABLES; t++)
+    for (RunTable t = 0; t < N_ROW_TABLES; t++)
         free(store->columns[t].place);
     folder_release(&store->folder);
     free(store);
@@ -740,33 +678,29 @@ void store_free(RunStore *store)
 
 /* -- designs from outside ------------------------------------------------------------------------------------------ */
 
-/* Behind all that are there, as of the last generation. */
-static Status insert_polished(RunStore *store, const Evaluation *design, long *id, Err *err)
-{
-    double last, generation;
-    Evaluation e = *design;
-    TRY(database_number(store->db, "SELECT max(id) FROM evaluation", &last, err));
-    TRY(database_number(store->db, "SELECT max(number) FROM generation", &generation, err));
-    *id = e.id = (long)last + 1;
-    e.generation = (long)generation;
-    e.kind = KIND_POLISHED;
-    return insert_row(store, ROWS_EVALUATION, &e, err);
-}
-
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id, Err *err)
 {
-    TRY(begin(store, err));
-    Status status = better ? insert_polished(store, better, id, err) : STATUS_OK;
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", n_tried,
-                             n_simulated);
+    double last = 0, generation = 0;
+    Status status = begin(store, err);
+    TRY(status);
+    if (better) { /* behind all that are there, as of the last generation */
+        Evaluation e = *better;
+        THEN(status, database_number(store->db, "SELECT max(id) FROM evaluation", &last, err));
+        THEN(status, database_number(store->db, "SELECT max(number) FROM generation", &generation, err));
+        *id = e.id = (long)last + 1;
+        e.generation = (long)generation;
+        e.kind = KIND_POLISHED;
+        THEN(status, insert_row(store, ROWS_EVALUATION, &e, err));
+    }
+    THEN(status, database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", n_tried,
+                             n_simulated));
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }
 
 Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *err)
 {
     Status status = begin(store, err);
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = insert_row(store, ROWS_FINER, &better[i], err);
+    for (size_t i = 0; i < n; i++)
+        THEN(status, insert_row(store, ROWS_FINER, &better[i], err));
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
 }

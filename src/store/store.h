@@ -39,7 +39,7 @@ static const double COMMIT_S = 0.2;
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err);
 const char *store_folder(const RunStore *store);
 
-/* The run that the folder held when it was opened, without its rows (run_load_head); NULL: none. */
+/* The run that the folder held when it was opened, without its rows (RUN_HEAD); NULL: none. */
 const Run *store_run(const RunStore *store);
 
 /* What a session goes on from: the evaluations of the generation that was cut short, whose id is their number in the

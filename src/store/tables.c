@@ -92,11 +92,9 @@ typedef struct {
         name, has_digest, fields, N_OF(fields), sizeof(record)                                                         \
     }
 
-static const TableColumns ROWS[N_ROW_TABLES] = {
+static const TableColumns TABLES[N_DESCRIBED] = {
     [ROWS_EVALUATION] = TABLE("evaluation", 1, EVALUATION, Evaluation),
     [ROWS_FINER] = TABLE("finer", 1, FINER, Evaluation),
-};
-static const TableColumns RECORDS[N_RECORD_TABLES] = {
     [TABLE_GENERATION] = TABLE("generation", 1, GENERATION, RunGeneration),
     [TABLE_FRONT] = TABLE("front", 0, FRONT, RunMark),
     [TABLE_SESSION] = TABLE("session", 0, SESSION, RunSession),
@@ -109,7 +107,7 @@ static const char OTHERS[] =
     "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "
     "digest INTEGER NOT NULL);";
 
-enum { N_TABLES = N_RECORD_TABLES + N_ROW_TABLES + 2 };
+enum { N_FIXED = N_DESCRIBED - N_ROW_TABLES + 2 /* tables without numbers of an evaluation */ };
 
 /* Numbers of an evaluation that follow its digest: n columns named after those of the schema from `first` on, and the
  * array of the record that has them. */
@@ -120,7 +118,8 @@ typedef struct {
 
 enum { N_NUMBERS = 5 };
 
-static void numbers_of(RowTable table, const Schema *s, Numbers list[N_NUMBERS])
+/* What a table has of them, in the order in which this program writes them. */
+static void numbers_of(RunTable table, const Schema *s, Numbers list[N_NUMBERS])
 {
     const int is_finer = table == ROWS_FINER;
     const Numbers all[] = {
@@ -138,20 +137,14 @@ static double *number_at(const Evaluation *e, NumberPlace place)
     return *(double *const *)(const void *)((const char *)e + place.array) + place.i;
 }
 
-static size_t n_columns(RowTable table, const Schema *s)
-{
-    Numbers list[N_NUMBERS];
-    size_t n = ROWS[table].n + 1;
-    numbers_of(table, s, list);
-    for (size_t k = 0; k < N_NUMBERS; k++)
-        n += list[k].n;
-    return n;
-}
-
 Status tables_have_room(const Schema *s, Err *err)
 {
     enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
-    const size_t others = n_columns(ROWS_EVALUATION, s) - s->n_var;
+    Numbers list[N_NUMBERS];
+    size_t others = N_OF(EVALUATION) + 1;
+    numbers_of(ROWS_EVALUATION, s, list);
+    for (size_t k = 1; k < N_NUMBERS; k++) /* behind the variables */
+        others += list[k].n;
     return s->n_var + others <= COLUMNS_MAX
                ? STATUS_OK
                : bad_data(err,
@@ -162,15 +155,6 @@ Status tables_have_room(const Schema *s, Err *err)
 
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
-/* Names become identifiers of SQL: in double quotes, which are doubled inside. */
-static void put_column(FILE *f, const char *begin, const char *name, const char *end)
-{
-    fprintf(f, ", \"%s", begin);
-    for (; *name; name++)
-        fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
-    fprintf(f, "%s\" REAL", end);
-}
-
 static void put_table(FILE *f, const TableColumns *t)
 {
     fprintf(f, "CREATE TABLE %s(", t->name);
@@ -179,7 +163,8 @@ static void put_table(FILE *f, const TableColumns *t)
     fputs(t->has_digest ? ", digest INTEGER NOT NULL" : "", f);
 }
 
-/* To be freed. */
+/* The statements that make all tables, to be freed. Names become identifiers of SQL: in double quotes, doubled inside.
+ */
 static Status tables_text(const Schema *s, char **text, Err *err)
 {
     size_t length;
@@ -189,16 +174,16 @@ static Status tables_text(const Schema *s, char **text, Err *err)
     if (!f)
         return fail_memory(err, 1, "the names of the columns");
     fputs(OTHERS, f);
-    for (RecordTable t = 0; t < N_RECORD_TABLES; t++) {
-        put_table(f, &RECORDS[t]);
-        fputs(");", f);
-    }
-    for (RowTable t = 0; t < N_ROW_TABLES; t++) {
-        put_table(f, &ROWS[t]);
+    for (RunTable t = 0; t < N_DESCRIBED; t++) {
+        put_table(f, &TABLES[t]);
         numbers_of(t, s, list);
-        for (size_t k = 0; k < N_NUMBERS; k++)
-            for (size_t c = 0; c < list[k].n; c++)
-                put_column(f, list[k].begin, s->column[list[k].first + c].name, list[k].end);
+        for (size_t k = 0; k < N_NUMBERS && t < N_ROW_TABLES; k++)
+            for (size_t c = 0; c < list[k].n; c++) {
+                fprintf(f, ", \"%s", list[k].begin);
+                for (const char *name = s->column[list[k].first + c].name; *name; name++)
+                    fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
+                fprintf(f, "%s\" REAL", list[k].end);
+            }
         fputs(");", f);
     }
     return text_close(f) == 0 ? STATUS_OK : fail_memory(err, 1, "the names of the columns");
@@ -241,74 +226,62 @@ static NumberPlace place_of(const char *name, const Numbers list[N_NUMBERS], con
 
 typedef struct {
     Database *db;
-    RowTable table;
+    RunTable table;
     const Schema *schema;
     RowColumns *columns;
     size_t n_wanted; /* variables and objectives that were found */
     int is_whole;    /* all of the text was understood */
 } Finding;
 
-/* The name of a column from the first character behind its quote; returns what follows the last, NULL: no such. */
-static const char *take_name(const char *text, char *name, size_t size)
-{
-    size_t n = 0;
-    for (; *text && n + 1 < size; text++) {
-        if (*text == '"' && *++text != '"')
-            break;
-        name[n++] = *text;
-    }
-    name[n] = 0;
-    return strncmp(text, " REAL", 5) == 0 ? text + 5 : NULL;
-}
-
-/* What follows the fields of a table in its text, which begins as this program writes it; NULL: it does not. */
-static Status skip_fields(const TableColumns *t, const char *text, const char **behind, Err *err)
-{
-    char *begin = NULL;
-    size_t length;
-    FILE *stream = text_open(&begin, &length);
-    *behind = NULL;
-    if (stream)
-        put_table(stream, t);
-    if (!stream || text_close(stream) != 0) {
-        free(begin);
-        return fail_memory(err, 1, "the names of the columns");
-    }
-    *behind = strncmp(text, begin, length) == 0 ? text + length : NULL;
-    free(begin);
-    return STATUS_OK;
-}
-
-/* Behind the fields stand numbers alone, in any order. */
+/* The text of a table begins with its fields, as this program writes them; behind them stand numbers alone, in any
+ * order. */
 static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
 {
     Finding *f = user;
     Numbers list[N_NUMBERS];
     RowColumns *c = f->columns;
-    const char *text = column_text(row, 0), *at;
-    char name[TABLE_NAME_MAX + 8];
-    TRY(skip_fields(&ROWS[f->table], text, &at, err));
+    const char *text = column_text(row, 0);
+    char *begin = NULL, name[TABLE_NAME_MAX + 8];
+    size_t length;
+    FILE *stream = text_open(&begin, &length);
+    if (stream)
+        put_table(stream, &TABLES[f->table]);
+    if (!stream || text_close(stream) != 0) {
+        free(begin);
+        return fail_memory(err, 1, "the names of the columns");
+    }
+    const char *at = strncmp(text, begin, length) == 0 ? text + length : NULL;
+    free(begin);
     TRY_ROOM(c->place, strlen(text) / sizeof ", \"\" REAL" + 2, "columns", err); /* no column is shorter */
     numbers_of(f->table, f->schema, list);
-    while (at && strncmp(at, ", \"", 3) == 0 && (at = take_name(at + 3, name, sizeof name))) {
+    for (; at && strncmp(at, ", \"", 3) == 0; c->n++) {
+        size_t n = 0;
+        for (at += 3; *at && n + 1 < sizeof name; at++) {
+            if (*at == '"' && *++at != '"')
+                break;
+            name[n++] = *at;
+        }
+        name[n] = 0;
+        at = strncmp(at, " REAL", 5) == 0 ? at + 5 : NULL;
+        if (!at)
+            break;
         const NumberPlace place = c->place[c->n] = place_of(name, list, f->schema, c->n);
         f->n_wanted += place.array == offsetof(Evaluation, x) || place.array == offsetof(Evaluation, f);
-        c->n++;
     }
     f->is_whole = at && strcmp(at, ")") == 0;
     return STATUS_OK;
 }
 
-Status tables_columns(Database *db, RowTable table, const Schema *schema, RowColumns *columns, Err *err)
+Status tables_columns(Database *db, RunTable table, const Schema *schema, RowColumns *columns, Err *err)
 {
     char sql[80];
     Finding f = {.db = db, .table = table, .schema = schema, .columns = columns};
     const size_t wanted = schema->n_obj + (table == ROWS_EVALUATION ? schema->n_var : 0);
     *columns = (RowColumns){.table = table};
-    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", ROWS[table].name);
+    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", TABLES[table].name);
     Status status = database_each(db, sql, find_columns, &f, err);
     if (status == STATUS_OK && !(f.is_whole && f.n_wanted == wanted))
-        status = database_damaged(db, err, "its table %s is not that of this run", ROWS[table].name);
+        status = database_damaged(db, err, "its table %s is not that of this run", TABLES[table].name);
     if (status != STATUS_OK)
         free(columns->place);
     columns->place = status == STATUS_OK ? columns->place : NULL;
@@ -323,17 +296,15 @@ Status tables_check(Database *db, const Schema *schema, Err *err)
     Status status = database_each(db, "SELECT sql FROM sqlite_schema WHERE name NOT IN ('evaluation', 'finer')",
                                   count_known, &k, err);
     free(text);
-    TRY(status);
-    for (RowTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
+    for (RunTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
         RowColumns columns;
         status = tables_columns(db, t, schema, &columns, err);
         free(columns.place);
     }
     TRY(status);
-    return k.n_known == N_TABLES - N_ROW_TABLES
+    return k.n_known == N_FIXED
                ? STATUS_OK
-               : database_damaged(db, err, "%d of its tables are not those of this run",
-                                  N_TABLES - N_ROW_TABLES - k.n_known);
+               : database_damaged(db, err, "%d of its tables are not those of this run", N_FIXED - k.n_known);
 }
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
@@ -345,6 +316,7 @@ static uint64_t digest_whole(long value, uint64_t hash)
     return hash ^ hash >> 32;
 }
 
+/* As SQLite gives them back: -0 as 0, and one value for all that are not finite. */
 static uint64_t digest_numbers(size_t n, const double values[], uint64_t hash)
 {
     for (size_t i = 0; i < n; i++) {
@@ -390,42 +362,27 @@ int tables_head_is_whole(sqlite3_stmt *row)
            digest_of_head(column_text(row, 0), column_text(row, 1), column_whole(row, 2, 0), column_whole(row, 3, 0));
 }
 
-static Status fill_new_database(Database *db, const Schema *schema, const char *tables, const Settings *used,
-                                const char *provenance, Err *err)
-{
-    char created[24], *text = settings_text(used);
-    if (!text)
-        return fail_memory(err, 1, "the settings");
-    utc_now(created);
-    Status status = database_do(db, err, "BEGIN", "");
-    if (status == STATUS_OK)
-        status = database_do(db, err, tables, "");
-    if (status == STATUS_OK)
-        status = database_do(db, err,
-                             "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created, digest) "
-                             "VALUES (1, ?, ?, ?, ?, ?, ?)",
-                             "ttiiti", text, provenance, used->search.max_evals, schema->n_var, created,
-                             digest_of_head(text, provenance, used->search.max_evals, schema->n_var));
-    if (status == STATUS_OK)
-        status = database_do(db, err, "COMMIT", "");
-    free(text);
-    return status;
-}
-
 Status tables_create(const char *path, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
-    char temporary[PATH_MAX + 8], *tables;
+    static const char INSERT[] = "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created, digest) "
+                                 "VALUES (1, ?, ?, ?, ?, ?, ?)";
+    char temporary[PATH_MAX + 8], created[24], *tables = NULL, *text = settings_text(used);
+    const long evals = used->search.max_evals;
     Database *db = NULL;
     snprintf(temporary, sizeof temporary, "%s.tmp", path);
     unlink(temporary);
-    TRY(tables_have_room(schema, err));
-    Status status = tables_text(schema, &tables, err);
-    if (status == STATUS_OK)
-        status = database_create(&db, temporary, err);
-    if (status == STATUS_OK)
-        status = fill_new_database(db, schema, tables, used, provenance, err);
+    utc_now(created);
+    Status status = text ? tables_have_room(schema, err) : fail_memory(err, 1, "the settings");
+    THEN(status, tables_text(schema, &tables, err));
+    THEN(status, database_create(&db, temporary, err));
+    THEN(status, database_do(db, err, "BEGIN", ""));
+    THEN(status, database_do(db, err, tables, ""));
+    THEN(status, database_do(db, err, INSERT, "ttiiti", text, provenance, evals, schema->n_var, created,
+                             digest_of_head(text, provenance, evals, schema->n_var)));
+    THEN(status, database_do(db, err, "COMMIT", ""));
     database_close(db);
     free(tables);
+    free(text);
     TRY(status);
     database_remove_journal(path);
     if (rename(temporary, path) != 0)
@@ -450,102 +407,77 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
 /* A row that is written or read column by column, and the digest of what has passed. */
 typedef struct {
     sqlite3_stmt *s;
-    int at; /* columns that have passed */
+    int reads, at; /* columns that have passed */
     uint64_t digest;
 } Row;
 
-static void put_number(Row *r, double value)
+/* NULL stands for what is not finite. */
+static void pass_number(Row *r, double *value)
 {
+    if (r->reads)
+        *value = column_number(r->s, r->at);
+    else if (isfinite(*value))
+        sqlite3_bind_double(r->s, r->at + 1, *value);
     r->at++;
-    if (isfinite(value))
-        sqlite3_bind_double(r->s, r->at, value);
-    r->digest = digest_numbers(1, &value, r->digest);
+    r->digest = digest_numbers(1, value, r->digest);
 }
 
-/* What is not bound is NULL. */
-static void put_text(Row *r, const char *text, int is_null)
+/* A column of a record: what is not bound is NULL, and a reason that is read is SQLite's until the next row. */
+static void pass_field(Row *r, const Field *f, void *record)
 {
+    void *field = (char *)record + f->at;
+    const char **reason = field, *text = f->type >= TEXT && r->reads ? column_text(r->s, r->at) : NULL;
+    switch (f->type) {
+    case REAL:
+        pass_number(r, field);
+        return;
+    case WHOLE:
+    case MOVED:
+        if (r->reads)
+            *(long *)field = sqlite3_column_int64(r->s, r->at);
+        else
+            sqlite3_bind_int64(r->s, r->at + 1, *(long *)field);
+        r->digest = digest_whole(f->type == WHOLE ? *(long *)field : 0, r->digest);
+        break;
+    case MARK:
+        if (r->reads)
+            *(int *)field = (int)column_whole(r->s, r->at, NEVER);
+        else if (*(int *)field != NEVER)
+            sqlite3_bind_int(r->s, r->at + 1, *(int *)field);
+        break;
+    case TEXT:
+        if (r->reads)
+            snprintf(field, f->size, "%s", text);
+        else
+            text = field;
+        break;
+    case REASON:
+        if (r->reads)
+            *reason = text;
+        else
+            text = *reason ? *reason : "";
+        break;
+    case OUTCOME:
+        if (r->reads)
+            *(Outcome *)field = outcome_of_word(text);
+        else
+            text = outcome_word(*(Outcome *)field);
+        break;
+    case KIND:
+        if (r->reads)
+            *(EvaluationKind *)field = kind_of_word(text);
+        else
+            text = *(EvaluationKind *)field == KIND_UNFINISHED ? "" : kind_word(*(EvaluationKind *)field);
+    }
     r->at++;
-    if (!is_null)
+    if (text && !r->reads && (*text || f->type == REASON))
         sqlite3_bind_text(r->s, r->at, text, -1, SQLITE_STATIC);
-    r->digest = digest_text(text, r->digest);
-}
-
-static void put_field(Row *r, const Field *f, const char *record)
-{
-    const void *at = record + f->at;
-    const EvaluationKind *kind = at;
-    const char *const *reason = at;
-    switch (f->type) {
-    case WHOLE:
-    case MOVED:
-        sqlite3_bind_int64(r->s, ++r->at, *(const long *)at);
-        r->digest = digest_whole(f->type == WHOLE ? *(const long *)at : 0, r->digest);
-        break;
-    case MARK:
-        r->at++;
-        if (*(const int *)at != NEVER)
-            sqlite3_bind_int(r->s, r->at, *(const int *)at);
-        break;
-    case REAL:
-        put_number(r, *(const double *)at);
-        break;
-    case TEXT:
-        put_text(r, at, *(const char *)at == 0);
-        break;
-    case REASON:
-        put_text(r, *reason ? *reason : "", 0);
-        break;
-    case OUTCOME:
-        put_text(r, outcome_word(*(const Outcome *)at), 0);
-        break;
-    case KIND:
-        r->at++;
-        if (*kind != KIND_UNFINISHED)
-            sqlite3_bind_text(r->s, r->at, kind_word(*kind), -1, SQLITE_STATIC);
-    }
-}
-
-static const char *take_text(Row *r)
-{
-    const char *text = column_text(r->s, r->at++);
-    r->digest = digest_text(text, r->digest);
-    return text;
-}
-
-/* A reason is SQLite's until the next row. */
-static void take_field(Row *r, const Field *f, char *record)
-{
-    void *at = record + f->at;
-    switch (f->type) {
-    case WHOLE:
-    case MOVED:
-        *(long *)at = sqlite3_column_int64(r->s, r->at++);
-        r->digest = digest_whole(f->type == WHOLE ? *(long *)at : 0, r->digest);
-        break;
-    case MARK:
-        *(int *)at = (int)column_whole(r->s, r->at++, NEVER);
-        break;
-    case REAL:
-        *(double *)at = column_number(r->s, r->at++);
-        r->digest = digest_numbers(1, at, r->digest);
-        break;
-    case TEXT:
-        snprintf(at, f->size, "%s", take_text(r));
-        break;
-    case REASON:
-        *(const char **)at = take_text(r);
-        break;
-    case OUTCOME:
-        *(Outcome *)at = outcome_of_word(take_text(r));
-        break;
-    case KIND:
-        *(EvaluationKind *)at = kind_of_word(column_text(r->s, r->at++));
-    }
+    if (text && f->type != KIND)
+        r->digest = digest_text(text, r->digest);
 }
 
 /* INSERT with n places, and the fields in the first of them. */
-static Status begin_insert(Database *db, const TableColumns *t, size_t n, const void *record, Row *r, Err *err)
+static Status begin_insert(Database *db, const TableColumns *t, size_t n, void *record, Row *r, Err *err)
 {
     char sql[4200]; /* 2 for each of 2,000 columns */
     int at = snprintf(sql, sizeof sql, "INSERT OR REPLACE INTO %s VALUES (?", t->name);
@@ -557,13 +489,13 @@ static Status begin_insert(Database *db, const TableColumns *t, size_t n, const 
     *r = (Row){.digest = HASH_SEED};
     TRY(database_statement(db, sql, &r->s, err));
     for (size_t i = 0; i < t->n; i++)
-        put_field(r, &t->field[i], record);
+        pass_field(r, &t->field[i], record);
     return STATUS_OK;
 }
 
-Status record_put(Database *db, RecordTable table, const void *record, Err *err)
+Status record_put(Database *db, RunTable table, void *record, Err *err)
 {
-    const TableColumns *t = &RECORDS[table];
+    const TableColumns *t = &TABLES[table];
     Row r;
     TRY(begin_insert(db, t, t->n + t->has_digest, record, &r, err));
     if (t->has_digest)
@@ -578,30 +510,31 @@ typedef struct {
     size_t n;
 } Records;
 
+/* A row becomes the next record of the list, which grows at powers of two. */
 static Status take_record(sqlite3_stmt *row, void *user, Err *err)
 {
     Records *r = user;
     const TableColumns *t = r->table;
-    if ((r->n & (r->n - 1)) == 0) { /* at powers of two */
+    if ((r->n & (r->n - 1)) == 0) {
         char *wider = realloc(r->list, (r->n > 0 ? 2 * r->n : 1) * t->size);
         if (!wider)
             return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows of %s", database_path(r->db), r->n, t->name);
         r->list = wider;
     }
     char *record = r->list + r->n++ * t->size;
-    Row taken = {.s = row, .digest = HASH_SEED};
+    Row taken = {.s = row, .reads = 1, .digest = HASH_SEED};
     memset(record, 0, t->size);
     for (size_t i = 0; i < t->n; i++)
-        take_field(&taken, &t->field[i], record);
+        pass_field(&taken, &t->field[i], record);
     if (t->has_digest && sqlite3_column_int64(row, taken.at) != (long)taken.digest)
         return database_damaged(r->db, err, "%s %lld is not what was written", t->name, sqlite3_column_int64(row, 0));
     return STATUS_OK;
 }
 
-Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err *err)
+Status records_read(Database *db, RunTable table, void *list, size_t *n, Err *err)
 {
     char sql[64];
-    Records r = {.db = db, .table = &RECORDS[table]};
+    Records r = {.db = db, .table = &TABLES[table]};
     snprintf(sql, sizeof sql, "SELECT * FROM %s ORDER BY 1", r.table->name);
     const Status status = database_each(db, sql, take_record, &r, err);
     memcpy(list, &r.list, sizeof r.list);
@@ -614,7 +547,7 @@ Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err 
 Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema, const Evaluation *e, Err *err)
 {
     double none[OBJECTIVES_MAX];
-    const TableColumns *t = &ROWS[columns->table];
+    const TableColumns *t = &TABLES[columns->table];
     Evaluation row = *e;
     Row r;
     for (size_t k = 0; k < schema->n_obj; k++)
@@ -624,7 +557,7 @@ Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema
     TRY(begin_insert(db, t, t->n + 1 + columns->n, &row, &r, err));
     const int digest_at = ++r.at;
     for (size_t i = 0; i < columns->n; i++)
-        put_number(&r, columns->place[i].array ? *number_at(&row, columns->place[i]) : NAN);
+        pass_number(&r, columns->place[i].array ? number_at(&row, columns->place[i]) : &(double){NAN});
     sqlite3_bind_int64(r.s, digest_at, (r.digest ^ digest_kind(e->kind, e->generation)));
     return database_run(db, r.s, err);
 }
@@ -650,28 +583,25 @@ typedef struct {
     void *user;
 } Reading;
 
+/* A row becomes the one evaluation that there is room for, and is handed on. */
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
     Evaluation *e = r->room.row;
-    const TableColumns *t = &ROWS[r->columns.table];
-    Row taken = {.s = row, .digest = HASH_SEED};
+    const TableColumns *t = &TABLES[r->columns.table];
+    Row taken = {.s = row, .reads = 1, .digest = HASH_SEED};
     for (size_t i = 0; i < t->n; i++)
-        take_field(&taken, &t->field[i], (char *)e);
-    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at);
-    for (size_t i = 0; i < r->columns.n; i++) {
-        const double value = column_number(row, ++taken.at);
-        if (r->columns.place[i].array)
-            *number_at(e, r->columns.place[i]) = value;
-        taken.digest = digest_numbers(1, &value, taken.digest);
-    }
+        pass_field(&taken, &t->field[i], e);
+    const uint64_t digest = (uint64_t)sqlite3_column_int64(row, taken.at++);
+    for (size_t i = 0; i < r->columns.n; i++)
+        pass_number(&taken, r->columns.place[i].array ? number_at(e, r->columns.place[i]) : &(double){0});
     if (digest != (taken.digest ^ digest_kind(e->kind, e->generation)))
         return database_damaged(r->db, err, "evaluation %ld is not what was written", e->id);
     evaluation_set_outcome(e, e->outcome, e->reason);
     return r->take(e, r->user, err);
 }
 
-Status rows_each(Database *db, RowTable table, const Schema *s, const char *where, EvaluationFn take, void *user,
+Status rows_each(Database *db, RunTable table, const Schema *s, const char *where, EvaluationFn take, void *user,
                  Err *err)
 {
     char sql[200];
@@ -679,16 +609,13 @@ Status rows_each(Database *db, RowTable table, const Schema *s, const char *wher
     const size_t n_err = table == ROWS_FINER ? s->n_obj + s->n_extra : 0;
     Reading r = {
         .db = db, .room = evaluation_table(s->n_var, s->n_obj, s->n_extra + n_err), .take = take, .user = user};
-    snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", ROWS[table].name, where);
+    snprintf(sql, sizeof sql, "SELECT * FROM %s WHERE %s ORDER BY id", TABLES[table].name, where);
     Status status = tables_columns(db, table, s, &r.columns, err);
-    if (status == STATUS_OK)
-        status = evaluation_table_add(&r.room, &row, err);
+    THEN(status, evaluation_table_add(&r.room, &row, err));
     if (status == STATUS_OK && n_err > 0)
         row->err = row->extra + s->n_extra;
-    if (status == STATUS_OK)
-        status = evaluation_table_give_room(row, err);
-    if (status == STATUS_OK)
-        status = database_each(db, sql, take_row, &r, err);
+    THEN(status, evaluation_table_give_room(row, err));
+    THEN(status, database_each(db, sql, take_row, &r, err));
     evaluation_table_free(&r.room);
     free(r.columns.place);
     return status;

@@ -40,20 +40,26 @@ Status tables_check(Database *db, const Schema *schema, Err *err);
 /* Of "SELECT settings, provenance, planned_evals, n_var, ?, ?, digest FROM run": they are what was written. */
 int tables_head_is_whole(sqlite3_stmt *row);
 
+/* Tables of evaluations, whose finer rows have err, of n_obj + n_extra numbers, behind extra; tables of records. */
+typedef enum {
+    ROWS_EVALUATION,
+    ROWS_FINER,
+    N_ROW_TABLES,
+    TABLE_GENERATION = N_ROW_TABLES,
+    TABLE_FRONT,
+    TABLE_SESSION,
+    N_DESCRIBED
+} RunTable;
+
 /* -- records of the run -------------------------------------------------------------------------------------------- */
 
-typedef enum { TABLE_GENERATION, TABLE_FRONT, TABLE_SESSION, N_RECORD_TABLES } RecordTable;
-
-/* A record as a row, in the place of the one with its number. */
-Status record_put(Database *db, RecordTable table, const void *record, Err *err);
+/* A record, which stays as it is, as a row, in the place of the one with its number. */
+Status record_put(Database *db, RunTable table, void *record, Err *err);
 
 /* All of them by their numbers. list: the address of a pointer to the array, NULL before, to be freed. */
-Status records_read(Database *db, RecordTable table, void *list, size_t *n, Err *err);
+Status records_read(Database *db, RunTable table, void *list, size_t *n, Err *err);
 
 /* -- rows of evaluations ------------------------------------------------------------------------------------------- */
-
-/* Finer rows have err, of n_obj + n_extra numbers, behind extra. */
-typedef enum { ROWS_EVALUATION, ROWS_FINER, N_ROW_TABLES } RowTable;
 
 /* A number of an evaluation: the offset of its array in the record, and its place there. */
 typedef struct {
@@ -63,12 +69,12 @@ typedef struct {
 /* The numbers that a file's table has, in the order of its columns: those that this program knows by their names.
  * Results that the file lacks are NAN in what is read, and are not kept. */
 typedef struct {
-    RowTable table;
+    RunTable table;
     size_t n;
     NumberPlace *place; /* (n), to be freed */
 } RowColumns;
 
-Status tables_columns(Database *db, RowTable table, const Schema *schema, RowColumns *columns, Err *err);
+Status tables_columns(Database *db, RunTable table, const Schema *schema, RowColumns *columns, Err *err);
 
 /* A row with that id is replaced. */
 Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema, const Evaluation *e, Err *err);
@@ -77,7 +83,7 @@ Status rows_insert(Database *db, const RowColumns *columns, const Schema *schema
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 
 /* Every evaluation for which `where` holds, in the order of the ids. */
-Status rows_each(Database *db, RowTable table, const Schema *schema, const char *where, EvaluationFn take, void *user,
+Status rows_each(Database *db, RunTable table, const Schema *schema, const char *where, EvaluationFn take, void *user,
                  Err *err);
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */

@@ -156,15 +156,16 @@ static size_t ask_devices(const Problem *p, const DesignOptions *o, double X[], 
 Status initial_designs_of_devices(const Problem *p, const DesignOptions *o, double **X, size_t *n, Err *err)
 {
     DeviceSearch search[2];
-    double more[2 * DESIGN_VARIABLES_MAX], building[FLOORS_MAX], core[FLOORS_MAX], both[FLOORS_MAX], kg;
+    double more[2 * DESIGN_VARIABLES_MAX];
+    SceneModes modes;
     const size_t n_searches = tower_of(p) ? ask_devices(p, o, more, search) : 0;
     if (n_searches == 0)
         return STATUS_OK;
     TRY(devices_find(p, n_searches, search, err));
     for (size_t i = 0; i < n_searches; i++) {
         double *x = more + i * p->n_var;
-        TRY(scene_frequencies(tower_record(tower_of(p), 0)->scene, x, building, core, both, &kg, err));
-        if (put_device(p, search[i].kind, &search[i].device, kg, x))
+        TRY(scene_frequencies(tower_record(tower_of(p), 0)->scene, x, &modes, err));
+        if (put_device(p, search[i].kind, &search[i].device, modes.core_mass_kg, x))
             TRY(append(p->n_var, x, 1, X, n, err));
     }
     return STATUS_OK;

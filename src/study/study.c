@@ -334,7 +334,7 @@ static Status count_evaluations(Study *study, Err *err)
 {
     Run all;
     study->evaluations_before = study->summary->n_before;
-    if (!run_is_screened(store_run(study->store)))
+    if (!settings_screens(store_run(study->store)->settings))
         return STATUS_OK;
     TRY(store_read(study->store, &all, err));
     study->evaluations_before = run_evaluations(&all, 0);

@@ -28,7 +28,7 @@ static void load(const char *path)
             abort();
         return;
     }
-    const Status status = run_load(&h, d, "", &err);
+    const Status status = run_load(&h, d, "", RUN_WHOLE, &err);
     if (status == STATUS_OK)
         demand_run(&h);
     else if (!err.text[0])

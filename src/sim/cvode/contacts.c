@@ -39,14 +39,6 @@ static double device_pull(const SimModel *model, int e, const double q[], const 
     return viscous + model->device[e].stiffness * apart(model, e, q);
 }
 
-static double add_devices(const SimModel *model, const double q[], const double v[], double g[])
-{
-    double power = 0;
-    for (int e = 0; e < model->n_devices; e++)
-        push_modes(model->m, model->B + (size_t)e * (size_t)model->m_pad, -device_pull(model, e, q, v, &power), g);
-    return power;
-}
-
 double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[])
 {
     double held = 0, power = 0;
@@ -92,7 +84,10 @@ static void add_contact(const Contacts *c, int j, int s, double p, const double 
 ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[])
 {
     const SimModel *model = c->model;
-    ContactPower power = {.devices = add_devices(model, q, v, g)};
+    ContactPower power = {0};
+    for (int e = 0; e < model->n_devices; e++)
+        push_modes(model->m, model->B + (size_t)e * (size_t)model->m_pad, -device_pull(model, e, q, v, &power.devices),
+                   g);
     if (model->nc == 0)
         return power;
     double w[FLOORS_MAX];
@@ -112,6 +107,7 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
     return power;
 }
 
+/* A contact begins: counted, shown to who follows forces and onsets. */
 static void close_gap(Contacts *c, int j, int side, double t, double speed)
 {
     c->side[j] = side;

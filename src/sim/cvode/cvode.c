@@ -37,17 +37,6 @@ static int look_for(Ode *o, int directions[])
 
 static const OdeSolver CVODE = {"CVODE", step, interpolate, restart, stop_at, found, look_for};
 
-static int prepare(Ode *o, const CvodeMethod *method, void *solver)
-{
-    if (ode_prepare(o, method->rtol) || !(o->memory = CVodeCreate(method->method, o->context)))
-        return -1;
-    return CVodeSetErrHandlerFn(o->memory, ode_keep_message, o) || CVodeSetUserData(o->memory, o) ||
-           CVodeInit(o->memory, ode_right_hand_side, 0, o->y) || CVodeWFtolerances(o->memory, ode_error_weights) ||
-           method->attach(o, solver) || CVodeSetMaxHnilWarns(o->memory, -1) || CVodeSetNoInactiveRootWarn(o->memory) ||
-           (!method->stop_at_samples && CVodeSetMaxStep(o->memory, o->motion->dt_s)) ||
-           (ode_n_roots(o) > 0 && CVodeRootInit(o->memory, ode_n_roots(o), ode_penetrations));
-}
-
 Status cvode_run(const CvodeMethod *method, void *solver, const SimModel *model, const Motion *motion,
                  const EngineOptions *options, SimResult *result, Err *err)
 {
@@ -67,7 +56,12 @@ Status cvode_run(const CvodeMethod *method, void *solver, const SimModel *model,
         snprintf(result->reason, sizeof result->reason, "%d modes; cvode has room for %d", model->m, MODES_MAX);
         return STATUS_OK;
     }
-    if (prepare(&o, method, solver))
+    if (ode_prepare(&o, method->rtol) || !(o.memory = CVodeCreate(method->method, o.context)) ||
+        CVodeSetErrHandlerFn(o.memory, ode_keep_message, &o) || CVodeSetUserData(o.memory, &o) ||
+        CVodeInit(o.memory, ode_right_hand_side, 0, o.y) || CVodeWFtolerances(o.memory, ode_error_weights) ||
+        method->attach(&o, solver) || CVodeSetMaxHnilWarns(o.memory, -1) || CVodeSetNoInactiveRootWarn(o.memory) ||
+        (!method->stop_at_samples && CVodeSetMaxStep(o.memory, motion->dt_s)) ||
+        (ode_n_roots(&o) > 0 && CVodeRootInit(o.memory, ode_n_roots(&o), ode_penetrations)))
         status = fail(err, STATUS_NO_MEMORY, "cvode: could not be set up: %s", o.message[0] ? o.message : "no memory");
     else
         status = ode_run(&o, result);

@@ -122,37 +122,32 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
     return failed;
 }
 
-/* Of bilinear storeys: beyond yield, rising while they are elastic; the drift's rate, falling while they yield. */
-static double yield_roots(const Ode *o, const double y[], double root[])
-{
-    const SimModel *model = o->model;
-    double d[FLOORS_MAX], d_dot[FLOORS_MAX], check = 0;
-    storeys_drifts(model, y, d);
-    storeys_drifts(model, y + model->m, d_dot);
-    for (int j = 0; j < model->n; j++) {
-        const int side = o->storeys.side[j];
-        root[j] = model->storey_law.kind != HYSTERESIS_BILINEAR || model->yield_n_m[j] == 0 ? -1
-                  : side                                                                    ? side * d_dot[j]
-                         : fabs(d[j] - y[storeys_at(o) + j]) - model->yield_m[j];
-        check += root[j];
-    }
-    return check;
-}
-
-/* One root per floor, its penetration: rising through zero when open, falling when closed. */
-int ode_penetrations(sunrealtype t, N_Vector y, sunrealtype *p, void *user)
+/* One root per floor, its penetration: rising through zero when open, falling when closed. Of bilinear storeys: beyond
+ * yield, rising while they are elastic; the drift's rate, falling while they yield. */
+int ode_penetrations(sunrealtype t, N_Vector y_vector, sunrealtype *root, void *user)
 {
     (void)t;
     Ode *o = user;
     const SimModel *model = o->model;
-    double check = 0, w[FLOORS_MAX];
-    if (model->yields)
-        check = yield_roots(o, ode_values(y), p + model->n);
-    floors_from_modes(model, 0, model->m, ode_values(y), w);
-    for (int j = 0; j < model->n; j++) {
+    const int n = model->n;
+    const double *y = ode_values(y_vector);
+    double check = 0, w[FLOORS_MAX], d[FLOORS_MAX], d_dot[FLOORS_MAX];
+    if (model->yields) {
+        storeys_drifts(model, y, d);
+        storeys_drifts(model, y + model->m, d_dot);
+    }
+    for (int j = 0; j < n && model->yields; j++) {
+        const int side = o->storeys.side[j];
+        root[n + j] = model->storey_law.kind != HYSTERESIS_BILINEAR || model->yield_n_m[j] == 0 ? -1
+                      : side                                                                    ? side * d_dot[j]
+                             : fabs(d[j] - y[storeys_at(o) + j]) - model->yield_m[j];
+        check += root[n + j];
+    }
+    floors_from_modes(model, 0, model->m, y, w);
+    for (int j = 0; j < n; j++) {
         const int side = o->contacts.side[j];
-        p[j] = penetration(model, j, side ? side : w[j] > model->middle[j] ? 1 : -1, w[j]);
-        check += p[j];
+        root[j] = penetration(model, j, side ? side : w[j] > model->middle[j] ? 1 : -1, w[j]);
+        check += root[j];
     }
     o->finite = isfinite(check) != 0; /* SUNDIALS takes NaN for "no root" */
     return o->finite ? 0 : -1;
@@ -246,34 +241,6 @@ void ode_release(Ode *o)
     SUNContext_Free(&o->context);
 }
 
-static void record_forces(Ode *o, double t, const double y[])
-{
-    const SimModel *model = o->model;
-    double force[FLOORS_MAX] = {0};
-    const FloorSet in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
-    force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
-                                                          .ground = o->a_sampled,
-                                                          .building_q = y,
-                                                          .building_v = y + model->m,
-                                                          .core_q = y + model->nb,
-                                                          .force = force,
-                                                          .plastic = model->yields ? y + storeys_at(o) : NULL,
-                                                          .in_contact = in_contact});
-}
-
-/* [J] Hysteresis less what the modes hold of the storeys too much. */
-static double taken_by_storeys(const Ode *o, const double y[])
-{
-    const SimModel *model = o->model;
-    const double *W = y + storeys_at(o) + model->n;
-    double d[FLOORS_MAX], sum = 0;
-    if (model->yields)
-        storeys_drifts(model, y, d);
-    for (int j = 0; model->yields && j < model->n; j++)
-        sum += W[j] - 0.5 * model->yield_n_m[j] * d[j] * d[j];
-    return sum;
-}
-
 /* Shows a state to who asked for samples. */
 static void send_sample(Ode *o, double t, double spacing, const double y[])
 {
@@ -296,7 +263,13 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
     if (o->with_energies) {
         s.damped_j = y + 2 * m;
         s.input_j = y[3 * m];
-        s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken_by_storeys(o, y);
+        const double *W = y + storeys_at(o) + model->n;
+        double d[FLOORS_MAX], taken = 0; /* [J] by storeys: hysteresis less what the modes hold of them too much */
+        if (model->yields)
+            storeys_drifts(model, y, d);
+        for (int j = 0; model->yields && j < model->n; j++)
+            taken += W[j] - 0.5 * model->yield_n_m[j] * d[j] * d[j];
+        s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken;
         if (model->n_devices > 0)
             s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, o->account.device);
     }
@@ -326,7 +299,7 @@ static int send_samples(Ode *o, double t)
 static void sample(Ode *o, double t, const double y[], double seconds)
 {
     const SimModel *model = o->model;
-    double contact[MODES_MAX] = {0};
+    double contact[MODES_MAX] = {0}, force[FLOORS_MAX] = {0};
     o->a_sampled = ground(o, t);
     o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
     if (model->yields)
@@ -334,8 +307,17 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     o->power_sampled.pushed = add_forces(o, t, y + model->m, contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
-    if (o->contacts.forces)
-        record_forces(o, t, y);
+    if (o->contacts.forces) {
+        const FloorSet in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
+        force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
+                                                              .ground = o->a_sampled,
+                                                              .building_q = y,
+                                                              .building_v = y + model->m,
+                                                              .core_q = y + model->nb,
+                                                              .force = force,
+                                                              .plastic = model->yields ? y + storeys_at(o) : NULL,
+                                                              .in_contact = in_contact});
+    }
     if (!o->with_energies)
         energy_account_add(&o->account, seconds, o->v_sampled, o->a_sampled, &o->power_sampled);
 }
@@ -359,6 +341,7 @@ static int sample_step(Ode *o, double t_before, double t)
     return 0;
 }
 
+/* Behind a change the integrator forgets what was before; each root is looked for in the direction that it has now. */
 static int start_anew(Ode *o, double t, double t_stop)
 {
     int directions[2 * FLOORS_MAX];
@@ -377,6 +360,7 @@ typedef struct {
     double w[2 * FLOORS_MAX], w_dot[2 * FLOORS_MAX];
 } Floors;
 
+/* At the end of the step that was made last. */
 static void floors_now(const Ode *o, Floors *f)
 {
     const SimModel *model = o->model;
@@ -391,16 +375,6 @@ static void floors_now(const Ode *o, Floors *f)
     storeys_drifts(model, y + model->m, f->w_dot + model->n);
     for (int j = 0; j < model->n; j++)
         f->w[model->n + j] -= y[storeys_at(o) + j];
-}
-
-/* Contacts and yielding at the end of a step, `found` those whose root was: 1 where integration starts anew. */
-static int switch_flags(Ode *o, double t, const Floors *now, const int found[])
-{
-    const SimModel *model = o->model;
-    const double *y = ode_values(o->y);
-    const int contacts = model->nc > 0 && contacts_switch(&o->contacts, t, y, y + model->m, found);
-    return (model->yields && storeys_switch(&o->storeys, now->w + model->n, now->w_dot + model->n, found + model->n)) ||
-           contacts;
 }
 
 /* Root j at a state of dense output: w from the middle of the gap or d - p, or its rate. */
@@ -481,6 +455,8 @@ static int go_back(Ode *o, double t_before, double *t, const Floors *from, const
 /* From *t to t_stop. */
 static RunOutcome cross(Ode *o, double *t, double t_stop)
 {
+    const SimModel *model = o->model;
+    const double *y = ode_values(o->y);
     if (o->solver->stop_at(o, t_stop))
         return RUN_ENGINE_FAILED;
     Floors from, to;
@@ -505,9 +481,12 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         if (sample_step(o, t_before, *t) || (o->options->sample && send_samples(o, *t)))
             return RUN_ENGINE_FAILED;
         o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
-        if (!switch_flags(o, *t, &to, found))
-            continue;
-        if (start_anew(o, *t, t_stop))
+
+        /* Where contacts or yielding have changed, integration starts anew. */
+        int flipped = model->nc > 0 && contacts_switch(&o->contacts, *t, y, y + model->m, found);
+        if (model->yields)
+            flipped |= storeys_switch(&o->storeys, to.w + model->n, to.w_dot + model->n, found + model->n);
+        if (flipped && start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }
     return RUN_OK;
@@ -536,21 +515,6 @@ static RunOutcome walk(Ode *o)
     return cross(o, &t, duration);
 }
 
-static void explain(const Ode *o, double t, SimResult *result)
-{
-    if (o->model->yields && !o->with_energies)
-        snprintf(result->reason, sizeof result->reason, "%s: follows no storeys that yield", o->solver->package);
-    else if (result->outcome == RUN_OUT_OF_STEPS)
-        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %ld steps did not reach %g s", t, o->account.steps,
-                 o->options->duration);
-    else if (result->outcome == RUN_NOT_FINITE)
-        snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number", t);
-    else if (o->stuck >= STUCK_MAX)
-        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %d steps in a row got nowhere", t, STUCK_MAX);
-    else
-        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %s: %s", t, o->solver->package, o->message);
-}
-
 Status ode_run(Ode *o, SimResult *result)
 {
     const int m = o->model->m;
@@ -559,7 +523,20 @@ Status ode_run(Ode *o, SimResult *result)
     result->outcome = o->model->yields && !o->with_energies ? RUN_ENGINE_FAILED : walk(o);
     denormal_restore(mode);
     if (result->outcome != RUN_OK) {
-        explain(o, o->account.peaks.count ? o->account.peaks.ring[(o->account.peaks.count + 2) % 3].t : 0, result);
+        char *why = result->reason;
+        const size_t size = sizeof result->reason;
+        const PeakMonitor *peaks = &o->account.peaks;
+        const double t = peaks->count ? peaks->ring[(peaks->count + 2) % 3].t : 0;
+        if (o->model->yields && !o->with_energies)
+            snprintf(why, size, "%s: follows no storeys that yield", o->solver->package);
+        else if (result->outcome == RUN_OUT_OF_STEPS)
+            snprintf(why, size, "t = %.6g s: %ld steps did not reach %g s", t, o->account.steps, o->options->duration);
+        else if (result->outcome == RUN_NOT_FINITE)
+            snprintf(why, size, "t = %.6g s: motion or response is not a finite number", t);
+        else if (o->stuck >= STUCK_MAX)
+            snprintf(why, size, "t = %.6g s: %d steps in a row got nowhere", t, STUCK_MAX);
+        else
+            snprintf(why, size, "t = %.6g s: %s: %s", t, o->solver->package, o->message);
         return STATUS_OK;
     }
     if (o->with_energies) {

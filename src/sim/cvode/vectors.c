@@ -45,6 +45,7 @@ CLONED static void combine(long n, int count, const double c[], const double *co
     }
 }
 
+/* Eight partial sums, in the same order on every processor. */
 CLONED static double weighted_square(long n, const double x[], const double w[])
 {
     double sum[8] = {0};
