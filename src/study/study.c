@@ -505,7 +505,7 @@ static Status polish(Study *study, Err *err)
 {
     StudySummary *sum = study->summary;
     const FinalPolish p = {.used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
-    return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
+    return note_stop(study, final_polish(study->store, &p, &sum->polish, err), err);
 }
 
 static Status know_named(Study *study, Err *err)
