@@ -86,15 +86,15 @@ TEST(a_run_stopped_while_it_polishes_and_one_that_polishes_side_by_side_end_with
     StudySummary summary;
     Settings s = settings_of(POLISHED, "polish-whole");
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
-    assert_int_equal(summary.n_tried_to_polish, 2);
-    assert_less(0, summary.n_polished);
+    assert_int_equal(summary.polish.n_tried, 2);
+    assert_less(0, summary.polish.n_better);
     s = settings_of(POLISHED, "polish-pieces");
     assert_same_number(run_by_pieces(&s, 450, &summary), 3);
     assert_same_run("polish-whole", "polish-pieces");
     s = settings_of(POLISHED, "polish-beside");
     s.search.threads = 2;
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
-    assert_int_equal(summary.n_tried_to_polish, 2);
+    assert_int_equal(summary.polish.n_tried, 2);
     assert_same_output("export @/polish-whole --all --csv -", "export @/polish-beside --all --csv -");
 }
 
