@@ -86,8 +86,8 @@ static void show(const Improve *m)
         puts("The design violates the limits of its run, and so may what is made of it.");
 }
 
-/* The end of the path is stored where it keeps what is to be kept, and the run does not have it: who asks for the same a
- * second time gets the same answer. */
+/* The end of the path is stored where it keeps what is to be kept, and the run does not have it: who asks for the same
+ * a second time gets the same answer. */
 static Status store_end(Improve *m, Err *err)
 {
     const EvaluationTable *path = &m->result.designs, *has = &m->run.table;

@@ -16,8 +16,8 @@ typedef struct {
     Improved result;
 } Improve;
 
-/* The operand is the run, `word` names the design; `work` fills config, calls improve_design and reports. Whatever comes
- * of it, all is released. */
+/* The operand is the run, `word` names the design; `work` fills config, calls improve_design and reports. Whatever
+ * comes of it, all is released. */
 Status improve_run(const Args *args, const char *word, Status (*work)(const Args *args, Improve *m, Err *err),
                    Err *err);
 

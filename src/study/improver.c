@@ -11,7 +11,7 @@ static const double SIZE_MIN = 2e-3;
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
-static void leave(Improver *m)
+static void close_simulator(Improver *m)
 {
     queue_close(m->queue);
     adapter_close(m->adapter);
@@ -22,7 +22,7 @@ static void leave(Improver *m)
 Status improver_open(Improver *m, const SimOptions *sim, Err *err)
 {
     Settings settings = *m->run->settings;
-    leave(m);
+    close_simulator(m);
     settings.sim = *sim;
     m->replicates = sim->replicates;
     TRY(adapter_open(&m->adapter, &settings, err));
@@ -203,7 +203,7 @@ Status improve_design(const Run *run, size_t row, const ImproveConfig *config, I
         for (size_t k = 0; k < OBJECTIVES_MAX; k++)
             out->error[i][k] = NAN;
     const Status status = work(&m, method, err);
-    leave(&m);
+    close_simulator(&m);
     free(m.store);
     out->cost.seconds = clock_seconds() - begun;
     if (status == STATUS_OK)

@@ -24,8 +24,8 @@ static void results(size_t n, const size_t records[], double y[], void *user)
     }
 }
 
-/* A Latin hypercube of its own, simulated under every record; then the records in the order found, and the replicates of
- * all. */
+/* A Latin hypercube of its own, simulated under every record; then the records in the order found, and the replicates
+ * of all. */
 static Status choose(Pilot *w, Adapter *a, uint32_t seed, double X[], size_t order[], Err *err)
 {
     const Problem *p = w->problem;

@@ -28,8 +28,8 @@ static int is_stop(const Improver *m, size_t j)
     return (int)j < space_of(m)->n_gaps && m->x[j] < DESIGN_OPEN_M;
 }
 
-/* Variable j without its device; NAN: it stands for none that may go. Devices are choices where the space has any, whose
- * last variable is one then. */
+/* Variable j without its device; NAN: it stands for none that may go. Devices are choices where the space has any,
+ * whose last variable is one then. */
 static double gone(const Improver *m, size_t j)
 {
     const int none = none_of(m, j);
