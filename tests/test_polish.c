@@ -1,6 +1,5 @@
 #include "functions.h"
 #include "study/polish.h"
-#include "study/refine.h"
 
 enum { VAR = 3, OBJ = 2 };
 
@@ -44,22 +43,42 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
 
 static const double FIRST[OBJ] = {1, 0}, KEPT[OBJ] = {INFINITY, 1}, FREE[OBJ] = {INFINITY, INFINITY};
 
+typedef struct {
+    double x[VAR], f[OBJ];
+    size_t n_evaluated, n_failed;
+} Polished;
+
 /* From the start, whose own answer is known; at least one bound: COBYLA, else BOBYQA. */
 static Status polish(Toy *w, const double weight[], const double bound[], size_t evals, Polished *r, Err *err)
 {
-    static double x[VAR], f[OBJ];
-    const double scale[OBJ] = {1, 1};
     Toy exact = {.jag = w->jag};
     unsigned char ok;
     Function place;
-    Queue *q;
+    Improved out = {0};
     const Problem problem = function_problem(&place, VAR, OBJ, 0, LOWER, UPPER, evaluate, w);
-    memcpy(x, START, sizeof x);
-    evaluate(1, x, NULL, f, NULL, &ok, &exact, err);
-    *r = (Polished){.x = x, .f = f};
-    CHECK_OK(queue_open(&q, &problem, err), err);
-    const Status status = polish_run(q, &(PolishGoal){weight, scale, bound, evals, w->gain_min}, r, err);
-    queue_close(q);
+    Improver m = {.problem = &problem,
+                  .out = &out,
+                  .replicates = 1,
+                  .enough = -INFINITY,
+                  .gain_min = w->gain_min,
+                  .budget = evals};
+    CHECK_OK(queue_open(&m.queue, &problem, err), err);
+    CHECK_OK(improver_reserve(&m, err), err);
+    memcpy(m.x, START, sizeof START);
+    evaluate(1, m.x, NULL, m.first, NULL, &ok, &exact, err);
+    for (size_t k = 0; k < OBJ; k++) {
+        m.weight[k] = weight[k];
+        m.scale[k] = 1;
+        m.slack[k] = bound[k] - m.first[k];
+    }
+    m.value = improver_sum(&m, m.first);
+    const Status status = polish_descend(&m, err);
+    *r = (Polished){.n_evaluated = out.cost.n_evaluated, .n_failed = out.cost.n_failed};
+    memcpy(r->x, m.x, sizeof r->x);
+    evaluate(1, r->x, NULL, r->f, NULL, &ok, &exact, err);
+    assert_close(m.value, improver_sum(&m, r->f), 1e-12); /* what was believed is what it is */
+    queue_close(m.queue);
+    free(m.store);
     return status;
 }
 
@@ -158,7 +177,7 @@ TEST(a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept)
                 {1, 1, 5e-4, 0, NAN, 0},    {1, 1, 5e-4, NAN, NAN, 0},      {1, 1, 0.21, 0.1, 0.19, 0},
                 {1, 1, 0.21, 0.1, 0.21, 1}, {1, 1, 0.21, 0.1, -INFINITY, 0}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
-        if (refined_counts(&(Refined){.has_changed = rows[i].has_changed,
+        if (polish_counts(&(Improved){.has_changed = rows[i].has_changed,
                                       .keeps = rows[i].keeps,
                                       .gain = rows[i].gain,
                                       .gain_error = rows[i].error,

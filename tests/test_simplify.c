@@ -28,19 +28,19 @@ static int end_run(void **state)
     return clear_place(state);
 }
 
-static SimplifyConfig config_of(double slack)
+static ImproveConfig config_of(double slack)
 {
-    SimplifyConfig c = {.gap_step = STEP, .n_plates = N_OF(PLATES)};
+    ImproveConfig c = {.gap_step = STEP, .n_plates = N_OF(PLATES)};
     memcpy(c.plate, PLATES, sizeof PLATES);
     for (size_t k = 0; k < study.schema.n_obj; k++)
         c.slack[k] = k == 0 ? slack : INFINITY;
     return c;
 }
 
-static Simplified simplified(const SimplifyConfig *c)
+static Improved simplified(const ImproveConfig *c)
 {
-    Simplified s;
-    CHECK_OK(simplify_design(&study, row, c, &s, &err), &err);
+    Improved s;
+    CHECK_OK(improve_design(&study, row, c, simplify_design, &s, &err), &err);
     return s;
 }
 
@@ -51,45 +51,45 @@ static double off_step(double x, double step)
 
 TEST(the_path_loses_stops_only_and_ends_on_steps_within_what_may_be_lost)
 {
-    const SimplifyConfig c = config_of(0.05);
-    Simplified s = simplified(&c);
+    const ImproveConfig c = config_of(0.05);
+    Improved s = simplified(&c);
     const Evaluation *e = s.designs.row;
-    assert_int_equal(s.n, SIMPLIFY_PATH);
-    for (size_t i = 1; i < s.n; i++)
+    assert_int_equal(s.designs.n, SIMPLIFY_PATH);
+    for (size_t i = 1; i < s.designs.n; i++)
         assert_at_most(s.n_left[i], s.n_left[i - 1]);
     for (int j = 0; j < study.schema.design.n_gaps; j++) {
         assert_true(e[SIMPLIFY_CLOSING].x[j] == e[SIMPLIFY_START].x[j] || e[SIMPLIFY_CLOSING].x[j] == DESIGN_OPEN_M);
-        assert_less(off_step(e[s.n - 1].x[j], STEP), 1e-9);
+        assert_less(off_step(e[s.designs.n - 1].x[j], STEP), 1e-9);
     }
-    assert_at_most(e[s.n - 1].f[0], 1.05 * e[0].f[0] * (1 + 1e-12));
-    assert_true(s.loss[s.n - 1] <= 1.0);
-    simplified_free(&s);
+    assert_at_most(e[s.designs.n - 1].f[0], 1.05 * e[0].f[0] * (1 + 1e-12));
+    assert_true(s.loss[s.designs.n - 1] <= 1.0);
+    improved_free(&s);
 }
 
 /* The run itself has simulated the design: the start is what it stored. */
 TEST(the_start_is_the_design_of_the_run_and_idle_stops_change_no_bit)
 {
-    const SimplifyConfig c = config_of(0.05);
-    Simplified s = simplified(&c);
+    const ImproveConfig c = config_of(0.05);
+    Improved s = simplified(&c);
     const Evaluation *e = s.designs.row;
     assert_memory_equal(e[SIMPLIFY_START].x, run_x(&study, row), study.schema.n_var * sizeof *e->x);
     assert_memory_equal(e[SIMPLIFY_START].f, e[SIMPLIFY_CLOSING].f, study.schema.n_obj * sizeof *e->f);
     assert_less(s.n_left[SIMPLIFY_CLOSING], s.n_left[SIMPLIFY_START]);
-    simplified_free(&s);
+    improved_free(&s);
 }
 
 TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goes_that_closes)
 {
-    SimplifyConfig c = config_of(1e9);
-    Simplified s = simplified(&c);
-    assert_int_equal(s.n_left[s.n - 1], 0);
-    simplified_free(&s);
-    c = (SimplifyConfig){0};
+    ImproveConfig c = config_of(1e9);
+    Improved s = simplified(&c);
+    assert_int_equal(s.n_left[s.designs.n - 1], 0);
+    improved_free(&s);
+    c = (ImproveConfig){0};
     s = simplified(&c);
     for (size_t k = 0; k < study.schema.n_obj; k++)
-        assert_at_most(s.designs.row[s.n - 1].f[k] * (study.schema.column[study.schema.n_var + k].sense),
+        assert_at_most(s.designs.row[s.designs.n - 1].f[k] * (study.schema.column[study.schema.n_var + k].sense),
                        s.designs.row[0].f[k] * study.schema.column[study.schema.n_var + k].sense);
-    simplified_free(&s);
+    improved_free(&s);
 }
 
 /* Mass is limited to just above the knee's: heavy plates alone would break it. */
@@ -97,16 +97,16 @@ TEST(limits_are_kept_or_nothing_is_stored)
 {
     Settings limited = *study.settings;
     Settings *before = study.settings;
-    SimplifyConfig c = {.n_plates = 1, .plate = {0.06}};
+    ImproveConfig c = {.n_plates = 1, .plate = {0.06}};
     for (size_t k = 0; k < study.schema.n_obj; k++)
         c.slack[k] = INFINITY;
     snprintf(limited.search.limits, sizeof limited.search.limits, "mcore_kg<=1e6");
     study.settings = &limited;
-    Simplified s = simplified(&c);
+    Improved s = simplified(&c);
     study.settings = before;
-    assert_int_equal(s.n, SIMPLIFY_MOVED + 1);
+    assert_int_equal(s.designs.n, SIMPLIFY_MOVED + 1);
     assert_true(s.loss[SIMPLIFY_MOVED] > 1.0 && s.loss[SIMPLIFY_START] <= 0.0);
-    simplified_free(&s);
+    improved_free(&s);
 }
 
 TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
@@ -151,18 +151,18 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
 
 TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
 {
-    SimplifyConfig c = config_of(1e9);
+    ImproveConfig c = config_of(1e9);
     c.zones = 3;
     c.slack[0] = 0.3;
-    Simplified s = simplified(&c);
-    for (size_t i = SIMPLIFY_ZONES; i < s.n; i++)
+    Improved s = simplified(&c);
+    for (size_t i = SIMPLIFY_ZONES; i < s.designs.n; i++)
         for (int a = 0; a < 20; a++)
             for (int b = 0; b < a; b++) {
                 const double *x = s.designs.row[i].x;
                 assert_true(3 * a / 20 != 3 * b / 20 || x[a] == x[b]);
             }
-    assert_less(s.n_left[s.n - 1], s.n_left[0]);
-    simplified_free(&s);
+    assert_less(s.n_left[s.designs.n - 1], s.n_left[0]);
+    improved_free(&s);
 }
 
 /* A mass of that size at the roof changes little, links do: where a tenth may be lost the mass goes and links stay. */

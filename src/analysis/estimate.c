@@ -13,13 +13,6 @@ void estimate_errors(const Measured *result, const Measured *finer, double error
 /* Runs of a design: with twice the steps, then with the gaps of each pattern. */
 enum { AGAIN = 1 + ESTIMATE_PATTERNS };
 
-static void move_gaps(const DesignSpace *space, uint32_t pattern, double x[])
-{
-    Random r = random_stream(1, RANDOM_GRAZING, pattern, 0);
-    for (int j = 0; j < space->n_gaps; j++)
-        x[j] = fmax(0, x[j] + (random_uniform(&r) < 0.5 ? -ESTIMATE_GAP_M : ESTIMATE_GAP_M));
-}
-
 /* moved (ESTIMATE_PATTERNS). */
 static void spread(const Measured *result, const Measured moved[], double sd[])
 {
@@ -41,7 +34,9 @@ static size_t list_tasks(const Problem *p, const SimTask *task, int moves, doubl
     for (uint32_t i = 0; i < ESTIMATE_PATTERNS; i++) {
         double *moved = x + i * p->n_var;
         memcpy(moved, task->x, p->n_var * sizeof *moved);
-        move_gaps(tower_design(tower_of(p)), i, moved);
+        Random r = random_stream(1, RANDOM_GRAZING, i, 0);
+        for (int j = 0; j < tower_design(tower_of(p))->n_gaps; j++)
+            moved[j] = fmax(0, moved[j] + (random_uniform(&r) < 0.5 ? -ESTIMATE_GAP_M : ESTIMATE_GAP_M));
         out[1 + i] = (SimTask){.kind = task->kind, .x = moved, .scene = task->scene, .parts = &again[1 + i]};
     }
     return AGAIN;

@@ -22,13 +22,7 @@ static Status describe(const Settings *settings, FullModel *m, Err *err)
     return STATUS_OK;
 }
 
-static Status simulate(const Problem *p, size_t n, const SimTask tasks[], FullModel *m, Err *err)
-{
-    TRY(tower_motion(p, REDUCED, &m->motion, err));
-    TRY(tower_run(p, MODELS * n, tasks, NULL, NULL, err));
-    return m->error ? estimate_designs(p, n, tasks, m->result[REDUCED], m->error, NULL, err) : STATUS_OK;
-}
-
+/* Both models as scenes of one tower, then the designs by each. */
 static Status find(const Settings *s, SceneKind kind, size_t n, const double X[], SimTask *tasks, FullModel *m,
                    Err *err)
 {
@@ -41,7 +35,11 @@ static Status find(const Settings *s, SceneKind kind, size_t n, const double X[]
     for (size_t i = 0; i < MODELS * n; i++)
         tasks[i] = (SimTask){
             .kind = kind, .x = X ? X + i % n * p.n_var : NULL, .scene = i / n, .result = &m->result[i / n][i % n]};
-    const Status status = simulate(&p, n, tasks, m, err);
+    Status status = tower_motion(&p, REDUCED, &m->motion, err);
+    if (status == STATUS_OK)
+        status = tower_run(&p, MODELS * n, tasks, NULL, NULL, err);
+    if (status == STATUS_OK && m->error)
+        status = estimate_designs(&p, n, tasks, m->result[REDUCED], m->error, NULL, err);
     problem_close(&p);
     return status;
 }

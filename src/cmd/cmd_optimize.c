@@ -4,6 +4,7 @@
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/improve.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "report/words.h"
@@ -197,9 +198,11 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
         printf("simulated with more steps: %zu designs (knee, the best, some spread over the front, and what were such "
                "before), %zu of them unpredictable; that took %.1f %% of the search's simulations\n",
                named.n, named.n_unpredictable, 100.0 * named.share);
-    if (summary->n_tried_to_polish > 0)
-        printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
-               summary->n_polished, summary->n_tried_to_polish);
+    if (summary->polish.n_tried > 0) {
+        printf("polished: %zu of %zu designs became better by more than their spread (search.polish); ",
+               summary->polish.n_better, summary->polish.n_tried);
+        improve_cost(&summary->polish.cost);
+    }
     if (summary->n_simulated == summary->n_before)
         printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
     return STATUS_OK;

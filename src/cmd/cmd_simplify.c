@@ -2,17 +2,9 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/improve.h"
-#include "cmd/show.h"
 #include "study/simplify.h"
 
 static const double KEPT = 0.02, KEPT_OTHERS = 0.1;
-
-typedef struct {
-    Improve from;
-    const Run *run; /* of it */
-    SimplifyConfig config;
-    Simplified result;
-} Work;
 
 /* "5" or "5mm", in m. */
 static Status take_mm(const char *option, const char *text, double *value, Err *err)
@@ -25,7 +17,7 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
     return STATUS_OK;
 }
 
-static Status take_plates(const char *list, SimplifyConfig *c, Err *err)
+static Status take_plates(const char *list, ImproveConfig *c, Err *err)
 {
     char item[32];
     c->n_plates = list_count(list);
@@ -41,119 +33,97 @@ static Status take_plates(const char *list, SimplifyConfig *c, Err *err)
     return STATUS_OK;
 }
 
-static Status take_options(const Args *args, Work *w, Err *err)
+static Status take_options(const Args *args, Improve *m, Err *err)
 {
-    const Schema *schema = &w->run->schema;
-    SimplifyConfig *c = &w->config;
+    const Schema *schema = &m->run.schema;
+    const char *keep = args_value(args, "--keep"), *gap_step = args_value(args, "--gap-step");
+    ImproveConfig *c = &m->config;
+    long zones;
     for (size_t k = 0; k < schema->n_obj; k++)
-        c->slack[k] = args_has(args, "--keep") ? INFINITY : k == 0 ? KEPT : KEPT_OTHERS;
-    if (args_has(args, "--keep"))
-        TRY(pairs_take(schema, "--keep", args_value(args, "--keep"), KEPT, c->slack, err));
+        c->slack[k] = keep ? INFINITY : k == 0 ? KEPT : KEPT_OTHERS;
+    if (keep)
+        TRY(pairs_take(schema, "--keep", keep, KEPT, c->slack, err));
     for (size_t k = 0; k < schema->n_obj; k++)
         if (c->slack[k] < 0.0)
             return misused(err, "--keep: %s may lose %g of its value; give 0 or more",
                            schema_objective(schema, k)->name, c->slack[k]);
-    long zones;
     TRY(args_whole(args, "--zones", 1, MAX_OF(schema->design.n_floors, 1), 0, &zones, err));
     c->zones = (int)zones;
-    if (args_has(args, "--gap-step"))
-        TRY(take_mm("--gap-step", args_value(args, "--gap-step"), &c->gap_step, err));
+    if (gap_step)
+        TRY(take_mm("--gap-step", gap_step, &c->gap_step, err));
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-static void show_path(const Work *w)
+/* The path with its cost; then name and number of every variable at its end, gaps and plates in mm. */
+static void show(const Improve *m)
 {
     static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",
                                         "on steps", "moved on steps", "fewer devices"};
-    const Simplified *r = &w->result;
+    const Schema *s = &m->run.schema;
+    const EvaluationTable *path = &m->result.designs;
     json_t *table = json_array();
-    for (size_t i = 0; i < r->n; i++) {
+    for (size_t i = 0; i < path->n; i++) {
         char label[96];
-        const Evaluation *e = &r->designs.row[i];
-        if (i == SIMPLIFY_ZONES && w->config.zones == 0)
-            continue;
-        snprintf(label, sizeof label, "%s: %g, %.4g", WORDS[i],
-                 schema_value(&w->run->schema, MEASURE_DEVICES, e->f, e->extra),
-                 schema_value(&w->run->schema, MEASURE_COST, e->f, e->extra));
-        figures_design(table, label, 0, &w->run->schema, e->f, r->error[i], e->sd, e->extra);
+        const Evaluation *e = &path->row[i];
+        snprintf(label, sizeof label, "%s: %g, %.4g", WORDS[i], schema_value(s, MEASURE_DEVICES, e->f, e->extra),
+                 schema_value(s, MEASURE_COST, e->f, e->extra));
+        if (i != SIMPLIFY_ZONES || m->config.zones > 0)
+            improve_row(m, table, label, i, i == SIMPLIFY_START ? m->run.table.row[m->row].id : 0);
     }
-    figures_print(table);
-    puts("behind the colon: devices, and the cost by design.prices");
-}
-
-/* Name and number of every variable, gaps and plates in mm. */
-static void show_design(const Work *w, const double x[])
-{
-    const Schema *s = &w->run->schema;
-    putchar('\n');
-    char text[KIND_WORD_MAX];
+    improve_print(m, table);
+    puts("behind the colon: devices, and the cost by design.prices\n");
+    const double *x = path->row[path->n - 1].x;
     for (size_t j = 0; j < s->n_var; j++) {
+        char text[KIND_WORD_MAX];
         const int is_length = (int)j < s->design.n_gaps + s->design.n_walls;
         if (!schema_word(s, j, x[j], text))
             snprintf(text, sizeof text, is_length ? "%g mm" : "%g", is_length ? 1e3 * x[j] : x[j]);
         printf("%-20s %s\n", schema_variable(s, j)->name,
                (int)j < s->design.n_gaps && x[j] >= DESIGN_OPEN_M ? "no stop" : text);
     }
+    putchar('\n');
+    if (path->row[0].violation > 0.0)
+        puts("The design violates the limits of its run, and so may what is made of it.");
 }
 
-/* The design of the run that the end of the path is; 0: it has none such. */
-static long known_id(const Work *w)
+/* The end of the path is stored where it keeps what is to be kept, and the run does not have it: who asks for the same
+ * a second time gets the same answer. */
+static Status store_end(Improve *m, Err *err)
 {
-    const Simplified *r = &w->result;
-    const EvaluationTable *has = &w->run->table;
-    for (size_t i = 0; i < has->n; i++)
-        if (memcmp(r->designs.row[r->n - 1].x, has->row[i].x, w->run->schema.n_var * sizeof(double)) == 0)
-            return has->row[i].id;
-    return 0;
-}
-
-static Status store_end(Work *w, Err *err)
-{
-    const Simplified *r = &w->result;
-    Evaluation *last = &r->designs.row[r->n - 1];
-    const long known = known_id(w);
+    const EvaluationTable *path = &m->result.designs, *has = &m->run.table;
+    Evaluation *last = &path->row[path->n - 1];
     char reason[48];
-    if (r->loss[r->n - 1] > 1.0)
+    if (m->result.loss[path->n - 1] > 1.0)
         return fail(err, STATUS_UNMET,
                     "%s: not stored: on these steps it loses more than may be lost, or violates limits: finer steps, "
                     "more plates or another --keep",
-                    w->run->folder);
-    if (known) { /* as where the same is asked for a second time */
-        printf("it is design %ld of the run: nothing new to store.\n", known);
-        return STATUS_OK;
-    }
-    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, w->run->table.row[w->from.row].id);
+                    m->run.folder);
+    for (size_t i = 0; i < has->n; i++)
+        if (memcmp(last->x, has->row[i].x, has->n_var * sizeof *last->x) == 0) {
+            printf("it is design %ld of the run: nothing new to store.\n", has->row[i].id);
+            return STATUS_OK;
+        }
+    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, has->row[m->row].id);
     last->reason = reason;
-    TRY(improve_store(&w->from, last, err));
-    improve_say(&w->from);
+    TRY(improve_store(m, last, err));
+    improve_say(m);
     return STATUS_OK;
 }
 
-static Status simplify(const Args *args, Work *w, Err *err)
+static Status work(const Args *args, Improve *m, Err *err)
 {
-    const char *word = args_value(args, "--design");
-    TRY(improve_open(&w->from, args, word ? word : "knee", err));
-    w->run = &w->from.run;
-    TRY(take_options(args, w, err));
-    TRY(simplify_design(w->run, w->from.row, &w->config, &w->result, err));
-    const Simplified *r = &w->result;
-    printf("design %ld of %s, %zu designs simulated, %.1f s\n\n", w->run->table.row[w->from.row].id, w->run->folder,
-           r->n_evaluated, r->seconds);
-    show_path(w);
-    show_design(w, r->designs.row[r->n - 1].x);
-    putchar('\n');
-    if (r->designs.row[0].violation > 0.0)
-        puts("The design violates the limits of its run, and so may what is made of it.");
-    return store_end(w, err);
+    TRY(take_options(args, m, err));
+    if (m->run.settings->problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", m->run.folder);
+    TRY(improve_design(&m->run, m->row, &m->config, simplify_design, &m->result, err));
+    show(m);
+    return store_end(m, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
-    Work w = {0};
-    const Status status = simplify(args, &w, err);
-    simplified_free(&w.result);
-    improve_close(&w.from);
-    return status;
+    const char *word = args_value(args, "--design");
+    return improve_run(args, word ? word : "knee", work, err);
 }
 
 static const ArgOption OPTIONS[] = {

@@ -1,10 +1,11 @@
 #include "cmd/improve.h"
 
 #include "cmd/designs.h"
+#include "settings/options.h"
 #include "store/run_read.h"
 #include "study/named.h"
 
-Status improve_open(Improve *m, const Args *args, const char *word, Err *err)
+static Status open_run(Improve *m, const Args *args, const char *word, Err *err)
 {
     RecordPaths moved;
     TRY(run_wanted(args->operand, err));
@@ -13,6 +14,18 @@ Status improve_open(Improve *m, const Args *args, const char *word, Err *err)
     TRY(design_of_run(&m->run, word, &m->row, NULL, err));
     TRY(args_moved(args, &moved, err));
     return record_paths_find(m->run.settings, m->run.provenance, &moved, err);
+}
+
+Status improve_run(const Args *args, const char *word, Status (*work)(const Args *args, Improve *m, Err *err), Err *err)
+{
+    Improve m = {0};
+    Status status = open_run(&m, args, word, err);
+    if (status == STATUS_OK)
+        status = work(args, &m, err);
+    improved_free(&m.result);
+    run_free(&m.run);
+    store_free(m.store);
+    return status;
 }
 
 static Status name_again(Improve *m, Err *err)
@@ -40,6 +53,28 @@ Status improve_store(Improve *m, const Evaluation *design, Err *err)
     return STATUS_OK;
 }
 
+void improve_row(const Improve *m, json_t *table, const char *label, size_t i, long id)
+{
+    const Evaluation *e = &m->result.designs.row[i];
+    figures_design(table, label, id, &m->run.schema, e->f, m->result.error[i], e->sd, e->extra);
+}
+
+void improve_cost(const ImproveCost *c)
+{
+    printf("%zu designs tried in %zu simulations, %zu failed, %.1f s\n", c->n_evaluated, c->n_simulated, c->n_failed,
+           c->seconds);
+}
+
+void improve_print(const Improve *m, json_t *table)
+{
+    const SimOptions *s = &m->run.settings->sim;
+    figures_print(table);
+    if (isfinite(m->result.designs.row[0].sd[0]))
+        printf("sd: %s\n", spread_word(s->gap_tolerance_m, &s->uncertain));
+    putchar('\n');
+    improve_cost(&m->result.cost);
+}
+
 void improve_say(const Improve *m)
 {
     const long before = m->run.n_front > 0 ? m->run.table.row[run_knee(&m->run)].id : 0;
@@ -47,10 +82,4 @@ void improve_say(const Improve *m)
         printf("stored in the run as design %ld.\n", m->id);
     if (m->id && m->knee != before)
         printf("%s:knee was design %ld and is now design %ld.\n", m->run.folder, before, m->knee);
-}
-
-void improve_close(Improve *m)
-{
-    run_free(&m->run);
-    store_free(m->store);
 }

@@ -1,27 +1,37 @@
-/* cmd/improve.h -- a design of a run that a command makes another of: the run held while it works, then the new one in
- * it.
- *
- * Life cycle  improve_open -> improve_store where there is something to be stored -> improve_close (a zeroed one is
- *             fine) */
+/* cmd/improve.h -- what commands share that make a better or simpler design of one of a run (study/improver.h): the run
+ * held while they work, the report of what was gained at what cost, and the new design in the run. */
 #pragma once
 
 #include "cmd/args.h"
+#include "cmd/show.h"
 #include "store/store.h"
+#include "study/improver.h"
 
 typedef struct {
     RunStore *store;
     Run run;       /* as it was; its motions where they are now (OPTION_MOVED) */
     size_t row;    /* of the design */
     long id, knee; /* of the new design, of the run's knee beside it; 0: nothing is stored */
+    ImproveConfig config;
+    Improved result;
 } Improve;
 
-/* The operand is the run, word names the design. */
-Status improve_open(Improve *m, const Args *args, const char *word, Err *err);
+/* The operand is the run, `word` names the design; `work` fills config, calls improve_design and reports. Whatever
+ * comes of it, all is released. */
+Status improve_run(const Args *args, const char *word, Status (*work)(const Args *args, Improve *m, Err *err),
+                   Err *err);
 
 /* As a design of the kind polished; where the search is over it may be a named one, and gets better values. */
 Status improve_store(Improve *m, const Evaluation *design, Err *err);
 
+/* A row of the report: design i of the path, 0 or its id. */
+void improve_row(const Improve *m, json_t *table, const char *label, size_t i, long id);
+
+/* Prints what it cost, in a line. */
+void improve_cost(const ImproveCost *c);
+
+/* Prints these rows, what the deviations are of, and the cost. */
+void improve_print(const Improve *m, json_t *table);
+
 /* Prints the id of what was stored, and the knee where it has moved: other commands name a design by it. */
 void improve_say(const Improve *m);
-
-void improve_close(Improve *m);

@@ -11,34 +11,19 @@ enum { SIMULATED_MAX = 16 };
 /* Of the range: so near a gap is on its bound. */
 static const double ON_BOUND = 1e-9;
 
-static int is_gap(const Run *run, size_t j)
-{
-    return run->schema.order.n_obj > 0 && strncmp(schema_variable(&run->schema, j)->name, "gap_", 4) == 0;
-}
-
-static void count_bounds(const Run *run, size_t row, FrontReview *r)
-{
-    const DesignOptions *o = &run->settings->design;
-    const double near = ON_BOUND * (o->gap_m.at[1] - o->gap_m.at[0]);
-    size_t gap = 0;
-    for (size_t j = 0; j < run->schema.n_var && gap < SIDES * FLOORS_MAX; j++) {
-        const double x = run_x(run, row)[j];
-        if (!is_gap(run, j))
-            continue;
-        r->at_smallest[gap] += x <= o->gap_m.at[0] + near;
-        r->at_largest[gap] += x >= o->gap_m.at[1] - near;
-        gap++;
-    }
-    r->n_gaps = gap;
-}
-
 FrontReview front_review(const Run *run)
 {
     FrontReview r = {.n_front = run->n_front};
+    const double *bound = run->settings->design.gap_m.at, near = ON_BOUND * (bound[1] - bound[0]);
     for (size_t i = 0; i < run->n_front && run->schema.order.n_obj > 0; i++) {
-        count_bounds(run, run->front[i], &r);
-        r.n_beyond += schema_value(&run->schema, MEASURE_BEYOND_LAW, run_f(run, run->front[i]),
-                                   run->table.row[run->front[i]].extra) > 0.0;
+        const size_t row = run->front[i];
+        r.n_gaps = 0;
+        for (size_t j = 0; j < run->schema.n_var && r.n_gaps < SIDES * FLOORS_MAX; j++)
+            if (strncmp(schema_variable(&run->schema, j)->name, "gap_", 4) == 0) {
+                r.at_smallest[r.n_gaps] += run_x(run, row)[j] <= bound[0] + near;
+                r.at_largest[r.n_gaps++] += run_x(run, row)[j] >= bound[1] - near;
+            }
+        r.n_beyond += schema_value(&run->schema, MEASURE_BEYOND_LAW, run_f(run, row), run->table.row[row].extra) > 0.0;
     }
     return r;
 }

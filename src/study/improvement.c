@@ -3,11 +3,6 @@
 #include "moga/convergence.h"
 #include "settings/options.h"
 
-static int is_first_answer(const Evaluation *r)
-{
-    return r->kind != KIND_POLISHED && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
-}
-
 Status improvement_expected(const Run *run, double *gain, Err *err)
 {
     const size_t n = run_first_polished(run), m = run->schema.n_obj, cuts[] = {n / 4, n / 2, n};
@@ -20,8 +15,10 @@ Status improvement_expected(const Run *run, double *gain, Err *err)
     for (size_t k = 0; sense && k < m; k++)
         sense[k] = schema_objective(&run->schema, k)->sense;
     for (size_t i = 0; counts && i < n; i++) {
-        const int is_answer = is_first_answer(&run->table.row[i]) && run->place[i].ok;
-        counts[i] = is_answer && !(run->table.row[i].violation > 0.0);
+        const Evaluation *r = &run->table.row[i];
+        const int is_answer =
+            r->kind != KIND_POLISHED && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT && run->place[i].ok;
+        counts[i] = is_answer && !(r->violation > 0.0);
         on_front[i] = is_answer && run->place[i].entered != NEVER && run->place[i].left == NEVER;
     }
     const GrowingFront designs = {n, m, run->F, NULL, sense, counts, on_front};

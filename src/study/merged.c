@@ -8,17 +8,6 @@
 
 /* -- one problem --------------------------------------------------------------------------------------------------- */
 
-static int is_of_problem(const char *key)
-{
-    static const char *const OTHERS[] = {"run.",          "problem.command", "problem.timeout_s", "sim.threads",
-                                         "motion.record", "motion.forces",   "building.model"}; /* files by content */
-    int is =
-        strncmp(key, "search.", 7) != 0 || strcmp(key, "search.objectives") == 0 || strcmp(key, "search.limits") == 0;
-    for (size_t i = 0; i < N_OF(OTHERS); i++)
-        is &= strncmp(key, OTHERS[i], strlen(OTHERS[i])) != 0;
-    return is;
-}
-
 typedef struct {
     char text[300];
     size_t n;
@@ -35,10 +24,17 @@ __attribute__((format(printf, 2, 3))) static void list(Listed *l, const char *fo
     va_end(values);
 }
 
+/* Lists a setting that makes another problem; files are compared by content. */
 static void list_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
+    static const char *const OTHERS[] = {"run.",          "problem.command", "problem.timeout_s", "sim.threads",
+                                         "motion.record", "motion.forces",   "building.model"};
+    int is_of_problem =
+        strncmp(key, "search.", 7) != 0 || strcmp(key, "search.objectives") == 0 || strcmp(key, "search.limits") == 0;
     (void)flags;
-    if (is_of_problem(key))
+    for (size_t i = 0; i < N_OF(OTHERS); i++)
+        is_of_problem &= strncmp(key, OTHERS[i], strlen(OTHERS[i])) != 0;
+    if (is_of_problem)
         list(user, "%s %.60s and %.60s", key, was, is);
 }
 
@@ -61,26 +57,20 @@ static Status check_same(const Run *one, const Run *other, Err *err)
 
 /* -- one table ----------------------------------------------------------------------------------------------------- */
 
-/* The design that this one was made of has another id now. */
-static void move_origin(Evaluation *e, long added, char reason[REASON_MAX])
-{
-    const size_t n = sizeof SIMPLIFIED_FROM - 1;
-    if (strncmp(e->reason, SIMPLIFIED_FROM, n) != 0)
-        return;
-    snprintf(reason, REASON_MAX, "%s%ld", SIMPLIFIED_FROM, strtol(e->reason + n, NULL, 10) + added);
-    e->reason = reason;
-}
-
+/* The search's rows of a run, or its polished ones, behind those that are there. */
 static Status append_rows(Run *to, const Run *from, int polished, long added, Err *err)
 {
-    const size_t polished_from = run_first_polished(from), m = from->schema.n_obj;
+    const size_t polished_from = run_first_polished(from), m = from->schema.n_obj, n = sizeof SIMPLIFIED_FROM - 1;
     char reason[REASON_MAX];
     for (size_t i = polished ? polished_from : 0; i < (polished ? from->table.n : polished_from); i++) {
         const size_t at = to->table.n;
         Evaluation e = from->table.row[i];
         e.id += added;
         e.err = NULL;
-        move_origin(&e, added, reason);
+        if (strncmp(e.reason, SIMPLIFIED_FROM, n) == 0) { /* the design that this one was made of has another id now */
+            snprintf(reason, REASON_MAX, "%s%ld", SIMPLIFIED_FROM, strtol(e.reason + n, NULL, 10) + added);
+            e.reason = reason;
+        }
         TRY(evaluation_table_append(&to->table, &e, err));
         memcpy(to->F + at * m, run_f(from, i), m * sizeof *to->F);
         to->place[at] = from->place[i];
@@ -89,25 +79,6 @@ static Status append_rows(Run *to, const Run *from, int polished, long added, Er
                 !to->place[j].on_front || memcmp(run_x(to, j), e.x, to->schema.n_var * sizeof *e.x) != 0;
     }
     return STATUS_OK;
-}
-
-static Status append_finer(Run *to, const Run *from, long added, Err *err)
-{
-    for (size_t i = 0; i < from->finer.n; i++) {
-        Evaluation e = from->finer.row[i];
-        e.id += added;
-        TRY(evaluation_table_append(&to->finer, &e, err));
-    }
-    return STATUS_OK;
-}
-
-/* Tables do not move any more. */
-static void point_at_finer(Run *run)
-{
-    for (size_t i = 0; i < run->finer.n; i++) {
-        Evaluation *finer = &run->finer.row[i];
-        finer->err = run->table.row[run_find(run, finer->id)].err = finer->extra + run->schema.n_extra;
-    }
 }
 
 static Status join(Run *to, size_t n, const Run run[], Err *err)
@@ -120,16 +91,35 @@ static Status join(Run *to, size_t n, const Run run[], Err *err)
     for (size_t part = 0; part < 2 * n; part++)
         TRY(append_rows(to, &run[part % n], part >= n, (long)(part % n) * to->id_step, err));
     for (size_t k = 0; k < n; k++)
-        TRY(append_finer(to, &run[k], (long)k * to->id_step, err));
-    point_at_finer(to);
+        for (size_t i = 0; i < run[k].finer.n; i++) {
+            Evaluation e = run[k].finer.row[i];
+            e.id += (long)k * to->id_step;
+            TRY(evaluation_table_append(&to->finer, &e, err));
+        }
+    for (size_t i = 0; i < to->finer.n; i++) { /* tables do not move any more */
+        Evaluation *finer = &to->finer.row[i];
+        finer->err = to->table.row[run_find(to, finer->id)].err = finer->extra + to->schema.n_extra;
+    }
     return run_form_front(to, err);
 }
 
-/* Of the first one what is none of its own: settings, columns, provenance. */
-static void take_head(Run *to, Run *first)
+static Status read_all(Run *to, size_t n, const char *const folders[], Run run[], Err *err)
 {
-    const Schema *s = &first->schema;
-    snprintf(to->folder, sizeof to->folder, "%s", first->folder);
+    for (size_t k = 0; k < n; k++) {
+        TRY(run_read(&run[k], folders[k], err));
+        TRY(check_same(&run[0], &run[k], err));
+        to->n_failed += run[k].n_failed;
+        to->n_repeats += run[k].n_repeats;
+        to->n_finished += run[k].n_finished;
+        to->planned_evals += run[k].planned_evals;
+        for (size_t i = 0; i < run[k].table.n; i++)
+            while (to->id_step <= run[k].table.row[i].id)
+                to->id_step *= 10;
+    }
+
+    /* Settings, columns and provenance pass over from the first. */
+    Run *first = &run[0];
+    const Schema *s = &to->schema;
     to->settings = first->settings;
     to->provenance = first->provenance;
     to->schema = first->schema;
@@ -139,27 +129,7 @@ static void take_head(Run *to, Run *first)
     first->settings = NULL;
     first->provenance = NULL;
     first->schema.column = NULL;
-}
-
-static void count(Run *to, const Run *from)
-{
-    to->n_failed += from->n_failed;
-    to->n_repeats += from->n_repeats;
-    to->n_finished += from->n_finished;
-    to->planned_evals += from->planned_evals;
-    for (size_t i = 0; i < from->table.n; i++)
-        while (to->id_step <= from->table.row[i].id)
-            to->id_step *= 10;
-}
-
-static Status read_all(Run *to, size_t n, const char *const folders[], Run run[], Err *err)
-{
-    for (size_t k = 0; k < n; k++) {
-        TRY(run_read(&run[k], folders[k], err));
-        TRY(check_same(&run[0], &run[k], err));
-        count(to, &run[k]);
-    }
-    take_head(to, &run[0]);
+    snprintf(to->folder, sizeof to->folder, "%s", first->folder);
     for (size_t k = 1; k < n; k++) {
         const size_t at = strlen(to->folder);
         snprintf(to->folder + at, sizeof to->folder - at, " + %s", folders[k]);

@@ -123,21 +123,15 @@ static void compare(const Schema *s, Named *d, const Evaluation *finer)
     d->is_known = is_within(s, AGREED, d->value, d->error);
 }
 
-/* Signs as in the columns of a Hadamard matrix, so that no two copies move the gaps alike. */
-static void change_gaps(const Schema *s, size_t copy, double x[])
-{
-    for (size_t j = 0; j < (size_t)s->design.n_gaps; j++)
-        x[j] = fmax(0.0, x[j] + (__builtin_popcountl((j + 1) & (copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M));
-}
-
-/* As a copy, by whose pattern; NULL: itself. */
+/* Asks for a design, or for a copy, by whose pattern its gaps change: signs as in the columns of a Hadamard matrix, so
+ * that no two copies move them alike. NULL: itself. */
 static Status ask(const Work *w, const Named *d, size_t level, const size_t *copy, Err *err)
 {
     const Schema *s = &w->run.schema;
     double x[DESIGN_VARIABLES_MAX];
     memcpy(x, run_x(&w->run, d->row), s->n_var * sizeof *x);
-    if (copy)
-        change_gaps(s, *copy, x);
+    for (size_t j = 0; copy && j < (size_t)s->design.n_gaps; j++)
+        x[j] = fmax(0.0, x[j] + (__builtin_popcountl((j + 1) & (*copy + 1)) % 2 ? ESTIMATE_GAP_M : -ESTIMATE_GAP_M));
     return queue_ask(
         w->queue, &(Asked){.x = x, .variant = tower_variant(tower_of(&w->problem), &(SimTask){.level = level})}, err);
 }
@@ -188,19 +182,6 @@ static Status take(const Work *w, Named *d, Err *err)
     return STATUS_OK;
 }
 
-/* All designs side by side, wave by wave. */
-static Status simulate(Work *w, Err *err)
-{
-    do {
-        for (size_t i = 0; i < w->n; i++)
-            TRY(ask_next(w, &w->named[i], err));
-        if (queue_pending(w->queue) == 0)
-            return STATUS_OK;
-        for (size_t i = 0; i < w->n; i++)
-            TRY(take(w, &w->named[i], err));
-    } while (1);
-}
-
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
 static Evaluation record_of(const Work *w, Named *d)
@@ -225,9 +206,11 @@ static Evaluation record_of(const Work *w, Named *d)
                         .err = d->error};
 }
 
+/* The designs of a round, side by side, wave by wave. */
 static Status know(Work *w, Err *err)
 {
     const Schema *s = &w->run.schema;
+    Evaluation better[TOGETHER];
     for (size_t i = 0; i < w->n; i++) {
         const Evaluation *e = &w->run.table.row[w->named[i].row];
         w->named[i].violation = e->violation;
@@ -236,20 +219,15 @@ static Status know(Work *w, Err *err)
             w->named[i].error[k] = NAN;
         }
     }
-    TRY(simulate(w, err));
-    Evaluation better[TOGETHER];
+    do {
+        for (size_t i = 0; i < w->n; i++)
+            TRY(take(w, &w->named[i], err)); /* nothing at first */
+        for (size_t i = 0; i < w->n; i++)
+            TRY(ask_next(w, &w->named[i], err));
+    } while (queue_pending(w->queue) > 0);
     for (size_t i = 0; i < w->n; i++)
         better[i] = record_of(w, &w->named[i]);
     return store_finer(w->store, w->n, better, err);
-}
-
-static Status round_of_names(Work *w, Err *err)
-{
-    TRY(store_read(w->store, &w->run, err));
-    find(w);
-    const Status status = w->n > 0 ? know(w, err) : STATUS_OK;
-    run_free(&w->run);
-    return status;
 }
 
 Status named_simulate(RunStore *store, const Settings *used, const Problem *problem, int (*go_on)(void *), void *user,
@@ -264,7 +242,12 @@ Status named_simulate(RunStore *store, const Settings *used, const Problem *prob
     w->problem.order = NULL;
     Status status = queue_open(&w->queue, &w->problem, err);
     for (int round = 0; round < ROUNDS && status == STATUS_OK && w->n > 0; round++) {
-        status = round_of_names(w, err);
+        status = store_read(w->store, &w->run, err);
+        if (status != STATUS_OK)
+            break;
+        find(w);
+        status = w->n > 0 ? know(w, err) : STATUS_OK;
+        run_free(&w->run);
         w->is_first = 0;
     }
     queue_close(w->queue);

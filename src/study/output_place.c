@@ -39,22 +39,13 @@ static int is_below(const char *path, const char *folder)
     return strncmp(path, folder, n) == 0 && (path[n] == '/' || path[n] == 0);
 }
 
-static int is_own_folder(const char *out, const char *settings_file)
-{
-    char own[PATH_MAX], place[PATH_MAX];
-    folder_of(settings_file, own);
-    char *folder = realpath(own, NULL);
-    const int is_own = folder && realpath(out, place) && strcmp(folder, place) == 0;
-    free(folder);
-    return is_own;
-}
-
 Status output_place_check(const char *out, const char *settings_file, Err *err)
 {
-    char there[PATH_MAX], results[PATH_MAX];
+    char own[PATH_MAX], there[PATH_MAX], results[PATH_MAX];
     struct stat about;
     const char *path = out + (strncmp(out, "./", 2) == 0 ? 2 : 0);
-    if (is_own_folder(out, settings_file))
+    folder_of(settings_file, own);
+    if (realpath(own, results) && realpath(out, there) && strcmp(results, there) == 0)
         return STATUS_OK;
     if (!is_below(path, RESULTS) || has_step_up(path))
         return bad_data(

@@ -2,179 +2,201 @@
 
 #include <nlopt.h>
 
-#include "base/carve.h"
-#include "base/stat.h"
-#include "evaluate/tasks.h"
+#include "settings/options.h"
 
 /* In the unit cube: a design that is polished lies on a front, so that the first step is short. */
-static const double STEP = 0.05, STEP_MIN = 1e-4;
+static const double STEP = 0.05;
 
-/* Descents in a row that gain no more than is worth it, each with half the step of the one before: then it ends. */
-enum { IDLE_MAX = 2 };
+/* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
+static const double PREDICTABLE = 1e-3;
 
 /* Of a design that fails, and the largest excess: finite, since NLopt fits models to them. */
 static const double WALL = 1e3;
 
+/* What NLopt's functions share. */
 typedef struct {
-    Queue *queue;
-    const Problem *problem;
-    const PolishGoal *goal;
-    Polished *best;
+    Improver *m;
     nlopt_opt opt;
-    double *u, *x, *f, *g; /* (n_var) the last design, in the unit cube and not, its answers */
-    double *at;            /* (n_var) NLopt's own */
-    double first, least;   /* value of the start, of the best */
-    int is_known, ok;      /* u has been evaluated; it did not fail */
+    int is_known; /* the first design of m->X, m->u in the cube, has been simulated */
     Status status;
     Err *err;
-    void *store;
-} Polish;
+} Descent;
 
-static void layout(void *polish, Carve *c)
-{
-    Polish *p = polish;
-    const size_t n_var = p->problem->n_var;
-    CARVE(c, p->u, n_var);
-    CARVE(c, p->x, n_var);
-    CARVE(c, p->at, n_var);
-    CARVE(c, p->f, p->problem->n_obj);
-    CARVE(c, p->g, p->problem->n_con);
-}
+/* -- the descent --------------------------------------------------------------------------------------------------- */
 
-static double value_of(const Polish *p, const double f[])
+/* NLopt asks for objective and bounds apart: the same point is simulated once. Returns whether it succeeded. */
+static int simulate(Descent *d, const double u[])
 {
-    double value = 0.0;
-    for (size_t k = 0; k < p->problem->n_obj; k++)
-        value += p->goal->weight[k] * f[k] / p->goal->scale[k];
-    return value;
-}
-
-/* What is bounded at the last design, <= 0 where it holds; returns how many. excess NULL: only counted. */
-static unsigned excesses(const Polish *p, double excess[])
-{
-    unsigned n = 0;
-    for (size_t i = 0; i < p->problem->n_obj + p->problem->n_con; i++) {
-        const int is_objective = i < p->problem->n_obj;
-        if (is_objective && !isfinite(p->goal->bound[i]))
-            continue;
-        const double over =
-            is_objective ? (p->f[i] - p->goal->bound[i]) / p->goal->scale[i] : p->g[i - p->problem->n_obj];
-        if (excess)
-            excess[n] = p->ok ? fmin(fmax(over, -WALL), WALL) : WALL;
-        n++;
+    Improver *m = d->m;
+    const size_t size = m->problem->n_var * sizeof *u;
+    if (d->is_known && memcmp(u, m->u, size) == 0)
+        return m->ok[0];
+    if (d->status == STATUS_OK && m->budget > 0) {
+        memcpy(m->u, u, size);
+        problem_from_cube(m->problem, u, m->X);
+        problem_repair(m->problem, m->X);
+        m->n = d->is_known = 1;
+        d->status = improver_try(m, d->err);
+    } else {
+        nlopt_force_stop(d->opt);
     }
-    return n;
-}
-
-static int is_allowed(const Polish *p)
-{
-    int allowed = p->ok;
-    for (size_t k = 0; k < p->problem->n_obj; k++)
-        allowed = allowed && p->f[k] <= p->goal->bound[k];
-    for (size_t c = 0; c < p->problem->n_con; c++)
-        allowed = allowed && p->g[c] <= 0.0;
-    return allowed;
-}
-
-static void keep_if_best(Polish *p)
-{
-    const double value = value_of(p, p->f);
-    if (!is_allowed(p) || !(value < p->least))
-        return;
-    p->least = value;
-    memcpy(p->best->x, p->x, p->problem->n_var * sizeof *p->x);
-    memcpy(p->best->f, p->f, p->problem->n_obj * sizeof *p->f);
-}
-
-static int is_spent(const Polish *p)
-{
-    return p->status != STATUS_OK || p->best->n_evaluated >= p->goal->max_evals;
-}
-
-/* NLopt asks for objective and bounds apart: the same point is simulated once. */
-static void evaluate(Polish *p, const double u[])
-{
-    const Problem *q = p->problem;
-    unsigned char ok = 0;
-    if (p->is_known && memcmp(u, p->u, q->n_var * sizeof *u) == 0)
-        return;
-    if (is_spent(p)) {
-        nlopt_force_stop(p->opt);
-        return;
-    }
-    memcpy(p->u, u, q->n_var * sizeof *u);
-    problem_from_cube(q, u, p->x);
-    problem_repair(q, p->x);
-    p->status = queue_evaluate(p->queue, 1, p->x, NULL, p->f, p->g, &ok, p->err);
-    p->is_known = 1;
-    p->ok = p->status == STATUS_OK && ok && all_finite(q->n_obj, p->f);
-    p->best->n_evaluated++;
-    p->best->n_failed += !p->ok;
-    keep_if_best(p);
+    return d->is_known && d->status == STATUS_OK && m->ok[0];
 }
 
 static double objective(unsigned n, const double u[], double gradient[], void *user)
 {
     (void)n;
     (void)gradient;
-    Polish *p = user;
-    evaluate(p, u);
-    return p->ok ? fmin(value_of(p, p->f) - p->first, WALL) : WALL;
+    const Improver *m = ((Descent *)user)->m;
+    return simulate(user, u) ? fmin(improver_sum(m, m->F) - improver_sum(m, m->first), WALL) : WALL;
 }
 
-/* One by one: a plane fits no kink of the greatest of all. */
+/* Limits are passed singly: COBYLA's linear model cannot follow the kink of their maximum. */
 static void bounds(unsigned n_each, double each[], unsigned n, const double u[], double gradient[], void *user)
 {
-    (void)n_each;
     (void)n;
     (void)gradient;
-    evaluate(user, u);
-    excesses(user, each);
+    const Improver *m = ((Descent *)user)->m;
+    const int ok = simulate(user, u);
+    size_t i = 0;
+    for (size_t k = 0; k < m->problem->n_obj; k++)
+        if (isfinite(m->slack[k]))
+            each[i++] = (m->F[k] - (m->first[k] + m->slack[k])) / m->scale[k];
+    for (size_t c = 0; c < m->problem->n_con; c++)
+        each[i++] = m->G[c];
+    for (i = 0; i < n_each; i++)
+        each[i] = ok ? fmin(fmax(each[i], -WALL), WALL) : WALL;
 }
 
 /* From the best design so far, until NLopt has converged or all is spent. */
-static Status descend(Polish *p, double step)
+static Status run_nlopt(Improver *m, double size, Err *err)
 {
-    const unsigned n_var = (unsigned)p->problem->n_var, n_bounds = excesses(p, NULL);
+    const Problem *p = m->problem;
+    const unsigned n_var = (unsigned)p->n_var;
+    unsigned n_bounds = (unsigned)p->n_con;
     double unused;
-    p->opt = nlopt_create(n_bounds > 0 || n_var < 2 ? NLOPT_LN_COBYLA : NLOPT_LN_BOBYQA, n_var);
-    if (!p->opt)
-        return fail(p->err, STATUS_NO_MEMORY, "no memory for polishing");
-    problem_to_cube(p->problem, p->best->x, p->at);
-    nlopt_set_lower_bounds1(p->opt, 0.0);
-    nlopt_set_upper_bounds1(p->opt, 1.0);
-    for (unsigned d = 0; d < n_var; d++) /* whole numbers and choices stay */
-        if (problem_is_discrete(p->problem, d)) {
-            nlopt_set_lower_bound(p->opt, d, p->at[d]);
-            nlopt_set_upper_bound(p->opt, d, p->at[d]);
+    for (size_t k = 0; k < p->n_obj; k++)
+        n_bounds += isfinite(m->slack[k]) != 0;
+    Descent d = {
+        .m = m, .err = err, .opt = nlopt_create(n_bounds > 0 || n_var < 2 ? NLOPT_LN_COBYLA : NLOPT_LN_BOBYQA, n_var)};
+    if (!d.opt)
+        return fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    problem_to_cube(p, m->x, m->at);
+    nlopt_set_lower_bounds1(d.opt, 0.0);
+    nlopt_set_upper_bounds1(d.opt, 1.0);
+    for (unsigned j = 0; j < n_var; j++)
+        if (problem_is_discrete(p, j)) {
+            nlopt_set_lower_bound(d.opt, j, m->at[j]);
+            nlopt_set_upper_bound(d.opt, j, m->at[j]);
         }
-    nlopt_set_initial_step1(p->opt, step);
-    nlopt_set_xtol_rel(p->opt, 1e-6);
-    nlopt_set_ftol_abs(p->opt, 0.1 * p->goal->gain_min); /* of one step, of which a descent has many */
-    nlopt_set_maxeval(p->opt, (int)fmin((double)p->goal->max_evals, 1e9));
-    nlopt_set_min_objective(p->opt, objective, p);
+    nlopt_set_initial_step1(d.opt, size * STEP);
+    nlopt_set_xtol_rel(d.opt, 1e-6);
+    nlopt_set_ftol_abs(d.opt, 0.1 * m->gain_min); /* of one step, of which a descent has many */
+    nlopt_set_min_objective(d.opt, objective, &d);
     if (n_bounds > 0)
-        nlopt_add_inequality_mconstraint(p->opt, n_bounds, bounds, p, NULL);
-    nlopt_optimize(p->opt, p->at, &unused); /* whatever it says: the best was kept on the way */
-    nlopt_destroy(p->opt);
-    return p->status;
+        nlopt_add_inequality_mconstraint(d.opt, n_bounds, bounds, &d, NULL);
+    nlopt_optimize(d.opt, m->at, &unused); /* whatever it says: the best was kept on the way */
+    nlopt_destroy(d.opt);
+    return d.status;
 }
 
-Status polish_run(Queue *queue, const PolishGoal *goal, Polished *best, Err *err)
+Status polish_descend(Improver *m, Err *err)
 {
-    Polish p = {.queue = queue, .problem = queue_problem(queue), .goal = goal, .best = best, .err = err};
-    best->n_evaluated = best->n_failed = 0;
-    p.first = p.least = value_of(&p, best->f);
-    p.store = carve_all(layout, &p);
-    Status status = p.store ? STATUS_OK : fail_memory(err, 1, "polishing");
-    double step = STEP;
-    int idle = 0;
-    while (status == STATUS_OK && !is_spent(&p) && step > STEP_MIN && IDLE_MAX > idle) {
-        const double before = p.least;
-        status = descend(&p, step);
-        idle = before - p.least > goal->gain_min ? 0 : idle + 1;
-        step *= idle > 0 ? 0.5 : 1.0;
+    m->idle_max = 2;
+    return improver_descend(m, run_nlopt, err);
+}
+
+/* -- before and after ---------------------------------------------------------------------------------------------- */
+
+/* Of F (2, n_obj), start and end, minimised. */
+static double gain_of(const Improver *m, const double F[])
+{
+    const size_t n_obj = m->problem->n_obj;
+    return improver_sum(m, F) - improver_sum(m, F + n_obj);
+}
+
+/* Start and end with replicates that no step has used, for the selection of the best of noisy values would bias them;
+ * then at finer steps, `sim` having the replicates of a design that is tried. */
+static Status confirm(Improver *m, long replicates, SimOptions *sim, Err *err)
+{
+    const size_t n_obj = m->problem->n_obj;
+    Improved *out = m->out;
+    SimOptions all = *sim;
+    all.replicates = replicates;
+    TRY(improver_open(m, &all, err));
+    TRY(improver_note(m, 2, (const double *[]){m->start, m->x}, 1, err));
+    const Evaluation *before = &out->designs.row[POLISH_BEFORE], *end = &out->designs.row[POLISH_END];
+    out->has_changed = before->outcome == OUTCOME_OK && end->outcome == OUTCOME_OK &&
+                       memcmp(m->start, m->x, m->problem->n_var * sizeof *m->x) != 0;
+    out->keeps = 1;
+    for (size_t k = 0; k < n_obj; k++) {
+        const double error = hypot(before->sd[k], end->sd[k]) / sqrt((double)replicates);
+        const double was = m->F[k] = improver_path(m, POLISH_BEFORE, k);
+        const double is = m->F[n_obj + k] = improver_path(m, POLISH_END, k);
+        if (m->weight[k] > 0.0)
+            out->gain_error += m->weight[k] * error / m->scale[k];
+        if (is - was > m->slack[k] + (isfinite(error) ? 2.0 * error : 0.0))
+            out->keeps = 0;
     }
-    free(p.store);
-    return status;
+    out->gain = gain_of(m, m->F);
+    if (!improver_finer(m->run->settings, &all))
+        return STATUS_OK;
+
+    /* The same gain must be there at twice the steps, or at those by which the run knows the design. */
+    if (m->run->table.row[m->row].level > 0)
+        run_steps(m->run, m->row, sim);
+    else
+        estimate_options(sim, sim);
+    TRY(improver_errors(m, POLISH_BEFORE, sim, 1, err));
+    const int is_known = m->ok[0] && m->ok[1];
+    out->gain_finer = is_known ? gain_of(m, m->F) : -INFINITY;
+    for (size_t k = 0; k < n_obj; k++) /* of both designs the larger one */
+        out->error[POLISH_BEFORE][k] = out->error[POLISH_END][k] =
+            is_known ? fmax(out->error[POLISH_BEFORE][k], out->error[POLISH_END][k]) : NAN;
+    return STATUS_OK;
+}
+
+Status polish_design(Improver *m, Err *err)
+{
+    const FrontBox box = run_box(m->run);
+    const double *sd = m->out->designs.row[POLISH_START].sd;
+    const long replicates = m->replicates;
+    SimOptions sim = m->run->settings->sim, unused;
+    sim.replicates = 1;
+    for (size_t k = 0; k < m->problem->n_obj; k++) {
+        m->weight[k] = m->config->weight[k];
+        m->scale[k] = box.span[k];
+        if (sd && sd[k] > PREDICTABLE * fabs(m->first[k]))
+            sim.replicates = replicates;
+    }
+    if (sim.replicates != replicates)
+        TRY(improver_open(m, &sim, err));
+    const long finer = improver_finer(m->run->settings, &unused) ? sim.replicates : 0;
+    const size_t kept = m->out->cost.n_simulated + 2 * (replicates + finer);
+    m->budget = m->config->max_evals > kept ? (m->config->max_evals - kept) / sim.replicates : 0;
+    m->value = improver_sum(m, m->first);
+    m->gain_min = POLISH_GAIN_MIN;
+    TRY(polish_descend(m, err));
+    return confirm(m, replicates, &sim, err);
+}
+
+Status polish_allows(const Settings *s, Err *err)
+{
+    if (s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s))
+        return STATUS_OK;
+    return bad_data(
+        err, "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
+             "from noise; continue the search instead (search.max_evals, search.replicate_share)");
+}
+
+size_t polish_evals_min(const Settings *s, long replicates)
+{
+    SimOptions unused;
+    return (s->problem.kind == PROBLEM_TOWER ? replicates : 1) * (improver_finer(s, &unused) ? 6 : 4);
+}
+
+int polish_counts(const Improved *r)
+{
+    const double least = fmax(POLISH_GAIN_MIN, isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
+    return r->has_changed && r->keeps && r->gain > least && !(r->gain_finer <= least);
 }

@@ -39,23 +39,6 @@ const char *state_words(RunState state)
     return WORDS[state];
 }
 
-/* Seconds since a time of the form 2026-01-31T23:59:59Z. */
-static double seconds_since(const char *utc)
-{
-    struct tm parts = {0};
-    return strptime(utc, "%Y-%m-%dT%H:%M:%SZ", &parts) ? difftime(time(NULL), timegm(&parts)) : NAN;
-}
-
-static void count(Standing *out, const Run *run)
-{
-    for (size_t i = 0; i < run->table.n; i++) {
-        const int polished = run->table.row[i].kind == KIND_POLISHED;
-        out->n_polished += polished != 0;
-        out->n_failed += !polished && !run->place[i].ok;
-    }
-    out->progress.simulated = run_evaluations(run, 0);
-}
-
 /* Thread-seconds of a session's simulations. */
 static double simulated_seconds(const Run *run, size_t number)
 {
@@ -102,34 +85,37 @@ static double session_seconds(const Run *run, size_t number)
     return fmax(stored, simulated_seconds(run, number) / fmax((double)s->threads, 1.0));
 }
 
-/* Of the session `last`, the run's newest one. */
-static void take_session(Standing *out, const Run *run, const RunSession *last)
-{
-    const double stored = session_seconds(run, run->n_sessions - 1);
-    const int is_running = out->state == RUN_RUNNING;
-    Progress *p = &out->progress;
-    p->session_s = is_running ? seconds_since(last->started) : stored;
-    out->seconds += is_running ? fmax(p->session_s - stored, 0.0) : 0.0;
-    p->all_s = out->seconds;
-    p->session_simulated = run_evaluations(run, last->simulated_before);
-}
-
 void standing_of(Standing *out, const char *folder, const Run *run)
 {
+    const size_t n = run_first_polished(run);
+    Progress *p = &out->progress;
     *out = (Standing){.hypervolume = NAN, .max_evals = run->settings->search.max_evals};
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     out->state = folder_is_held(folder, &out->holder) ? RUN_RUNNING
                  : last && last->is_final             ? RUN_FINISHED
                  : last && last->ended[0]             ? RUN_PAUSED
                                                       : RUN_INTERRUPTED;
-    count(out, run);
-    const size_t n = run_first_polished(run);
+    for (size_t i = 0; i < run->table.n; i++) {
+        const int polished = run->table.row[i].kind == KIND_POLISHED;
+        out->n_polished += polished != 0;
+        out->n_failed += !polished && !run->place[i].ok;
+    }
+    p->simulated = run_evaluations(run, 0);
     out->n_lost = out->state != RUN_RUNNING && out->holder.n_stored > n ? out->holder.n_stored - n : 0;
     if (run->n_generations > 0)
         out->hypervolume = run->generation[run->n_generations - 1].hypervolume;
     for (size_t i = 0; i < run->n_sessions; i++)
         out->seconds += session_seconds(run, i);
-    if (last)
-        take_session(out, run, last);
-    out->left_s = out->state == RUN_FINISHED ? 0.0 : progress_left(&out->progress, &run->settings->search);
+    if (last) { /* the run's newest session; one that runs has lasted longer than is stored */
+        struct tm begun = {0};
+        const double stored = p->session_s = session_seconds(run, run->n_sessions - 1);
+        if (out->state == RUN_RUNNING) {
+            p->session_s =
+                strptime(last->started, "%Y-%m-%dT%H:%M:%SZ", &begun) ? difftime(time(NULL), timegm(&begun)) : NAN;
+            out->seconds += fmax(p->session_s - stored, 0.0);
+        }
+        p->all_s = out->seconds;
+        p->session_simulated = run_evaluations(run, last->simulated_before);
+    }
+    out->left_s = out->state == RUN_FINISHED ? 0.0 : progress_left(p, &run->settings->search);
 }

@@ -55,18 +55,12 @@ static Status hash_record(const char *source, void *user, Err *err)
     return STATUS_OK;
 }
 
-static Status hash_all(const Settings *s, uint64_t now[N_MOVED], Err *err)
-{
-    memset(now, 0, N_MOVED * sizeof *now);
-    return suite_of_study(&s->motion, hash_record, &(Hashed){s->motion, now, 0}, err);
-}
-
 static Status compare(const Settings *s, const char *provenance, Err *err)
 {
     static const char *const HASH[N_MOVED] = {"record_fnv1a", "records_fnv1a", "forces_fnv1a"};
     const char *const path[N_MOVED] = {s->motion.record, s->motion.records, s->motion.forces};
-    uint64_t now[N_MOVED];
-    TRY(hash_all(s, now, err));
+    uint64_t now[N_MOVED] = {0};
+    TRY(suite_of_study(&s->motion, hash_record, &(Hashed){s->motion, now, 0}, err));
     for (int k = 0; k < N_MOVED; k++)
         if (provenance_hash(provenance, HASH[k]) != now[k])
             return bad_data(err, "%s: %.200s does not hold what it held for the run", MOVED_KEY[k], path[k]);

@@ -24,12 +24,13 @@ static void results(size_t n, const size_t records[], double y[], void *user)
     }
 }
 
-/* A Latin hypercube of its own. */
-static Status simulate(Pilot *w, uint32_t seed, double X[], size_t slices[], Err *err)
+/* A Latin hypercube of its own, simulated under every record; then the records in the order found, and the replicates
+ * of all. */
+static Status choose(Pilot *w, Adapter *a, uint32_t seed, double X[], size_t order[], Err *err)
 {
     const Problem *p = w->problem;
     SimTask tasks[PILOT];
-    latin_hypercube(seed, UINT32_MAX, PILOT, p->n_var, X, slices);
+    latin_hypercube(seed, UINT32_MAX, PILOT, p->n_var, X, order); /* which has room for the slices */
     for (size_t i = 0; i < PILOT; i++) {
         double *x = X + i * p->n_var;
         for (size_t d = 0; d < p->n_var; d++)
@@ -37,14 +38,7 @@ static Status simulate(Pilot *w, uint32_t seed, double X[], size_t slices[], Err
         problem_repair(p, x);
         tasks[i] = (SimTask){.x = x, .n_parts = w->n_records, .parts = w->parts + i * w->n_records};
     }
-    return tower_run(p, PILOT, tasks, NULL, NULL, err);
-}
-
-/* Records in the order found, then the replicates of all. */
-static Status choose(Pilot *w, Adapter *a, uint32_t seed, double X[], size_t order[], Err *err)
-{
-    const Problem *p = w->problem;
-    TRY(simulate(w, seed, X, order, err)); /* which has room for the slices */
+    TRY(tower_run(p, PILOT, tasks, NULL, NULL, err));
     TRY(race_order(w->n_records, PILOT, p->n_obj, results, w, order, err));
     for (size_t i = w->n_records; i < p->n_parts; i++)
         order[i] = i;

@@ -26,57 +26,43 @@ static const Evaluation *find_known(Loop *l, const Question *q)
                : NULL;
 }
 
-static Status ask(Loop *l, const Question *q, Err *err)
-{
-    const Evaluation *known = find_known(l, q);
-    if (known)
-        return search_tell(l->search, q->number, known, NULL, err);
-    return queue_ask(l->queue,
-                     &(Asked){.id = (long)q->number,
-                              .x = q->x,
-                              .repeat = q->repeat,
-                              .kind = q->kind,
-                              .n_parts = q->n_parts,
-                              .cheap_parts = q->cheap_parts},
-                     err);
-}
-
-static Status wait(Loop *l, Err *err)
-{
-    Finished done;
-    const double before = clock_seconds();
-    const Status status = queue_next(l->queue, &done, err);
-    l->time.waiting += clock_seconds() - before;
-    TRY(status);
-    return search_tell(l->search, (size_t)done.evaluation->id, done.evaluation, done.parts, err);
-}
-
-/* 1: the observer wants no more. */
-static int show(Loop *l, ObserveFn observe, void *user)
-{
-    const double most = l->config->max_seconds;
-    l->time.all = clock_seconds() - l->start;
-    if (most > 0.0 && l->time.all >= most)
-        search_stop(l->search, STOP_TIME);
-    const SearchView view = search_look(l->search);
-    return observe && observe(&view, &l->time, user) && view.reason == STOP_NONE;
-}
-
+/* Until the search ends, or the observer wants no more. */
 static Status run(Loop *l, ObserveFn observe, void *user, StopReason *reason, Err *err)
 {
     for (SearchMove move = SEARCH_ASKS; move != SEARCH_ENDS;) {
         Question q;
+        Finished done;
         const double before = clock_seconds();
-        const Status status = search_ask(l->search, &move, &q, err);
+        Status status = search_ask(l->search, &move, &q, err);
         l->time.choosing += clock_seconds() - before;
         TRY(status);
-        if (move == SEARCH_ASKS)
-            TRY(ask(l, &q, err));
-        if (move == SEARCH_WAITS)
-            TRY(wait(l, err));
-        if (move == SEARCH_STEPS && show(l, observe, user)) {
-            *reason = STOP_ASKED;
-            return STATUS_OK;
+        if (move == SEARCH_ASKS) { /* a design, whose answer may be known from before */
+            const Evaluation *known = find_known(l, &q);
+            TRY(known ? search_tell(l->search, q.number, known, NULL, err)
+                      : queue_ask(l->queue,
+                                  &(Asked){.id = (long)q.number,
+                                           .x = q.x,
+                                           .repeat = q.repeat,
+                                           .kind = q.kind,
+                                           .n_parts = q.n_parts,
+                                           .cheap_parts = q.cheap_parts},
+                                  err));
+        } else if (move == SEARCH_WAITS) {
+            const double asked = clock_seconds();
+            status = queue_next(l->queue, &done, err);
+            l->time.waiting += clock_seconds() - asked;
+            TRY(status);
+            TRY(search_tell(l->search, (size_t)done.evaluation->id, done.evaluation, done.parts, err));
+        } else if (move == SEARCH_STEPS) { /* the end of a generation */
+            const double most = l->config->max_seconds;
+            l->time.all = clock_seconds() - l->start;
+            if (most > 0.0 && l->time.all >= most)
+                search_stop(l->search, STOP_TIME);
+            const SearchView view = search_look(l->search);
+            if (observe && observe(&view, &l->time, user) && view.reason == STOP_NONE) {
+                *reason = STOP_ASKED;
+                return STATUS_OK;
+            }
         }
     }
     *reason = search_look(l->search).reason;

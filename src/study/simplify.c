@@ -1,216 +1,142 @@
 #include "study/simplify.h"
 
-#include "base/clock.h"
 #include "settings/options.h"
-#include "study/run_simulator.h"
 
+/* Rounds of the descent on steps, at most. */
 enum { ROUNDS = 50 };
 
-typedef struct {
-    const Run *run;
-    const SimplifyConfig *config;
-    Simplified *out;
-    RunSimulator simulator;
-    const DesignSpace *space;
-    size_t n_var, n_obj;
-    double first[OBJECTIVES_MAX]; /* minimised objectives of the start */
-    double violation;             /* ... of the limits */
-    double *x;                    /* (n_var) so far */
-    double *X, *F, *G;            /* (2 n_var, n_var) (2 n_var, n_obj) (2 n_var, n_con) designs of a round */
-    unsigned char *ok;            /* (2 n_var) */
-    size_t n;                     /* of them */
-} Simplify;
+/* -- variables and the devices that they stand for ----------------------------------------------------------------- */
 
-/* -- designs of a round -------------------------------------------------------------------------------------------- */
+static const DesignSpace *space_of(const Improver *m)
+{
+    return &m->run->schema.design;
+}
 
 /* The place of the word none of choice j; -1: it has none, or is no choice. */
-static int none_of(const Simplify *s, size_t j)
+static int none_of(const Improver *m, size_t j)
 {
     int w = 0;
-    for (const char *word; (word = design_word(s->space, (int)j, w)); w++)
+    for (const char *word; (word = design_word(space_of(m), (int)j, w)); w++)
         if (strcmp(word, "none") == 0)
             return w;
     return -1;
 }
 
-/* Variable j is a gap of the present design that is narrower than an open one. */
-static int is_stop(const Simplify *s, size_t j)
+/* Variable j is a gap of the best design that is narrower than an open one. */
+static int is_stop(const Improver *m, size_t j)
 {
-    return (int)j < s->space->n_gaps && s->x[j] < DESIGN_OPEN_M;
+    return (int)j < space_of(m)->n_gaps && m->x[j] < DESIGN_OPEN_M;
 }
 
-/* Variable j stands for a device that may go: a choice where the space has any, whose last variable is one then. */
-static int is_device(const Simplify *s, size_t j)
+/* Variable j without its device; NAN: it stands for none that may go. Devices are choices where the space has any,
+ * whose last variable is one then. */
+static double gone(const Improver *m, size_t j)
 {
-    return none_of(s, s->n_var - 1) < 0 ? is_stop(s, j) : none_of(s, j) >= 0 && s->x[j] != none_of(s, j);
-}
-
-static size_t n_left(const Simplify *s)
-{
-    size_t n = 0;
-    for (size_t j = 0; j < s->n_var; j++)
-        n += is_device(s, j);
-    return n;
+    const int none = none_of(m, j);
+    if (none_of(m, m->problem->n_var - 1) < 0)
+        return is_stop(m, j) ? DESIGN_OPEN_M : NAN;
+    return none >= 0 && m->x[j] != none ? none : (double)NAN;
 }
 
 /* Variable k moves with variable j. */
-static int moves_with(const Simplify *s, size_t j, size_t k)
+static int moves_with(const Improver *m, size_t j, size_t k)
 {
-    return k == j || (s->config->zones > 0 && design_share_zone(s->space, (int)j, (int)k, s->config->zones));
+    return k == j || (m->config->zones > 0 && design_share_zone(space_of(m), (int)j, (int)k, m->config->zones));
 }
 
 /* The first variable of those that move together. */
-static int leads(const Simplify *s, size_t j)
+static int leads(const Improver *m, size_t j)
 {
     for (size_t k = 0; k < j; k++)
-        if (moves_with(s, j, k))
+        if (moves_with(m, j, k))
             return 0;
     return 1;
 }
 
-/* The present design with variable j, and what moves with it, at `value`. */
-static void add(Simplify *s, size_t j, double value)
+/* -- designs of a round -------------------------------------------------------------------------------------------- */
+
+/* The best design with variable j at `value`, with_zone: and what moves with it. It is repaired by the tower alone: the
+ * steps of a search have no gap without a stop. */
+static void add(Improver *m, size_t j, double value, int with_zone)
 {
-    double *x = s->X + s->n++ * s->n_var;
-    memcpy(x, s->x, s->n_var * sizeof *x);
-    for (size_t k = 0; k < s->n_var; k++)
-        if (moves_with(s, j, k))
+    const Problem *p = m->problem;
+    double *x = m->X + m->n++ * p->n_var;
+    memcpy(x, m->x, p->n_var * sizeof *x);
+    for (size_t k = 0; k < p->n_var; k++)
+        if (k == j || (with_zone && moves_with(m, j, k)))
             x[k] = value;
+    p->repair(x, p->self);
 }
 
-/* Of variable j where its device has gone. */
-static double gone(const Simplify *s, size_t j)
+/* The best design with all its numbers, as the next one of the path. */
+static Status note(Improver *m, Simplification what, Err *err)
 {
-    return none_of(s, j) >= 0 ? none_of(s, j) : DESIGN_OPEN_M;
-}
-
-/* Above 1 where limits are violated by more than at the start. */
-static double loss_of(const Simplify *s, const double f[], const double g[])
-{
-    const double more = violation_of(adapter_problem(s->simulator.adapter)->n_con, g) - s->violation;
-    double loss = more > 0.0 ? 1.0 + more : -INFINITY;
-    for (size_t k = 0; k < s->n_obj; k++)
-        if (isfinite(s->config->slack[k]))
-            loss = fmax(loss, (f[k] - s->first[k]) / fmax(s->config->slack[k] * fabs(s->first[k]), 1e-300));
-    return loss;
-}
-
-static Status simulate_round(Simplify *s, Err *err)
-{
-    const Problem *p = adapter_problem(s->simulator.adapter);
-    for (size_t i = 0; i < s->n; i++) /* the steps of a search have no gap without a stop */
-        p->repair(s->X + i * s->n_var, p->self);
-    s->out->n_evaluated += s->n;
-    return queue_evaluate(s->simulator.queue, s->n, s->X, NULL, s->F, s->G, s->ok, err);
-}
-
-/* The design of a simulated round with the least loss; s->n: none succeeds. */
-static size_t find_least(const Simplify *s, double *loss)
-{
-    const size_t n_con = adapter_problem(s->simulator.adapter)->n_con;
-    size_t least = s->n;
-    *loss = INFINITY;
-    for (size_t i = 0; i < s->n; i++) {
-        const double now = loss_of(s, s->F + i * s->n_obj, s->G + i * n_con);
-        if (s->ok[i] && now < *loss) {
-            least = i;
-            *loss = now;
-        }
-    }
-    return least;
-}
-
-/* The present design with all its numbers, as the next one of the path. */
-static Status note(Simplify *s, Simplification what, Err *err)
-{
-    Finished done;
-    Simplified *out = s->out;
-    TRY(queue_ask(s->simulator.queue, &(Asked){.x = s->x}, err));
-    TRY(queue_next(s->simulator.queue, &done, err));
-    if (done.evaluation->outcome != OUTCOME_OK)
-        return bad_data(err, "the design fails when it is simulated again (%s %s): choose another one",
-                        outcome_word(done.evaluation->outcome), done.evaluation->reason);
-    if (what == SIMPLIFY_START) {
-        memcpy(s->first, done.f, s->n_obj * sizeof *done.f);
-        s->violation = done.evaluation->violation;
-    }
-    out->loss[what] = loss_of(s, done.f, done.g);
-    out->n_left[what] = n_left(s);
-    for (size_t k = 0; k < s->n_obj; k++)
-        out->error[what][k] = NAN;
-    out->n_evaluated++;
-    out->n = (size_t)what + 1;
-    return evaluation_table_append(&out->designs, done.evaluation, err);
+    Improved *out = m->out;
+    double f[OBJECTIVES_MAX];
+    if (what != SIMPLIFY_START)
+        TRY(improver_note(m, 1, (const double *[]){m->x}, 0, err));
+    TRY(improver_check(m, err));
+    for (size_t k = 0; k < m->problem->n_obj; k++)
+        f[k] = improver_path(m, what, k);
+    for (size_t j = 0; j < m->problem->n_var; j++)
+        out->n_left[what] += !isnan(gone(m, j));
+    m->value = out->loss[what] = improver_loss(m, f, out->designs.row[what].violation);
+    return STATUS_OK;
 }
 
 /* -- the path ------------------------------------------------------------------------------------------------------ */
 
-/* The same results, but for what counts devices; beside links a stop that never closes changes their steps. */
-static int is_same(const Simplify *s, const double f[])
+/* Every stop alone is taken out; those without which the results are the same go together. What counts devices does not
+ * tell; beside links a stop that never closes changes their steps, by next to nothing. */
+static Status drop_idle(Improver *m, Err *err)
 {
     static const double ALIKE = 1e-6;
-    int same = 1;
-    for (size_t k = 0; k < s->n_obj; k++) {
-        const int id = s->run->schema.order.of[k];
-        same &= fabs(f[k] - s->first[k]) <= ALIKE * fabs(s->first[k]) || id == MEASURE_DEVICES || id == MEASURE_COST;
+    const size_t n_obj = m->problem->n_obj;
+    m->n = 0;
+    m->value = -INFINITY; /* all are looked at, none becomes the best */
+    for (size_t j = 0; j < m->problem->n_var; j++)
+        if (!isnan(gone(m, j)))
+            add(m, j, gone(m, j), 0);
+    TRY(improver_try(m, err));
+    for (size_t j = 0, i = 0; j < m->problem->n_var; j++) {
+        if (isnan(gone(m, j)))
+            continue;
+        int is_same = m->ok[i];
+        for (size_t k = 0; k < n_obj; k++) {
+            const int id = m->run->schema.order.of[k];
+            is_same &= fabs(m->F[i * n_obj + k] - m->first[k]) <= ALIKE * fabs(m->first[k]) || id == MEASURE_DEVICES ||
+                       id == MEASURE_COST;
+        }
+        if (is_same)
+            m->x[j] = gone(m, j);
+        i++;
     }
-    return same;
-}
-
-static Status drop_idle_stops(Simplify *s, Err *err)
-{
-    s->n = 0;
-    for (size_t j = 0; j < s->n_var; j++)
-        if (is_device(s, j)) {
-            double *x = s->X + s->n++ * s->n_var; /* alone */
-            memcpy(x, s->x, s->n_var * sizeof *x);
-            x[j] = gone(s, j);
-        }
-    TRY(simulate_round(s, err));
-    for (size_t j = 0, i = 0; j < s->n_var; j++)
-        if (is_device(s, j)) { /* design i of the round does not have it */
-            if (s->ok[i] && is_same(s, s->F + i * s->n_obj))
-                s->x[j] = gone(s, j);
-            i++;
-        }
-    return note(s, SIMPLIFY_CLOSING, err);
+    return note(m, SIMPLIFY_CLOSING, err);
 }
 
 /* The mean of what moves with variable j, of gaps that are stops; of words the most frequent one, of equals the
  * first. */
-static double middle_of(const Simplify *s, size_t j)
+static double middle_of(const Improver *m, size_t j)
 {
-    double sum = 0.0, word = s->x[j];
+    double sum = 0.0, word = m->x[j];
     size_t n = 0, most = 0;
-    for (size_t k = 0; k < s->n_var; k++) {
+    for (size_t k = 0; k < m->problem->n_var; k++) {
         size_t alike = 0;
-        if (!moves_with(s, j, k) || ((int)k < s->space->n_gaps && !is_stop(s, k)))
+        if (!moves_with(m, j, k) || ((int)k < space_of(m)->n_gaps && !is_stop(m, k)))
             continue;
-        for (size_t i = 0; i < s->n_var; i++)
-            alike += moves_with(s, j, i) && s->x[i] == s->x[k];
+        for (size_t i = 0; i < m->problem->n_var; i++)
+            alike += moves_with(m, j, i) && m->x[i] == m->x[k];
         if (alike > most) {
             most = alike;
-            word = s->x[k];
+            word = m->x[k];
         }
-        sum += s->x[k];
+        sum += m->x[k];
         n++;
     }
-    return n == 0 || design_word(s->space, (int)j, 0) ? word : sum / (double)n;
+    return n == 0 || design_word(space_of(m), (int)j, 0) ? word : sum / (double)n;
 }
 
-static Status merge_zones(Simplify *s, Err *err)
-{
-    for (size_t j = 0; j < s->n_var && s->config->zones > 0; j++) {
-        s->n = 0;
-        if (leads(s, j))
-            add(s, j, middle_of(s, j));
-        if (s->n > 0)
-            memcpy(s->x, s->X, s->n_var * sizeof *s->x);
-    }
-    return note(s, SIMPLIFY_ZONES, err);
-}
-
-static size_t nearest_plate(const SimplifyConfig *c, double t)
+static size_t nearest_plate(const ImproveConfig *c, double t)
 {
     size_t best = 0;
     for (size_t i = 1; i < c->n_plates; i++)
@@ -219,137 +145,75 @@ static size_t nearest_plate(const SimplifyConfig *c, double t)
     return best;
 }
 
-static Status put_on_steps(Simplify *s, Err *err)
+/* An ImproveStep on the numbers that are sold: every neighbour of the best design. */
+static Status move(Improver *m, double size, Err *err)
 {
-    const SimplifyConfig *c = s->config;
-    for (size_t j = 0; j < s->n_var; j++)
-        if (design_is_wall(s->space, (int)j) && c->n_plates > 0)
-            s->x[j] = c->plate[nearest_plate(c, s->x[j])];
-        else if (is_stop(s, j) && c->gap_step > 0.0)
-            s->x[j] = fmax(round(s->x[j] / c->gap_step), 1.0) * c->gap_step;
-    return note(s, SIMPLIFY_STEPS, err);
-}
-
-static void add_neighbours(Simplify *s)
-{
-    const SimplifyConfig *c = s->config;
-    s->n = 0;
-    for (size_t j = 0; j < s->n_var; j++) {
-        if (!leads(s, j)) {
+    (void)size;
+    const ImproveConfig *c = m->config;
+    m->n = 0;
+    for (size_t j = 0; j < m->problem->n_var; j++) {
+        if (!leads(m, j)) {
             continue;
-        } else if (design_is_wall(s->space, (int)j) && c->n_plates > 0) {
-            const size_t at = nearest_plate(c, s->x[j]);
+        } else if (design_is_wall(space_of(m), (int)j) && c->n_plates > 0) {
+            const size_t at = nearest_plate(c, m->x[j]);
             for (size_t next = at - 1; next != at + 3; next += 2) /* before the first one it is too large */
                 if (next < c->n_plates)
-                    add(s, j, c->plate[next]);
-        } else if (is_stop(s, j) && c->gap_step > 0.0) {
-            const double steps = round(s->x[j] / c->gap_step);
-            add(s, j, (steps + 1.0) * c->gap_step);
+                    add(m, j, c->plate[next], 1);
+        } else if (is_stop(m, j) && c->gap_step > 0.0) {
+            const double steps = round(m->x[j] / c->gap_step);
+            add(m, j, (steps + 1.0) * c->gap_step, 1);
             if (steps > 1.0)
-                add(s, j, (steps - 1.0) * c->gap_step);
+                add(m, j, (steps - 1.0) * c->gap_step, 1);
         }
     }
+    return improver_try(m, err);
 }
 
-static Status descend_on_steps(Simplify *s, Err *err)
+/* Device after device goes, the one that loses least, while what may be lost is not. */
+static Status drop_what_earns_little(Improver *m, Err *err)
 {
-    double now, loss = s->out->loss[SIMPLIFY_STEPS];
-    for (int round = 0; round < ROUNDS && loss > 1.0; round++) {
-        add_neighbours(s);
-        TRY(simulate_round(s, err));
-        const size_t least = find_least(s, &now);
-        if (!(now < loss))
-            break;
-        memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
-        loss = now;
-    }
-    return note(s, SIMPLIFY_MOVED, err);
+    do {
+        m->n = 0;
+        m->value = nextafter(1.0, 2.0);
+        for (size_t j = 0; j < m->problem->n_var; j++)
+            if (!isnan(gone(m, j)) && leads(m, j))
+                add(m, j, gone(m, j), 1);
+        TRY(improver_try(m, err));
+    } while (m->value <= 1.0);
+    return note(m, SIMPLIFY_FEWER, err);
 }
 
-static Status drop_what_earns_little(Simplify *s, Err *err)
+Status simplify_design(Improver *m, Err *err)
 {
-    for (double loss;;) {
-        s->n = 0;
-        for (size_t j = 0; j < s->n_var; j++)
-            if (is_device(s, j) && leads(s, j))
-                add(s, j, gone(s, j));
-        TRY(simulate_round(s, err));
-        const size_t least = find_least(s, &loss);
-        if (!(loss <= 1.0))
-            return note(s, SIMPLIFY_FEWER, err);
-        memcpy(s->x, s->X + least * s->n_var, s->n_var * sizeof *s->x);
-    }
-}
-
-static Status reserve(Simplify *s, const double start[], Err *err)
-{
-    const size_t n_con = adapter_problem(s->simulator.adapter)->n_con, n = 2 * s->n_var; /* as add_neighbours may add */
-    TRY_ROOM(s->x, s->n_var, "variables", err);
-    TRY_ROOM(s->X, n * s->n_var, "designs", err);
-    TRY_ROOM(s->F, n * s->n_obj, "designs", err);
-    TRY_ROOM(s->G, n * n_con + 1, "designs", err);
-    TRY_ROOM(s->ok, n, "designs", err);
-    memcpy(s->x, start, s->n_var * sizeof *s->x);
-    return STATUS_OK;
-}
-
-/* What twice the steps change in the designs of the path. */
-static Status find_errors(Simplify *s, Err *err)
-{
+    const ImproveConfig *c = m->config;
+    const size_t n_var = m->problem->n_var;
     SimOptions finer;
-    const EvaluationTable *path = &s->out->designs;
-    if (!estimate_options(&s->run->settings->sim, &finer))
-        return STATUS_OK;
-    TRY(run_simulator_open(&s->simulator, s->run->settings, &finer, s->config->go_on, s->config->user, err));
-    TRY(queue_evaluate(s->simulator.queue, path->n, path->x, NULL, s->F, s->G, s->ok, err));
-    for (size_t i = 0; i < path->n; i++)
-        for (size_t k = 0; k < s->n_obj && s->ok[i]; k++)
-            s->out->error[i][k] =
-                fabs(s->F[i * s->n_obj + k] - schema_objective(&s->run->schema, k)->sense * path->row[i].f[k]);
-    return STATUS_OK;
-}
+    m->violation = m->out->designs.row[SIMPLIFY_START].violation;
+    TRY(note(m, SIMPLIFY_START, err));
+    TRY(drop_idle(m, err));
 
-static Status walk(Simplify *s, const double start[], Err *err)
-{
-    const Settings *own = s->run->settings;
-    TRY(run_simulator_open(&s->simulator, own, &own->sim, s->config->go_on, s->config->user, err));
-    TRY(reserve(s, start, err));
-    TRY(note(s, SIMPLIFY_START, err));
-    TRY(drop_idle_stops(s, err));
-    TRY(merge_zones(s, err));
-    TRY(put_on_steps(s, err));
-    TRY(descend_on_steps(s, err));
-    if (s->out->loss[SIMPLIFY_MOVED] <= 1.0)
-        TRY(drop_what_earns_little(s, err));
-    return find_errors(s, err);
-}
+    for (size_t j = 0; j < n_var && c->zones > 0; j++)
+        if (leads(m, j)) {
+            m->n = 0;
+            add(m, j, middle_of(m, j), 1);
+            memcpy(m->x, m->X, n_var * sizeof *m->x);
+        }
+    TRY(note(m, SIMPLIFY_ZONES, err));
 
-Status simplify_design(const Run *run, size_t row, const SimplifyConfig *config, Simplified *out, Err *err)
-{
-    const Schema *schema = &run->schema;
-    const double begun = clock_seconds();
-    Simplify s = {.run = run,
-                  .config = config,
-                  .out = out,
-                  .space = &schema->design,
-                  .n_var = schema->n_var,
-                  .n_obj = schema->n_obj};
-    *out = (Simplified){.designs = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
-    if (run->settings->problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", run->folder);
-    const Status status = walk(&s, run_x(run, row), err);
-    run_simulator_close(&s.simulator);
-    free(s.x);
-    free(s.X);
-    free(s.F);
-    free(s.G);
-    free(s.ok);
-    out->seconds = clock_seconds() - begun;
-    return status;
-}
+    for (size_t j = 0; j < n_var; j++)
+        if (design_is_wall(space_of(m), (int)j) && c->n_plates > 0)
+            m->x[j] = c->plate[nearest_plate(c, m->x[j])];
+        else if (is_stop(m, j) && c->gap_step > 0.0)
+            m->x[j] = fmax(round(m->x[j] / c->gap_step), 1.0) * c->gap_step;
+    TRY(note(m, SIMPLIFY_STEPS, err));
 
-void simplified_free(Simplified *s)
-{
-    evaluation_table_free(&s->designs);
-    *s = (Simplified){0};
+    /* Without a gain the same neighbours come again: one idle step ends it. */
+    m->enough = 1.0;
+    m->idle_max = 1;
+    m->budget = ROUNDS * 2 * n_var;
+    TRY(improver_descend(m, move, err));
+    TRY(note(m, SIMPLIFY_MOVED, err));
+    if (m->out->loss[SIMPLIFY_MOVED] <= 1.0)
+        TRY(drop_what_earns_little(m, err));
+    return improver_finer(m->run->settings, &finer) ? improver_errors(m, SIMPLIFY_START, &finer, 0, err) : STATUS_OK;
 }

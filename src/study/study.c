@@ -54,16 +54,6 @@ static double session_seconds(const Study *study)
     return clock_seconds() - study->start;
 }
 
-/* -- settings ------------------------------------------------------------------------------------------------------ */
-
-static Settings settings_as_used(const Settings *s, const char *folder)
-{
-    Settings used = *s;
-    settings_make_absolute(&used);
-    snprintf(used.run.out, sizeof used.run.out, "%.*s", OPTION_TEXT_MAX - 1, folder);
-    return used;
-}
-
 /* -- while the search runs ---------------------------------------------------------------------------------------- */
 
 static int may_go_on(void *user)
@@ -89,21 +79,6 @@ static int may_go_on(void *user)
     return 1;
 }
 
-static void count_failures(Study *study, const Evaluation *e)
-{
-    const long most = study->used.search.failures_max;
-    const int is_cheap = e->kind == KIND_SCREENED;
-    long *n = &study->failures[is_cheap];
-    *n = e->outcome == OUTCOME_OK ? 0 : *n + 1;
-    if (*n == 0 || study->failing)
-        return;
-    snprintf(study->failure, sizeof study->failure, "%s: %s", outcome_word(e->outcome), e->reason);
-    if (most > 0 && *n >= most) {
-#pragma omp atomic write
-        study->failing = 1 + is_cheap;
-    }
-}
-
 /* After `now` evaluations; view NULL: within the first generation of the session. */
 static void show_progress(const Study *study, const SearchView *view, size_t now)
 {
@@ -119,62 +94,61 @@ static void show_progress(const Study *study, const SearchView *view, size_t now
         study->options->progress(&p, study->options->user);
 }
 
-/* Simulations may take minutes, and the first generation is the largest. */
-static void show_beginning(Study *study)
-{
-    static const double EVERY_S = 0.5;
-    const double now = clock_seconds();
-    if (study->generation > study->first_generation || now < study->next_shown)
-        return;
-    study->next_shown = now + EVERY_S;
-    show_progress(study, NULL, study->summary->n_simulated);
-}
-
+/* Counts an evaluation and stores it as of a generation that is not finished. */
 static Status evaluation_done(const Evaluation *e, void *user, Err *err)
 {
+    static const double EVERY_S = 0.5;
     Study *study = user;
+    const long most = study->used.search.failures_max;
+    const int is_cheap = e->kind == KIND_SCREENED, has_failed = e->outcome != OUTCOME_OK;
     pthread_mutex_lock(&study->lock);
+    long *in_a_row = &study->failures[is_cheap];
+    *in_a_row = has_failed ? *in_a_row + 1 : 0;
+    if (has_failed && !study->failing) {
+        snprintf(study->failure, sizeof study->failure, "%s: %s", outcome_word(e->outcome), e->reason);
+        if (most > 0 && *in_a_row >= most) {
+#pragma omp atomic write
+            study->failing = 1 + is_cheap;
+        }
+    }
     study->summary->n_simulated++;
-    study->summary->n_failed += e->outcome != OUTCOME_OK;
-    count_failures(study, e);
+    study->summary->n_failed += has_failed;
     if (isfinite(e->seconds))
         study->summary->busy_s += e->seconds;
-    Evaluation row = *e; /* of a generation that is not finished */
+    Evaluation row = *e;
     row.generation = study->generation;
     row.kind = KIND_UNFINISHED;
     const Status status = store_evaluation(study->store, &row, err);
-    show_beginning(study);
+
+    /* Simulations may take minutes, and the first generation is the largest. */
+    const double now = clock_seconds();
+    if (study->generation <= study->first_generation && now >= study->next_shown) {
+        study->next_shown = now + EVERY_S;
+        show_progress(study, NULL, study->summary->n_simulated);
+    }
     pthread_mutex_unlock(&study->lock);
     return status;
 }
 
-static Status write_generation(Study *study, const SearchView *view, const SearchTime *t, Err *err)
+/* Stores the end of a generation; 1: the search is to stop. */
+static int observe(const SearchView *view, const SearchTime *t, void *user)
 {
+    Study *study = user;
+    StudySummary *sum = study->summary;
+    pthread_mutex_lock(&study->lock);
     const double session = session_seconds(study);
     const SessionTimes times = {study->seconds_before + session, session, t->all, t->waiting, t->choosing};
-    TRY(store_generation(study->store, view, &times, err));
-    return study_log_generation(study->store, view, &times, err);
-}
-
-static void take_view(StudySummary *sum, const SearchView *view)
-{
+    study->status = store_generation(study->store, view, &times, study->err);
+    if (study->status == STATUS_OK)
+        study->status = study_log_generation(study->store, view, &times, study->err);
+    study->generation = view->generation + 1;
+    pthread_mutex_unlock(&study->lock);
     sum->n_front = view->all->n_front;
     sum->n_repeats = view->all->n_replicates;
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
     sum->has_left_screening = view->has_left_screening;
-}
-
-static int observe(const SearchView *view, const SearchTime *time, void *user)
-{
-    Study *study = user;
-    StudySummary *sum = study->summary;
-    pthread_mutex_lock(&study->lock);
-    study->status = write_generation(study, view, time, study->err);
-    study->generation = view->generation + 1;
-    pthread_mutex_unlock(&study->lock);
-    take_view(sum, view);
     show_progress(study, view, view->n_evaluations);
     return study->status != STATUS_OK || !may_go_on(study);
 }
@@ -262,22 +236,11 @@ static Status ask_first(Study *study, Err *err)
     return adapter_constrain(study->adapter, n, err);
 }
 
-static Status keep_first(Study *study, Err *err)
-{
-    const Problem *p = adapter_problem(study->adapter);
-    double f[OBJECTIVES_MAX], g[LIMITS_MAX + CONSTRAINTS_MAX];
-    for (size_t i = 0; i < study->first.n; i++) {
-        Evaluation *e = &study->first.row[i];
-        problem_judge(p, e, f, g);
-        e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, g) : INFINITY;
-        TRY(evaluation_done(e, study, err));
-    }
-    return STATUS_OK;
-}
-
+/* A new run, which has the designs that were asked before it had columns. */
 static Status begin(Study *study, Err *err)
 {
     char *provenance;
+    double f[OBJECTIVES_MAX], g[LIMITS_MAX + CONSTRAINTS_MAX];
     TRY(search_config(study, &(SearchConfig){0}, err)); /* a start that is refused leaves no run */
     tell_start(study);
     TRY(ask_first(study, err));
@@ -285,7 +248,14 @@ static Status begin(Study *study, Err *err)
     const Status status = store_begin(study->store, adapter_schema(study->adapter), &study->used, provenance, err);
     free(provenance);
     TRY(status);
-    return keep_first(study, err);
+    const Problem *p = adapter_problem(study->adapter);
+    for (size_t i = 0; i < study->first.n; i++) {
+        Evaluation *e = &study->first.row[i];
+        problem_judge(p, e, f, g);
+        e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, g) : INFINITY;
+        TRY(evaluation_done(e, study, err));
+    }
+    return STATUS_OK;
 }
 
 /* n_later: evaluations behind those of finished generations, n_failed of them failed. */
@@ -329,19 +299,6 @@ static Status check_state(const Study *study, const Run *run, Err *err)
                           study->summary->folder, study->summary->folder);
 }
 
-/* Of search.max_evals. */
-static Status count_evaluations(Study *study, Err *err)
-{
-    Run all;
-    study->evaluations_before = study->summary->n_before;
-    if (!settings_screens(store_run(study->store)->settings))
-        return STATUS_OK;
-    TRY(store_read(study->store, &all, err));
-    study->evaluations_before = run_evaluations(&all, 0);
-    run_free(&all);
-    return STATUS_OK;
-}
-
 static Status resume(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
@@ -351,7 +308,13 @@ static Status resume(Study *study, Err *err)
     for (size_t i = 0; i < later->n; i++)
         n_failed += later->row[i].outcome != OUTCOME_OK;
     sum_up(sum, run, later->n, n_failed);
-    TRY(count_evaluations(study, err));
+    study->evaluations_before = sum->n_before;
+    if (run_is_screened(run)) { /* designs are shares of an evaluation */
+        Run all;
+        TRY(store_read(study->store, &all, err));
+        study->evaluations_before = run_evaluations(&all, 0);
+        run_free(&all);
+    }
     TRY(differences_check(&(Comparison){.run = run,
                                         .used = &study->used,
                                         .adapter = study->adapter,
@@ -368,46 +331,28 @@ static Status resume(Study *study, Err *err)
     return store_resume(study->store, adapter_schema(study->adapter), &study->used, study->has_new_limits, err);
 }
 
-static Status set_time(Study *study, double hours, Err *err)
-{
-    study->max_s = hours > 0.0 ? 3600.0 * hours : INFINITY;
-    return hours == OPTION_WORD ? job_seconds(&study->max_s, err) : STATUS_OK;
-}
-
+/* Opens problem and run, which begins or is resumed. */
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
+    const double hours = s->search.max_hours;
+    char *folder = study->summary->folder;
     Settings open = *s;
     open.problem.constraints = -1;
-    TRY(set_time(study, s->search.max_hours, err));
+    study->max_s = hours > 0.0 ? 3600.0 * hours : INFINITY;
+    TRY(hours == OPTION_WORD ? job_seconds(&study->max_s, err) : STATUS_OK);
     TRY(adapter_open(&study->adapter, &open, err));
     if (!study->store)
         TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
     TRY(store_forget_empty(study->store, err));
-    snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
+    snprintf(folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
-    study->used = settings_as_used(s, study->summary->folder);
+    study->used = *s;
+    settings_make_absolute(&study->used);
+    snprintf(study->used.run.out, OPTION_TEXT_MAX, "%.*s", OPTION_TEXT_MAX - 1, folder);
     return store_run(study->store) ? resume(study, err) : begin(study, err);
 }
 
 /* -- the search, from where it stands ------------------------------------------------------------------------------ */
-
-/* What the run has of the search, as the search takes it up: the finished generations, then the evaluations of the one
- * that was cut short; with the search's own front, as the run's digest has proved it. */
-static SearchStart find_start(const Study *study)
-{
-    const Run *run = store_run(study->store);
-    if (!run)
-        return (SearchStart){.n_later = study->first.n, .row = study->first.row};
-    const EvaluationTable *later = store_unfinished(study->store);
-    return (SearchStart){.n = run->n_finished,
-                         .n_later = later->n,
-                         .row = later->row,
-                         .state = run->state,
-                         .n_state = run->n_state,
-                         .on_front = run->schema.is_noisy ? NULL : store_on_front(study->store),
-                         .each = run->n_finished > 0 ? store_each_finished : NULL,
-                         .user = study->store};
-}
 
 /* A stop is no error: the session ends as others do. One that nobody here asked for is a loss: of a rank, say. */
 static Status note_stop(Study *study, Status status, const Err *err)
@@ -420,13 +365,22 @@ static Status note_stop(Study *study, Status status, const Err *err)
     return STATUS_OK;
 }
 
+/* The search takes up what the run has of it: the finished generations, then the evaluations of the one that was cut
+ * short; with the search's own front, as the run's digest has proved it. */
 static Status run_search(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
-    const SearchStart start = find_start(study);
+    const EvaluationTable *later = run ? store_unfinished(study->store) : &study->first;
+    SearchStart start = {.n_later = later->n, .row = later->row};
     SearchConfig config;
     TRY(search_config(study, &config, err));
     if (run) {
+        start.n = run->n_finished;
+        start.state = run->state;
+        start.n_state = run->n_state;
+        start.on_front = run->schema.is_noisy ? NULL : store_on_front(study->store);
+        start.each = run->n_finished > 0 ? store_each_finished : NULL;
+        start.user = study->store;
         config.planned_evals = run->planned_evals;
         config.initial = MIN_OF(study->used.search.initial, run->planned_evals);
     }
@@ -439,16 +393,6 @@ static Status run_search(Study *study, Err *err)
     return note_stop(study, status, err);
 }
 
-static const char *why_stopped(const Study *study)
-{
-    size_t n_ranks;
-    if (study->lost[0])
-        return study->lost;
-    if (study->summary->stopped == STOP_ASKED && study->asked == SIGTERM && cluster_executor(&n_ranks))
-        return "stopped by SIGTERM (mpirun: a rank has died, or it was asked to end)";
-    return stop_reason_words(study->summary->stopped);
-}
-
 static Status finish(Study *study, Err *err)
 {
     StudySummary *sum = study->summary;
@@ -456,7 +400,11 @@ static Status finish(Study *study, Err *err)
     const int is_final = sum->stopped != STOP_ASKED;
     if (!is_final)
         sum->stopped = study->failing ? STOP_FAILURES : study->late ? STOP_TIME : STOP_ASKED;
-    const char *why = why_stopped(study);
+    size_t n_ranks;
+    const char *why = study->lost[0] ? study->lost
+                      : sum->stopped == STOP_ASKED && study->asked == SIGTERM && cluster_executor(&n_ranks)
+                          ? "stopped by SIGTERM (mpirun: a rank has died, or it was asked to end)"
+                          : stop_reason_words(sum->stopped);
     sum->seconds = study->seconds_before + session;
     TRY(study_log_end(study->store, sum, is_final, err));
     RunStore *store = study->store;
@@ -479,13 +427,6 @@ static Status finish(Study *study, Err *err)
                            sum->n_simulated, sum->max_evals);
 }
 
-/* A run that reached one of its limits: there is nothing to do. */
-static int is_over(const Study *study)
-{
-    const Run *run = store_run(study->store);
-    return run && !study->has_new_limits && came_to_its_end(run, &study->summary->stopped);
-}
-
 int study_finished(RunStore *store, StudySummary *summary, Run *run)
 {
     *summary = (StudySummary){0};
@@ -500,21 +441,6 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
 }
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
-
-static Status polish(Study *study, Err *err)
-{
-    StudySummary *sum = study->summary;
-    const FinalPolish p = {.used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
-    return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
-}
-
-static Status know_named(Study *study, Err *err)
-{
-    if (study->summary->stopped == STOP_ASKED)
-        return STATUS_OK;
-    return note_stop(
-        study, named_simulate(study->store, &study->used, adapter_problem(study->adapter), may_go_on, study, err), err);
-}
 
 /* Of a search that is cut short, where it takes a moment: who asked for the end does not wait for more. */
 static Status know_named_so_far(Study *study, Err *err)
@@ -540,40 +466,40 @@ static Status find_baselines(Study *study, Err *err)
     return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), 1, study->summary->baseline, err);
 }
 
-static void tell_records(const Study *study)
+/* The search, then the designs of its front polished and those named known. */
+static Status work(Study *study, Err *err)
 {
     const StudyOptions *o = study->options;
     const Tower *t = adapter_tower(study->adapter);
-    for (size_t i = 0; o->record && t && i < tower_n_records(t); i++)
-        o->record(tower_record(t, i), o->user);
-}
-
-static Status work(Study *study, Err *err)
-{
+    StudySummary *sum = study->summary;
     if (store_run(study->store)) /* else it has been told before the first designs were asked */
         tell_start(study);
-    tell_records(study);
-    TRY(study_log_start(study->store, adapter_threads(study->adapter), &study->used.search, study->summary->n_before,
-                        err));
+    for (size_t i = 0; o->record && t && i < tower_n_records(t); i++)
+        o->record(tower_record(t, i), o->user);
+    TRY(study_log_start(study->store, adapter_threads(study->adapter), &study->used.search, sum->n_before, err));
     TRY(run_search(study, err));
     TRY(study->status);
-    if (study->summary->stopped == STOP_ASKED)
+    if (sum->stopped == STOP_ASKED) {
         TRY(know_named_so_far(study, err));
-    else
-        TRY(polish(study, err));
-    TRY(know_named(study, err));
+    } else {
+        const FinalPolish p = {
+            .used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
+        TRY(note_stop(study, final_polish(study->store, &p, &sum->polish, err), err));
+    }
+    if (sum->stopped != STOP_ASKED)
+        TRY(note_stop(
+            study, named_simulate(study->store, &study->used, adapter_problem(study->adapter), may_go_on, study, err),
+            err));
     return finish(study, err);
 }
 
-/* Its front.csv may have been removed. */
-static Status take_finished(Study *study, Err *err)
+/* The run that there is nothing more to do on; its front.csv may have been removed. */
+static Status take_finished(const Study *study, Err *err)
 {
-    Run run;
-    TRY(store_write_front(study->store, &run, err));
-    if (study->options->run)
-        *study->options->run = run;
-    else
-        run_free(&run);
+    Run unwanted, *run = study->options->run ? study->options->run : &unwanted;
+    TRY(store_write_front(study->store, run, err));
+    if (run == &unwanted)
+        run_free(run);
     return STATUS_OK;
 }
 
@@ -585,10 +511,11 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     pthread_mutex_init(&study.lock, NULL);
     study.start = clock_seconds();
     Status status = prepare(&study, s, err);
-    if (status == STATUS_OK && !is_over(&study))
-        status = work(&study, err);
-    else if (status == STATUS_OK)
-        status = take_finished(&study, err);
+    if (status == STATUS_OK) { /* a run may have reached one of its limits before */
+        const Run *run = store_run(study.store);
+        const int is_over = run && !study.has_new_limits && came_to_its_end(run, &summary->stopped);
+        status = is_over ? take_finished(&study, err) : work(&study, err);
+    }
     if (status == STATUS_OK)
         status = find_baselines(&study, err);
     if (status != STATUS_OK && study.store) {

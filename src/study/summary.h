@@ -5,14 +5,15 @@
 
 #include "moga/search.h"
 #include "analysis/baselines.h"
+#include "study/final_polish.h"
 #include "study/front_review.h"
 
 typedef struct {
     char folder[PATH_MAX];
     StopReason stopped;
     size_t n_simulated, n_failed, n_front, n_repeats;
-    size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
-    size_t n_before;                      /* simulations that the run had when this session began */
+    FinalPolished polish; /* at the end */
+    size_t n_before;      /* simulations that the run had when this session began */
     long max_evals;
     double seconds;       /* of all sessions */
     double busy_s;        /* of this session in simulations, all threads added */
