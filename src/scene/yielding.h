@@ -14,3 +14,6 @@
  * 0 where it does. hardening: as wanted; becomes 1 - c. Errors: STATUS_BAD_DATA, a storey without stiffness. */
 Status yielding_parts(int n, const double K_elastic[], const double M[], const double K[], const double yield_m[],
                       double *hardening, double k[], Err *err);
+
+/* Adds a spring [N/m] between floor j = 0..n-1 and the one below it, or the ground, to K (n, n). */
+void storey_spring(int n, int j, double spring, double K[]);
