@@ -313,13 +313,13 @@ Status motion_open(Motion *m, const MotionOptions *o, Err *err)
     TRY(source_read(o->record, &source, err));
     MotionHow how = {.channel = source.channel[0] ? source.channel : o->channel, .dt_s = o->dt_s};
     TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
-    if (!is_still(o))
-        TRY(load(m, source.path, &how, err));
-    else if (!list_is_given(o->forces))
-        return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");
-    else {
+    if (is_still(o)) {
+        if (!list_is_given(o->forces))
+            return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");
         *m = (Motion){.n = 2, .dt_s = 1, .name = "none", .format = "none"};
         TRY_ROOM(m->accel, m->n, "samples of a motion", err);
+    } else {
+        TRY(load(m, source.path, &how, err));
     }
     const char *words = o->record + source_path_length(o->record);
     if (*words)

@@ -139,32 +139,26 @@ int frame_is(const char *model)
     return text_ends(model, ".tcl") || model_has(model, SHEETS[0].file);
 }
 
-static Status read_sheets(Frame *f, const char *model, Err *err)
-{
-    for (int i = 0; i < N_SHEETS; i++)
-        if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
-            TRY(sheet_take(&SHEETS[i], model, f, err));
-    return STATUS_OK;
-}
-
-static Status read_tcl(Frame *f, const BuildingOptions *o, Err *err)
-{
-    const BuildingUnit u = building_unit(o->units);
-    if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
-        return bad_data(
-            err,
-            "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
-            "for %s",
-            o->model);
-    return opensees_read(f, o->model, u.length, u.stiffness * u.length, err);
-}
-
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
 {
+    const char *model = o->model;
+    const BuildingUnit u = building_unit(o->units);
+    Status status = STATUS_OK;
     memset(f, 0, sizeof *f);
-    Status status = text_ends(o->model, ".tcl") ? read_tcl(f, o, err) : read_sheets(f, o->model, err);
+    if (text_ends(model, ".tcl")) {
+        if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
+            return bad_data(
+                err,
+                "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
+                "for %s",
+                model);
+        status = opensees_read(f, model, u.length, u.stiffness * u.length, err);
+    }
+    for (int i = 0; i < N_SHEETS && !text_ends(model, ".tcl") && status == STATUS_OK; i++)
+        if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
+            status = sheet_take(&SHEETS[i], model, f, err);
     if (status == STATUS_OK)
-        status = frame_find_floors(f, o->model, o->rigid_floors, err);
+        status = frame_find_floors(f, model, o->rigid_floors, err);
     if (status != STATUS_OK)
         frame_free(f);
     return status;

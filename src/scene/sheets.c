@@ -80,14 +80,11 @@ static Status check_columns(const SheetForm *form, const Table *s, Err *err)
     char required[200], optional[200];
     list_columns(form, 1, required);
     list_columns(form, 0, optional);
-    size_t known = 0;
-    for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++) {
-        known += table_column(s, c->name) >= 0;
+    for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++)
         if (isnan(c->otherwise) && table_column(s, c->name) < 0)
             return bad_data(err, "%s: has no column %s; it needs %s, and may have %s", s->path, c->name, required,
                             optional);
-    }
-    for (size_t j = 0; j < s->n_cols && known < s->n_cols; j++) {
+    for (size_t j = 0; j < s->n_cols; j++) {
         const Column *c = form->column;
         while (c < form->column + COLUMNS_MAX && c->name && strcmp(c->name, s->names[j]) != 0)
             c++;
@@ -98,28 +95,29 @@ static Status check_columns(const SheetForm *form, const Table *s, Err *err)
     return STATUS_OK;
 }
 
-static Status take_cell(const Column *c, const Table *s, size_t row, const char **word, double *x, Err *err)
-{
-    *word = sheet_text(s, row, c->name);
-    if (c->kind == COLUMN_NAME)
-        return **word && strlen(*word) < TABLE_NAME_MAX
-                   ? STATUS_OK
-                   : bad_data(err, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row], c->name,
-                              *word, TABLE_NAME_MAX - 1);
-    TRY(sheet_number(s, row, c->name, c->otherwise, x, err));
-    const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && **word    ? "it must be above 0"
-                       : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
-                       : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
-                                                                           : NULL;
-    return must ? bad_data(err, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must) : STATUS_OK;
-}
-
+/* Takes the cells of a row by their columns and hands it over. */
 static Status take_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
 {
     SheetRow r = {.n_rows = s->n_rows, .row = row};
     Err wrong = {0};
-    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name; j++)
-        TRY(take_cell(&form->column[j], s, row, &r.word[j], &r.x[j], err));
+    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name; j++) {
+        const Column *c = &form->column[j];
+        const char *word = r.word[j] = sheet_text(s, row, c->name);
+        double *x = &r.x[j];
+        if (c->kind == COLUMN_NAME) {
+            if (!*word || strlen(word) >= TABLE_NAME_MAX)
+                return bad_data(err, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row],
+                                c->name, word, TABLE_NAME_MAX - 1);
+            continue;
+        }
+        TRY(sheet_number(s, row, c->name, c->otherwise, x, err));
+        const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && *word     ? "it must be above 0"
+                           : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
+                           : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
+                                                                               : NULL;
+        if (must)
+            return bad_data(err, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must);
+    }
     const Status status = form->take(user, &r, &wrong);
     return status == STATUS_OK ? status : fail(err, status, "%s:%d: %s", s->path, s->line[row], wrong.text);
 }
