@@ -15,7 +15,7 @@
  * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
- * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.
+ * that (scene/building.h): where P-delta softens it, so that the change by P-delta has that in it as well.
  *
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
 #pragma once

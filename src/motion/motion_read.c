@@ -69,6 +69,7 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
 
 /* ---- which channel -------------------------------------------------------------------------------------------- */
 
+/* Is the channel an acceleration, or does its name say velocity, displacement or spectrum? */
 static int is_acceleration(const Channel *c)
 {
     const char *p = c->name, *end = p + strlen(p);

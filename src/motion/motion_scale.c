@@ -16,6 +16,7 @@
 enum { PADDING_MAX = 10000000 };                        /* samples: 80 MB */
 static const double HIGHPASS_PAD = 0.75 * FILTER_ORDER; /* [-] times 1 / fc, before and behind */
 
+/* Adds to what was done to the samples. */
 static __attribute__((format(printf, 2, 3))) void say(Motion *m, const char *format, ...)
 {
     const size_t used = strlen(m->processed);
@@ -38,6 +39,7 @@ static void orthogonal(double s, double n, double p[DEGREE_MAX + 1])
     p[2] = s * s - (n + 1) / (3 * (n - 1)); /* mean of s_i^2 */
 }
 
+/* Subtracts the polynomial of that degree that fits the samples best. */
 static Status subtract_baseline(Motion *m, int degree, Err *err)
 {
     static const char *const WORDS[] = {"mean", "straight line", "parabola"};
@@ -292,6 +294,7 @@ void motion_unscale(MotionOptions *o)
     o->target[0] = 0;
 }
 
+/* Reads a file or makes a built-in motion; a word that is neither may be one misspelt. */
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
     static const char *const MOTIONS[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};

@@ -33,6 +33,7 @@ static Flow flow_series(const Oscillator *o, double tau)
     return (Flow){.h = y1 / w, .h1 = 1 - 2 * o->zeta * y1 - y, .I1 = y / (w * w), .I2 = y_int / (w * w * w)};
 }
 
+/* What an interval of length tau does, in closed form where that keeps its digits. */
 static Flow flow(const Oscillator *o, double tau)
 {
     if (o->w * tau < 1)

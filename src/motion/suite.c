@@ -90,6 +90,7 @@ static Status put_inside(char out[OPTION_TEXT_MAX], const char *path, size_t n, 
     return STATUS_OK;
 }
 
+/* Hands over the files of a folder in the order of their names. */
 static Status each_of_folder(const char *folder, SourceFn take, void *user, Err *err)
 {
     struct dirent **names = NULL;
@@ -114,6 +115,7 @@ static Status each_of_folder(const char *folder, SourceFn take, void *user, Err 
     return status == STATUS_OK && n_files == 0 ? bad_data(err, "%s: is empty", folder) : status;
 }
 
+/* Hands over the sources of a list; what is wrong with one is said with its line. */
 static Status each_of_list(const char *path, SourceFn take, void *user, Err *err)
 {
     char line[OPTION_TEXT_MAX], source[OPTION_TEXT_MAX];

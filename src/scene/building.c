@@ -6,13 +6,13 @@
 #include "scene/building_read.h"
 #include "scene/reduction.h"
 #include "scene/sheets.h"
-#include "scene/yielding.h"
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
 /* [m] Of the tower that both built-in models are matrices of. */
 static const double BUILT_IN_FIRST_M = 5.4864, BUILT_IN_M = 3.9624;
 
+/* Takes the heights of storeys from the files, or else from the setting, which a built-in building does not have. */
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
     const int is_own =
@@ -124,6 +124,7 @@ void building_model_layout(void *model, Carve *c)
     CARVE(c, m->like, n);
 }
 
+/* Room for a model with these matrices. */
 static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *from, Err *err)
 {
     const size_t bytes = from->n * from->n * sizeof(double);
@@ -154,6 +155,56 @@ static Status find_modes(const Building *b, BuildingModel *m, const double *r, c
     TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
     linalg_participation(m->n, m->M, r, m->phi, m->gamma);
     reduction_alike(b->n, b->phi, b->M, m->n, m->phi, m->like);
+    return STATUS_OK;
+}
+
+/* ---- yielding storeys ----------------------------------------------------------------------------------------- */
+
+/* Of what may yield without the rest of the building falling: below 1 by this share. */
+static const double STANDS = 0.98;
+
+/* Finds the part of each storey's stiffness that yields, where any does (scene/building.h). K: without P-delta. */
+static Status find_yielding(Building *b, const double of_file[], const double K[], const BuildingOptions *o, Err *err)
+{
+    const int n = b->n;
+    double *k = b->yield_n_m, *phi, shear = 0;
+    b->hardening = o->hardening;
+    for (int j = 0; j < n; j++) {
+        b->yield_m[j] = b->storey_m[j] * (of_file && of_file[j] > 0 ? of_file[j] : o->yield_drift);
+        b->yields |= b->yield_m[j] > 0;
+    }
+    if (!b->yields)
+        return STATUS_OK;
+    TRY_ROOM(phi, (2 * (size_t)n + 1) * n, "yielding storeys", err);
+    double *yields = phi + n * n, *omega = yields + n * n;
+    Status status = linalg_modes(n, K, b->M, omega, phi, err);
+
+    /* k_j = V_j / d_j of the first mode under the forces K phi. */
+    for (int j = n - 1; j >= 0 && status == STATUS_OK; j--) {
+        for (int i = 0; i < n; i++)
+            shear += K[j * n + i] * phi[i * n];
+        const double drift = phi[j * n] - (j > 0 ? phi[(j - 1) * n] : 0);
+        k[j] = b->yield_m[j] > 0 ? shear / drift : 0;
+        if (b->yield_m[j] > 0 && !(k[j] > 0 && isfinite(k[j])))
+            status =
+                bad_data(err,
+                         "building: storey %d has no stiffness in the first mode (%.3g N/m), so that nothing of it can "
+                         "yield; leave building.yield_drift at 0",
+                         j + 1, k[j]);
+    }
+
+    /* The largest eigenvalue of B' diag(k) B x = lambda K x says how much of that may yield. */
+    for (int j = 0; j < n && status == STATUS_OK; j++)
+        storey_spring(n, j, k[j], yields);
+    if (status == STATUS_OK)
+        status = linalg_modes(n, yields, b->K, omega, phi, err);
+    const double c = fmin(1 - b->hardening, STANDS / (omega[n - 1] * omega[n - 1]));
+    free(phi);
+    TRY(status);
+    b->hardening = 1 - c;
+    b->hardening_raised = b->hardening > o->hardening + 1e-12;
+    for (int j = 0; j < n; j++)
+        k[j] *= c;
     return STATUS_OK;
 }
 
@@ -194,16 +245,9 @@ static Status take(Building *b, const BuildingFiles *files, const BuildingOption
     TRY(find_heights(b, files, o, err));
     TRY(find_modes(b, m, NULL, o, err));
 
-    /* What of their storeys yields. */
-    b->hardening = o->hardening;
-    for (int j = 0; j < b->n; j++) {
+    for (int j = 0; j < b->n; j++)
         m->like[j] = j;
-        b->yield_m[j] = b->storey_m[j] * (drift && drift[j] > 0 ? drift[j] : o->yield_drift);
-        b->yields |= b->yield_m[j] > 0;
-    }
-    if (b->yields)
-        TRY(yielding_parts(b->n, files->floors.K, b->M, b->K, b->yield_m, &b->hardening, b->yield_n_m, err));
-    b->hardening_raised = b->hardening > o->hardening + 1e-12;
+    TRY(find_yielding(b, drift, files->floors.K, o, err));
 
     /* The model that is integrated: the floors, or more where the files have it, with as many modes as are wanted. */
     b->model = *m;

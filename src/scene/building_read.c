@@ -5,7 +5,6 @@
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "scene/sheets.h"
-#include "scene/yielding.h"
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
 
@@ -102,6 +101,7 @@ static Status matrix_factor(const BuildingOptions *o, const char *path, const Un
                : bad_data(err, "%s: says that it is in %s; leave building.units at auto", path, unit->word);
 }
 
+/* Reads K.csv and M.csv, of one size. */
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     static const char *const NAMES[] = {"K.csv", "M.csv"};
@@ -158,6 +158,7 @@ static Status choose(const SheetRow *r, int plain, const char *names, double *va
 /* As in building.heights_m; what is implausible within them is warned of (scene/summary.h). */
 static const double HEIGHT_MIN_M = 0.1, HEIGHT_MAX_M = 100;
 
+/* Checks a row of storeys.csv and keeps it. */
 static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
@@ -195,6 +196,17 @@ static const SheetForm STOREYS = {"storeys.csv",
                                    {"bending_kn_m2", COLUMN_ABOVE_0, 0},
                                    {"yield_drift", COLUMN_ABOVE_0, 0}}};
 
+void storey_spring(int n, int j, double spring, double K[])
+{
+    K[j * n + j] += spring;
+    if (j > 0) {
+        K[(j - 1) * n + j - 1] += spring;
+        K[j * n + j - 1] -= spring;
+        K[(j - 1) * n + j] -= spring;
+    }
+}
+
+/* Makes the matrices of a shear building, or of a cantilever where storeys bend. */
 static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
     Storeys all = {0};

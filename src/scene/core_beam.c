@@ -113,6 +113,7 @@ CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_ba
                         .shear_stress_per_n = (side * side * side - inner * inner * inner) / 8 / (inertia * 2 * t)};
 }
 
+/* Refuses thicknesses that the section does not have, and lists of a length that the storeys do not have. */
 static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m, Err *err)
 {
     if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))

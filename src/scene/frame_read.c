@@ -24,6 +24,7 @@ static Status look_up(const Frame *f, FrameKind kind, const char *column, const 
                                   kind == FRAME_NODES ? "nodes.csv" : "sections.csv");
 }
 
+/* Adds a node with what holds it, its floor, and what the full model keeps of it. */
 static Status take_node(void *frame, const SheetRow *r, Err *err)
 {
     FrameNode node = {.x = r->x[1], .z = r->x[2], .floor = (int)fmin(r->x[6], 1e6)};
@@ -35,6 +36,7 @@ static Status take_node(void *frame, const SheetRow *r, Err *err)
     return frame_add_node(frame, &node, err);
 }
 
+/* Adds a section. */
 static Status take_section(void *frame, const SheetRow *r, Err *err)
 {
     FrameSection section = {.area = r->x[1],
@@ -47,6 +49,7 @@ static Status take_section(void *frame, const SheetRow *r, Err *err)
     return frame_add_section(frame, &section, err);
 }
 
+/* Adds an element between nodes that are there. */
 static Status take_element(void *frame, const SheetRow *r, Err *err)
 {
     FrameElement e = {.pinned = {(int)r->x[4], (int)r->x[5]}, .added_mass = r->x[6]};
@@ -57,6 +60,7 @@ static Status take_element(void *frame, const SheetRow *r, Err *err)
     return frame_add_element(frame, &e, err);
 }
 
+/* Adds mass to a node; along z the same as along x unless its column says otherwise. */
 static Status take_mass(void *frame, const SheetRow *r, Err *err)
 {
     int node;

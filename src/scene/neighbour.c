@@ -15,6 +15,7 @@ const char *core_word(const CoreOptions *o)
     return neighbour_is_given(o) ? o->model : core_theory_word(o->theory);
 }
 
+/* Refuses a neighbour whose floors do not meet those of the building. */
 static Status check_floors(const Building *n, const Building *b, const char *model, Err *err)
 {
     double z = 0, own = 0;

@@ -98,6 +98,7 @@ static int define(Reader *r, Words w, FrameSection s)
 
 /* ---- nodes and what they are given ---------------------------------------------------------------------------- */
 
+/* Only plane models of three unknowns per node are frames. */
 static int take_model(Reader *r, int n, Words w)
 {
     int dimensions = 0, unknowns = FRAME_DOFS;
@@ -119,6 +120,7 @@ static int set_mass(Reader *r, int node, Words w, int first)
     return is_taken(r, frame_set_mass(r->frame, node, m, &r->why));
 }
 
+/* Adds a node, with a mass where it says so. */
 static int take_node(Reader *r, int n, Words w)
 {
     double xy[2];
@@ -137,6 +139,7 @@ static int take_node(Reader *r, int n, Words w)
                                                           : refuse(r, "behind TAG x y only -mass mx my mr is read"));
 }
 
+/* Holds displacements of a node. */
 static int take_fix(Reader *r, int n, Words w)
 {
     double fixed[FRAME_DOFS];
@@ -156,6 +159,7 @@ static int take_mass(Reader *r, int n, Words w)
     return find(r, w[1], NULL, &node) && set_mass(r, node, w, 2);
 }
 
+/* Ties displacements of the second node to the first. */
 static int take_equal(Reader *r, int n, Words w)
 {
     int node, same_as, dof, dofs[FRAME_DOFS] = {0};
@@ -402,6 +406,7 @@ static int run_file(Reader *r, const char *path)
     return 0;
 }
 
+/* Runs a file below the folder of the model, and no other: a model may come from anywhere. */
 static int take_source(Reader *r, int n, Words w)
 {
     char path[PATH_MAX], whole[PATH_MAX];

@@ -15,6 +15,7 @@ typedef struct {
     double *T, *work;           /* (n, n + 1) of which as many columns are used as shapes are kept */
 } Reduction;
 
+/* Names every array, for base/carve.h. */
 static void layout(void *reduction, Carve *c)
 {
     Reduction *r = reduction;

@@ -75,6 +75,7 @@ static void list_columns(const SheetForm *form, int required, char list[200])
             snprintf(list + strlen(list), 200 - strlen(list), "%s%s", *list ? " " : "", c->name);
 }
 
+/* Refuses a file without a column that must be there, or with one that is not known. */
 static Status check_columns(const SheetForm *form, const Table *s, Err *err)
 {
     char required[200], optional[200];

@@ -10,6 +10,7 @@
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 
+/* Root of the sum of squares of the modal base shears over the weight. */
 static double base_shear(const BuildingModel *m, const Motion *motion, double mass)
 {
     double squares = 0;
@@ -105,6 +106,7 @@ typedef struct {
     void *user;
 } Warner;
 
+/* Warns of what the setting `key` leads to. */
 __attribute__((format(printf, 3, 4))) static void say(const Warner *w, const char *key, const char *format, ...)
 {
     char text[300];
@@ -126,6 +128,7 @@ static void warn_of_mass(const Warner *w, int floor, double mass_kg)
         FLOOR_MASS_MIN_KG / 1e3, FLOOR_MASS_MAX_KG / 1e3);
 }
 
+/* Warns of figures of the building outside the ranges of summary.h. */
 static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
@@ -161,6 +164,7 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
         }
 }
 
+/* Warns of a core that is damped, slow or modelled unlike others. */
 static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warner *w)
 {
     if (o->damping > DAMPING_MAX)

@@ -144,6 +144,7 @@ static double number_of(const Header *h, Field field, int k)
     return c.from && number_behind(c.from, c.to, "", &x) ? x : NAN;
 }
 
+/* Names the line of the header that should have said the number of points, or the step. */
 static Status fail_word(const Format *f, const Lines *l, Field first, Field second, Err *err)
 {
     const HeaderWord *w = f->words;
@@ -242,6 +243,7 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
         take_peak(c, at, wave + 1, stop);
 }
 
+/* Refuses a header that says velocity or displacement. */
 static Status check_type(const Lines *type, Err *err)
 {
     Lines whole = *type;
@@ -334,6 +336,7 @@ static void take_name(const Header *h, Channel *c)
     }
 }
 
+/* One record of a format: one channel row by row, or a column for each. */
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 {
     Header h;
@@ -465,6 +468,7 @@ static int smc_is(Lines l)
            lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
 }
 
+/* Takes what the integers and reals of the header say, and passes over the comments. */
 static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum {
@@ -570,6 +574,7 @@ static int at2_is(Lines l)
     return 0;
 }
 
+/* Takes number and step of "3930    0.0050    NPTS, DT", or the step of "NPTS=  3930, DT=   .0050 SEC". */
 static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     const Lines *npts = &h->at[COUNT];
@@ -596,6 +601,7 @@ static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
  *
  * then samples row by row (SLIST), or "time  sample" (TSPAIR). A segment is a channel; a gap makes two. */
 
+/* Takes name, number, rate and unit of the fields between commas. */
 static Status series_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     const char *p = l->from;

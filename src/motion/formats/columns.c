@@ -304,6 +304,7 @@ static int has_decimal_commas(const Plain *t)
                                        csv_has_decimal_commas(l->from, l->to));
 }
 
+/* Refuses a text that is no table either, with its first line, by which people see what they have. */
 static Status fail_unknown(const Plain *t, Err *err)
 {
     Lines start = t->start;
@@ -512,6 +513,16 @@ static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
                        : "");
 }
 
+/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
+static int counts_samples(const Plain *t)
+{
+    const Row *row = t->r->row;
+    size_t k = 0;
+    while (k < t->n_rows && row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k)
+        k++;
+    return t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a) && k == t->n_rows;
+}
+
 Status columns_read(Record *r, Lines *l, Err *err)
 {
     enum { COMPONENTS_MAX = 4 };
@@ -558,11 +569,7 @@ Status columns_read(Record *r, Lines *l, Err *err)
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
         return bad_data(err, "%s: announces %g samples, but has %zu rows", l->path, t->count, t->n_rows);
-
-    /* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
-    t->is_counted = t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a);
-    for (size_t k = 0; k < t->n_rows && t->is_counted; k++)
-        t->is_counted = row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k;
+    t->is_counted = counts_samples(t);
     if (!t->is_timed && t->is_counted && !(t->dt > 0))
         return fail_at(err, &first,
                        "the first column counts %g, %g, ...: are these samples? Give their step (--set "

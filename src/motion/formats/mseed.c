@@ -39,6 +39,7 @@ static int parse_record(const char *bytes, size_t n, MSRecord **record)
 
 enum { TRACES_MAX = 8 * CHANNELS_MAX }; /* logs and the state of health are no channels */
 
+/* Collects the records into traces, without gaps, each of which becomes a channel. */
 static Status read_traces(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const Lines l = {.path = path, .number = 1};

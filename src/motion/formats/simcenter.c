@@ -30,6 +30,7 @@ static int recognise(const unsigned char bytes[], size_t n)
     return i < n && bytes[i] == '{';
 }
 
+/* Makes a channel of a list of samples. */
 static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
 {
     Channel *c;
@@ -88,6 +89,7 @@ static Status take_shape(const Lines *l, const json_t *o, Channel *c, Err *err)
     return STATUS_OK;
 }
 
+/* Looks for lists of samples in a node and in all that it holds; what an object states holds for those inside it. */
 static Status search(Place place, const json_t *node, int depth, Err *err)
 {
     static const char *const LISTS[] = {"data", "data_x", "data_y", "data_z"};
@@ -114,6 +116,7 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
     return STATUS_OK;
 }
 
+/* Parses the file, without what old programs put behind it. */
 static Status read(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     json_error_t why;
