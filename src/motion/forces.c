@@ -73,8 +73,8 @@ static const double *row_of(const Motion *m, size_t i)
     return m->force_rows + i * ((size_t)m->n_force + 1);
 }
 
-/* [s] for both: the longest step of which all times of the rows are multiples, of so many parts of the ground's step, or
- * of the shortest distance of two rows where it is at rest. */
+/* [s] for both: the longest step of which all times of the rows are multiples, a part of the ground's step, or of the
+ * shortest distance of two rows where it is at rest. */
 static double common_step(Motion *m, int is_still, size_t *parts)
 {
     enum { PARTS_TRIED = 100 };

@@ -80,8 +80,8 @@ static const UnitWord *unit_in(const char *line, size_t length, const UnitWord w
     return NULL;
 }
 
-/* What the entries of a matrix of a folder are multiplied by: as a comment of the file says, which building.units, `set`,
- * must not contradict. */
+/* What the entries of a matrix are multiplied by: as a comment of the file says, which building.units, `set`, must not
+ * contradict. */
 static Status matrix_factor(const BuildingOptions *o, const char *path, const UnitWord words[], double set,
                             double *factor, Err *err)
 {

@@ -26,8 +26,8 @@ typedef struct {
     size_t lines_behind; /* the samples, of velocities and displacements */
 } Header;
 
-/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE; either may be empty, WORD also left out with
- * its bar. "=LTV": the line is one of these letters. */
+/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE. Either may be empty, WORD left out with its
+ * bar. "=LTV": the line is one of these letters. */
 typedef struct {
     Field field;
     const char *text;
@@ -440,8 +440,8 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     take_behind(h, DURATION, l, "approx");
     take_behind(h, UNIT, l, "units=");
 
-    /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal, the others up to 9 are
-     * no accelerations in them. */
+    /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal; others up to 9 are no
+     * accelerations. */
     const Lines *unit = &h->at[UNIT];
     const char *open = unit->from ? memchr(unit->from, '(', unit->to - unit->from) : NULL;
     if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))

@@ -349,7 +349,7 @@ static Status read_rows(Plain *t, Err *err)
             if (before > 0)
                 continue;
 
-            /* A comment heads columns that parts names as a table does, of which the first is one of times or periods. */
+            /* A comment heads the columns if it parts names as a table does, the first one of times or periods. */
             Lines h = *l;
             while (h.from < h.to && strchr("#%!/ ", *h.from))
                 h.from++;
