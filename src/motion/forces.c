@@ -19,7 +19,7 @@ static Status floor_of(const Table *t, size_t c, int *floor, Err *err)
 }
 
 /* Checks header and rows, and adds up the columns of every floor. */
-static Status take_rows(Motion *m, const Table *t, Err *err)
+static Status read_rows(Motion *m, const Table *t, Err *err)
 {
     double largest = 0;
     int floor = 0;
@@ -63,7 +63,7 @@ Status forces_read(Motion *m, const char *path, Err *err)
     Err why = {0};
     Status status = table_read(&t, path, TABLE_HEADED, &why);
     if (status == STATUS_OK)
-        status = take_rows(m, &t, &why);
+        status = read_rows(m, &t, &why);
     table_free(&t);
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "motion.forces: %s", why.text);
 }

@@ -177,7 +177,7 @@ typedef struct {
 } Others;
 
 /* Leaves out the first record: the same file, however its path is written, with the same words behind it. */
-static Status take_other(const char *source, void *user, Err *err)
+static Status hand_over_other(const char *source, void *user, Err *err)
 {
     const Others *o = user;
     const char *a = source, *b = o->first;
@@ -199,7 +199,7 @@ Status suite_of_study(const MotionOptions *o, SourceFn take, void *user, Err *er
         if (!list_item(o->records, i, item, sizeof item))
             return bad_data(err, "motion.records: item %zu is empty or too long", i + 1);
         TRY(strcmp(item, SUITE_SOURCE) == 0 || is_list(item) || is_folder(item)
-                ? suite_each(item, take_other, &(Others){o->record, take, user}, err)
+                ? suite_each(item, hand_over_other, &(Others){o->record, take, user}, err)
                 : take(item, user, err));
     }
     return STATUS_OK;

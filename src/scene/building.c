@@ -217,7 +217,7 @@ static uint64_t hash_matrices(const FrameFull *f, uint64_t hash)
 }
 
 /* Makes the building of what its files hold. */
-static Status take(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+static Status make_building(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
     const FrameFull *full = &files->full;
     const double *drift = files->yield_drift;
@@ -272,7 +272,7 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err)
     memset(b, 0, sizeof *b);
     Status s = building_read(&files, o, err);
     if (s == STATUS_OK)
-        s = take(b, &files, o, err);
+        s = make_building(b, &files, o, err);
     building_files_free(&files);
     if (s != STATUS_OK)
         building_free(b);

@@ -159,7 +159,7 @@ static Status choose(const SheetRow *r, int plain, const char *names, double *va
 static const double HEIGHT_MIN_M = 0.1, HEIGHT_MAX_M = 100;
 
 /* Checks a row of storeys.csv and keeps it. */
-static Status take_storey(void *storeys, const SheetRow *r, Err *err)
+static Status add_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
     if (r->n_rows > FLOORS_MAX)
@@ -186,7 +186,7 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 }
 
 static const SheetForm STOREYS = {"storeys.csv",
-                                  take_storey,
+                                  add_storey,
                                   {{"height_m", COLUMN_ABOVE_0, NAN},
                                    {"mass_kg", COLUMN_ABOVE_0, 0},
                                    {"mass_t", COLUMN_ABOVE_0, 0},
@@ -211,7 +211,7 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
     Storeys all = {0};
     Beam beam[FLOORS_MAX];
-    TRY(sheet_take(&STOREYS, folder, &all, err));
+    TRY(sheet_read(&STOREYS, folder, &all, err));
     const int n = all.n;
     TRY(allocate(b, n, err));
     for (int j = 0; j < n; j++) {

@@ -97,7 +97,7 @@ static Status check_columns(const SheetForm *form, const Table *s, Err *err)
 }
 
 /* Takes the cells of a row by their columns and hands it over. */
-static Status take_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
+static Status read_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
 {
     SheetRow r = {.n_rows = s->n_rows, .row = row};
     Err wrong = {0};
@@ -123,13 +123,13 @@ static Status take_row(const SheetForm *form, const Table *s, size_t row, void *
     return status == STATUS_OK ? status : fail(err, status, "%s:%d: %s", s->path, s->line[row], wrong.text);
 }
 
-Status sheet_take(const SheetForm *form, const char *model, void *user, Err *err)
+Status sheet_read(const SheetForm *form, const char *model, void *user, Err *err)
 {
     Table s;
     TRY(model_table(&s, model, form->file, TABLE_WORDS, err));
     Status status = check_columns(form, &s, err);
     for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_row(form, &s, i, user, err);
+        status = read_row(form, &s, i, user, err);
     table_free(&s);
     return status;
 }

@@ -26,8 +26,8 @@ typedef struct {
     size_t lines_behind; /* the samples, of velocities and displacements */
 } Header;
 
-/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE. Either may be empty, WORD left out with its
- * bar. "=LTV": the line is one of these letters. */
+/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE. Either may be empty, WORD left out
+ * with its bar. "=LTV": the line is one of these letters. */
 typedef struct {
     Field field;
     const char *text;
@@ -69,7 +69,7 @@ static int recognise(const Format *f, Lines l)
 static const Format *format_at(Lines l);
 
 /* The value behind the word of the line; 0: there is none. */
-static int take_behind(Header *h, Field field, const Lines *l, const char *word)
+static int find_behind(Header *h, Field field, const Lines *l, const char *word)
 {
     const char *p = find_word(l->from, l->to, word);
     h->at[field] = *l;
@@ -105,7 +105,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
             Lines rest = *l;
             rest.from += is_letter ? 0 : n;
             if (!h->at[w->field].from && (is_letter || (rest.from <= l->to && !strncasecmp(l->from, w->text, n))))
-                take_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
+                find_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
         }
         h->last = l->from < l->to ? *l : h->last;
         ended |= f->ends && line_has(l, f->ends);
@@ -193,7 +193,7 @@ static MotionUnit unit_within(const char *from, const char *to)
 }
 
 /* The number at `from`, in the unit of its line, or else in the channel's. */
-static void take_peak(Channel *c, const char *line, const char *from, const char *to)
+static void read_peak(Channel *c, const char *line, const char *from, const char *to)
 {
     static const double M_S2[] = {0, 1, 0.01, GRAVITY};
     double x, digit = 1;
@@ -228,7 +228,7 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
     if (!f->peak_of) {
         const Cell item = item_of(peak, k);
         if (item.from)
-            take_peak(c, peak->raw, item.from, item.to);
+            read_peak(c, peak->raw, item.from, item.to);
         return;
     }
     snprintf(word, sizeof word, f->peak_of, c->name);
@@ -237,10 +237,10 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
         return;
     const char *stop = memchr(at, '\n', end - at);
     stop = stop ? stop : end;
-    take_peak(c, at, at + strlen(word), stop);
+    read_peak(c, at, at + strlen(word), stop);
     const char *wave = memchr(at, '~', stop - at);
     if (wave)
-        take_peak(c, at, wave + 1, stop);
+        read_peak(c, at, wave + 1, stop);
 }
 
 /* Refuses a header that says velocity or displacement. */
@@ -316,7 +316,7 @@ static int says_corrected(const Lines *l)
 
 /* "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof": with the location, which tells the channels of a
  * building apart. */
-static void take_name(const Header *h, Channel *c)
+static void read_name(const Header *h, Channel *c)
 {
     const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
     const char *from = name->from, *to = from;
@@ -347,7 +347,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     if (f->parting)
         return read_columns(f, r, l, &h, err);
     TRY(record_channel(r, l, &c, err));
-    take_name(&h, c);
+    read_name(&h, c);
     if (f->one_word)
         c->name[strcspn(c->name, " ")] = 0;
     c->digitized = f->pairs && !f->more;
@@ -397,8 +397,8 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
         h->dt = text_is(HOLDS, l->from, l->to, "pts/s|points/s|samples/s") ? 1 / x : x;
     const Lines above = h->at[UNIT];
-    if (!take_behind(h, UNIT, l, " in units of ") && !take_behind(h, UNIT, l, " in units ") &&
-        !take_behind(h, UNIT, l, " in "))
+    if (!find_behind(h, UNIT, l, " in units of ") && !find_behind(h, UNIT, l, " in units ") &&
+        !find_behind(h, UNIT, l, " in "))
         h->at[UNIT] = above;
     return STATUS_OK;
 }
@@ -437,8 +437,8 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     h->dt = reals[STEP_AT] * 1e-3;
     h->width = format_width(l);
     h->at[COUNT] = *l;
-    take_behind(h, DURATION, l, "approx");
-    take_behind(h, UNIT, l, "units=");
+    find_behind(h, DURATION, l, "approx");
+    find_behind(h, UNIT, l, "units=");
 
     /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal; others up to 9 are no
      * accelerations. */

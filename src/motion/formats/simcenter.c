@@ -31,7 +31,7 @@ static int recognise(const unsigned char bytes[], size_t n)
 }
 
 /* Makes a channel of a list of samples. */
-static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
+static Status add_channel(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
 {
     Channel *c;
     const size_t n = json_array_size(list);
@@ -60,7 +60,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
 
 /* Takes unit and factor that an object states beside its samples, and refuses what is no acceleration: wind and waves
  * come as forces. Which of the factors of event and pattern multiply the samples differs from program to program. */
-static Status take_shape(const Lines *l, const json_t *o, Channel *c, Err *err)
+static Status read_shape(const Lines *l, const json_t *o, Channel *c, Err *err)
 {
     static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
     const json_t *units = json_object_get(o, "units"), *factor = json_object_get(o, "factor");
@@ -108,10 +108,10 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
     const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
     place.name = json_is_string(name) ? json_string_value(name) : place.name;
     place.count = json_number_value(json_object_get(node, "numSteps"));
-    TRY(take_shape(place.l, node, &place.shape, err));
+    TRY(read_shape(place.l, node, &place.shape, err));
     for (size_t k = 0; k < N_OF(LISTS) && json_is_number(dt); k++)
         if (json_is_array(json_object_get(node, LISTS[k])))
-            TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
+            TRY(add_channel(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
     json_object_foreach((json_t *)node, key, value) TRY(search(place, value, depth + 1, err));
     return STATUS_OK;
 }
