@@ -101,26 +101,24 @@ static Status read_row(const SheetForm *form, const Table *s, size_t row, void *
 {
     SheetRow r = {.n_rows = s->n_rows, .row = row};
     Err wrong = {0};
-    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name; j++) {
+    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name && wrong.code == STATUS_OK; j++) {
         const Column *c = &form->column[j];
         const char *word = r.word[j] = sheet_text(s, row, c->name);
-        double *x = &r.x[j];
-        if (c->kind == COLUMN_NAME) {
-            if (!*word || strlen(word) >= TABLE_NAME_MAX)
-                return bad_data(err, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row],
-                                c->name, word, TABLE_NAME_MAX - 1);
-            continue;
-        }
-        TRY(sheet_number(s, row, c->name, c->otherwise, x, err));
+        const double *x = &r.x[j];
+        if (c->kind != COLUMN_NAME)
+            TRY(sheet_number(s, row, c->name, c->otherwise, &r.x[j], err));
+        else if (!*word || strlen(word) >= TABLE_NAME_MAX)
+            bad_data(&wrong, "%s '%.60s' is no name of 1 to %d characters", c->name, word, TABLE_NAME_MAX - 1);
         const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && *word     ? "it must be above 0"
                            : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
                            : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
                                                                                : NULL;
         if (must)
-            return bad_data(err, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must);
+            bad_data(&wrong, "%s is %g; %s", c->name, *x, must);
     }
-    const Status status = form->take(user, &r, &wrong);
-    return status == STATUS_OK ? status : fail(err, status, "%s:%d: %s", s->path, s->line[row], wrong.text);
+    if (wrong.code == STATUS_OK)
+        form->take(user, &r, &wrong);
+    return wrong.code == STATUS_OK ? STATUS_OK : fail(err, wrong.code, "%s:%d: %s", s->path, s->line[row], wrong.text);
 }
 
 Status sheet_read(const SheetForm *form, const char *model, void *user, Err *err)

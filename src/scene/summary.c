@@ -23,30 +23,6 @@ static double base_shear(const BuildingModel *m, const Motion *motion, double ma
     return sqrt(squares) / (mass * GRAVITY);
 }
 
-/* The core's figures: its first mode, of a cantilever also by both theories, and clamped. */
-static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *of, const Building *b,
-                             double t_base, double t_top, Err *err)
-{
-    CoreOptions clamped = *core;
-    CoreBeam *beam;
-    const double *h = b->storey_m;
-    TRY_ROOM(beam, 1, "a core", err);
-    const Status status = core_make(beam, core, of, b, t_base, t_top, err);
-    if (status == STATUS_OK) {
-        s->core_mass_kg = beam->mass_kg;
-        s->core_hz = s->timoshenko_hz = s->euler_bernoulli_hz = s->clamped_hz = beam->omega[0] / (2 * M_PI);
-        while (s->core_modes_within < beam->top && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
-            s->core_modes_within++;
-    }
-    free(beam);
-    if (status != STATUS_OK || neighbour_is_given(core))
-        return status;
-    TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, b->n, h, t_base, t_top, &s->timoshenko_hz, err));
-    TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, b->n, h, t_base, t_top, &s->euler_bernoulli_hz, err));
-    snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
-    return core_beam_first_hz(&clamped, core->theory, b->n, h, t_base, t_top, &s->clamped_hz, err);
-}
-
 /* The building's figures. */
 static void summarise_building(SceneSummary *s, const Building *b)
 {
@@ -93,10 +69,29 @@ static void summarise_building(SceneSummary *s, const Building *b)
 Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const BuildingOptions *of,
                        const Motion *motion, double t_base_m, double t_top_m, Err *err)
 {
+    CoreOptions clamped = *core;
+    CoreBeam *beam;
+    const double *h = b->storey_m;
     summarise_building(s, b);
     s->content_hz = 0.5 / motion->dt_s;
     s->base_shear = base_shear(&b->model, motion, s->mass_kg);
-    return summarise_core(s, core, of, b, t_base_m, t_top_m, err);
+    TRY_ROOM(beam, 1, "a core", err);
+    const Status status = core_make(beam, core, of, b, t_base_m, t_top_m, err);
+    if (status == STATUS_OK) {
+        s->core_mass_kg = beam->mass_kg;
+        s->core_hz = s->timoshenko_hz = s->euler_bernoulli_hz = s->clamped_hz = beam->omega[0] / (2 * M_PI);
+        while (s->core_modes_within < beam->top && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
+            s->core_modes_within++;
+    }
+    free(beam);
+    if (status != STATUS_OK || neighbour_is_given(core))
+        return status;
+
+    /* The first mode of a cantilever also by both theories, and clamped. */
+    TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, b->n, h, t_base_m, t_top_m, &s->timoshenko_hz, err));
+    TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, b->n, h, t_base_m, t_top_m, &s->euler_bernoulli_hz, err));
+    snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
+    return core_beam_first_hz(&clamped, core->theory, b->n, h, t_base_m, t_top_m, &s->clamped_hz, err);
 }
 
 /* ---- warnings ------------------------------------------------------------------------------------------------- */

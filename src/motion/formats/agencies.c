@@ -361,7 +361,8 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
         TRY(settle_steps(f, l, &h, 0, err));
     settle_channel(f, &h, c, 0);
     c->is_corrected = says_corrected(&h.first) || says_corrected(&h.at[TYPE]);
-    return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
+    c->dt = h.dt;
+    return record_block(r, l, h.count, h.width, h.lines_behind, err);
 }
 
 /* ---- what no row can say ----------------------------------------------------------------------------------------- */
@@ -741,11 +742,9 @@ static Status find_next(Lines *l, const Format **next, Err *err)
             is_known = *next || text_is(HOLDS, ahead.from, ahead.to, "veloc|displ| vel | dis");
             *next = NULL;
         } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
-            return bad_data(
-                err,
-                "%s:%d: more numbers, below words, than the header announces; is it a second record? Keep one "
-                "of them",
-                l->path, ahead.number);
+            return fail_at(err, &ahead,
+                           "more numbers, below words, than the header announces; is it a second record? Keep one "
+                           "of them");
         *l = ahead;
     }
     return STATUS_OK;

@@ -262,13 +262,12 @@ static Status check_times(const Plain *t, Cell name, Err *err)
     for (const char *p = name.from; p < name.to; p++)
         is_title |= (unsigned char)*p > 127; /* in another script, perhaps of time */
     if (!t->is_timed && name.from < name.to && !is_title)
-        return bad_data(
-            err,
-            "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
-            "step of the samples (--set motion.dt_s=0.01)",
-            t->l->path, l->number, (int)(name.to - name.from), name.from);
+        return fail_at(err, l,
+                       "the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
+                       "step of the samples (--set motion.dt_s=0.01)",
+                       (int)(name.to - name.from), name.from);
     for (const char *p = name.from; p <= name.to;) {
-        const Cell word = cell_next(&p, name.to, "_ ()[],");
+        const Cell word = cell_next(&p, name.to, PARTS);
         if (word.from > name.from && text_is(EQUALS, word.from, word.to, "ms|msec|us|min|minutes|h|hours"))
             return bad_data(err, "%s: the column of times is '%.*s'; times must be in seconds", t->l->path,
                             (int)(name.to - name.from), name.from);

@@ -151,7 +151,8 @@ Status sac_text_read(Record *r, Lines *l, Err *err)
         if (i == 6 && l->to - l->raw > 16 && strncmp(l->raw + 16, "-12345", 6) != 0) /* words 18 to 20 */
             channel_name(c, l->raw + 16, l->to);
     }
-    TRY(record_block(r, l, integers[NPTS], reals[DELTA], 15, 0, err));
+    c->dt = reals[DELTA];
+    TRY(record_block(r, l, integers[NPTS], 15, 0, err));
     check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
     return STATUS_OK;
 }
