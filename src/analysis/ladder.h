@@ -19,7 +19,7 @@
  * and limits of the settings have no part in it: some need an effect that is left out.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
- * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.
+ * that (scene/building.h): where P-delta softens it, so that the change by P-delta has that in it as well.
  *
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
 #pragma once

@@ -57,19 +57,6 @@ enum { BUILTIN_MOTION_LIST(CHOICE_NAME) N_MOTIONS };
 extern const char _binary_src_motion_builtin_csv_start[], _binary_src_motion_builtin_csv_end[];
 static const char *const TABLE[] = {_binary_src_motion_builtin_csv_start, _binary_src_motion_builtin_csv_end};
 
-/* Adds the derivative of v at the n samples. */
-static void add_pulse(const Pulse *p, size_t n, double accel[])
-{
-    const double w = 2 * M_PI * p->frequency_hz, half = p->gamma / (2 * p->frequency_hz);
-    for (size_t i = 0; i < n; i++) {
-        const double t = (double)i * DT_S - p->centre_s;
-        if (fabs(t) >= half)
-            continue;
-        const double bell = w / p->gamma * t, carrier = w * t + p->phase_rad;
-        accel[i] -= p->amplitude_m_s * w / 2 * (sin(bell) * cos(carrier) / p->gamma + (1 + cos(bell)) * sin(carrier));
-    }
-}
-
 /* Sample i of a unit white noise: Philox4x32-10 at counter i, then Box and Muller. */
 static double white(uint32_t key, size_t i)
 {
@@ -104,38 +91,43 @@ static void filter_step(Filter *f, double a)
     f->v = v + h / 2 * f->accel;
 }
 
-static void add_noise(const Model *model, size_t n, double accel[])
+/* The samples of a model, to its peak and to whole millionths. */
+static Status make_motion(Motion *m, const Model *model, Err *err)
 {
     const Noise *z = &model->noise;
+    const size_t n = m->n = (size_t)lround(model->duration_s / DT_S) + 1;
+    double *accel, peak = 0;
+    m->dt_s = DT_S;
+    TRY_ROOM(m->accel, n, "samples of a motion", err);
+    accel = m->accel;
+
+    /* Noise of the layer's absolute acceleration. */
     Filter layer = {.w = 2 * M_PI * z->ground_hz, .zeta = z->ground_damping};
     Filter high_pass = {.w = 2 * M_PI * z->high_pass_hz, .zeta = z->high_pass_damping};
     for (size_t i = 0; i < n; i++) {
         const double t = (double)i * DT_S;
         const double rock = z->level_m_s2 * envelope(z, t, model->duration_s) * white((uint32_t)model->key, i);
         filter_step(&layer, rock);
-        filter_step(&high_pass, layer.accel + rock); /* the layer's absolute acceleration */
+        filter_step(&high_pass, layer.accel + rock);
         accel[i] += high_pass.accel;
     }
-}
 
-static void generate(const Model *model, size_t n, double accel[])
-{
-    for (size_t i = 0; i < n; i++)
-        accel[i] = 0;
-    add_noise(model, n, accel);
-    for (size_t k = 0; k < N_OF(model->pulse); k++)
-        add_pulse(&model->pulse[k], n, accel);
+    /* The derivative of every pulse of velocity. */
+    for (const Pulse *p = model->pulse; p < model->pulse + N_OF(model->pulse); p++) {
+        const double w = 2 * M_PI * p->frequency_hz, half = p->gamma / (2 * p->frequency_hz);
+        for (size_t i = 0; i < n; i++) {
+            const double t = (double)i * DT_S - p->centre_s, bell = w / p->gamma * t, carrier = w * t + p->phase_rad;
+            if (fabs(t) < half)
+                accel[i] -=
+                    p->amplitude_m_s * w / 2 * (sin(bell) * cos(carrier) / p->gamma + (1 + cos(bell)) * sin(carrier));
+        }
+    }
     accel[0] = accel[n - 1] = 0;
-}
-
-/* To the stated peak and to whole millionths. */
-static void normalize(double pga, size_t n, double accel[])
-{
-    double peak = 0;
     for (size_t i = 0; i < n; i++)
         peak = fmax(peak, fabs(accel[i]));
     for (size_t i = 0; i < n; i++)
-        accel[i] = rint(accel[i] * (pga / peak) * 1e6) / 1e6;
+        accel[i] = rint(accel[i] * (model->pga_m_s2 / peak) * 1e6) / 1e6;
+    return STATUS_OK;
 }
 
 const char *builtin_name(const char *source)
@@ -144,51 +136,32 @@ const char *builtin_name(const char *source)
     return strncmp(source, PREFIX, sizeof PREFIX - 1) == 0 ? source + sizeof PREFIX - 1 : NULL;
 }
 
-static Status make_motion(Motion *m, const Model *model, Err *err)
-{
-    m->n = (size_t)lround(model->duration_s / DT_S) + 1;
-    m->dt_s = DT_S;
-    TRY_ROOM(m->accel, m->n, "samples of a motion", err);
-    generate(model, m->n, m->accel);
-    normalize(model->pga_m_s2, m->n, m->accel);
-    return STATUS_OK;
-}
-
-/* Number of a motion of the suite from 1; 0: it is none. */
-static size_t number_in_suite(const char *source)
-{
-    char name[sizeof SUITE_SOURCE + 8];
-    size_t i = SUITE_MOTIONS;
-    do
-        snprintf(name, sizeof name, SUITE_SOURCE "-%02zu", i);
-    while (strcmp(source, name) != 0 && --i > 0);
-    return i;
-}
-
-/* source: a word of the table. */
-static Status make_of_table(Motion *m, const char *source, int k, Err *err)
-{
-    Table t;
-    TRY(table_parse(&t, source, TABLE[0], TABLE[1] - TABLE[0], TABLE_PLAIN, err));
-    const Status status = make_motion(m, (const Model *)t.values + k, err);
-    table_free(&t);
-    return status;
-}
-
 Status builtin_motion(Motion *m, const char *source, Err *err)
 {
     static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD) SUITE_SOURCE};
-    const size_t of_suite = number_in_suite(source);
+    char name[sizeof SUITE_SOURCE + 8];
+    size_t of_suite = SUITE_MOTIONS; /* from 1; 0: it is none of the suite */
     int k = 0;
     while (k < N_MOTIONS && strcmp(source, NAMES[k]) != 0)
         k++;
+    do
+        snprintf(name, sizeof name, SUITE_SOURCE "-%02zu", of_suite);
+    while (strcmp(source, name) != 0 && --of_suite > 0);
     memset(m, 0, sizeof *m);
     if (strcmp(source, SUITE_SOURCE) == 0)
         return bad_data(err, "motion.record: %s is a suite of motion.records; its motions are %s-01 to -%02d", source,
                         source, SUITE_MOTIONS);
     if (k == N_MOTIONS && of_suite == 0)
         return fail_no_word(err, STATUS_BAD_DATA, "motion.record", source, "built-in motion", NAMES, k + 1);
-    TRY(of_suite > 0 ? synthetic_motion(m, of_suite - 1, err) : make_of_table(m, source, k, err));
+    if (of_suite > 0) {
+        TRY(synthetic_motion(m, of_suite - 1, err));
+    } else {
+        Table t;
+        TRY(table_parse(&t, source, TABLE[0], TABLE[1] - TABLE[0], TABLE_PLAIN, err));
+        const Status status = make_motion(m, (const Model *)t.values + k, err);
+        table_free(&t);
+        TRY(status);
+    }
     m->is_corrected = of_suite > 0; /* its ground ends where it began */
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);
     snprintf(m->name, sizeof m->name, "%s", source);

@@ -18,27 +18,11 @@ static Status floor_of(const Table *t, size_t c, int *floor, Err *err)
                     t->names[c]);
 }
 
-static Status check_rows(const Table *t, Err *err)
+/* Checks header and rows, and adds up the columns of every floor. */
+static Status read_rows(Motion *m, const Table *t, Err *err)
 {
     double largest = 0;
-    for (size_t i = 0; i < t->n_rows; i++) {
-        const double *row = t->values + i * t->n_cols;
-        for (size_t c = 0; c < t->n_cols; c++)
-            if (isnan(row[c]))
-                return bad_data(err, "%s:%d: column %s is missing", t->path, t->line[i], t->names[c]);
-        if (i == 0 ? row[0] != 0 : !(row[0] > row[-(long)t->n_cols]))
-            return bad_data(err, "%s:%d: time_s is %g; times begin at 0 and ascend", t->path, t->line[i], row[0]);
-        for (size_t c = 1; c < t->n_cols; c++)
-            largest = fmax(largest, fabs(row[c]));
-    }
-    if (t->n_rows < 2)
-        return bad_data(err, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
-    return largest > 0 ? STATUS_OK : bad_data(err, "%s: every force is 0; leave motion.forces at none", t->path);
-}
-
-static Status take_rows(Motion *m, const Table *t, Err *err)
-{
-    int floor;
+    int floor = 0;
     if (t->n_cols < 2 || strcmp(t->names[0], "time_s") != 0)
         return bad_data(err, "%s: the header is time_s,floor_01_n,...; its first column is '%s'", t->path, t->names[0]);
     for (size_t c = 1; c < t->n_cols; c++) {
@@ -47,17 +31,28 @@ static Status take_rows(Motion *m, const Table *t, Err *err)
             return bad_data(err, "%s: column '%s' is there twice", t->path, t->names[c]);
         m->n_force = MAX_OF(floor, m->n_force);
     }
-    TRY(check_rows(t, err));
     const size_t width = (size_t)m->n_force + 1;
     m->n_force_rows = t->n_rows;
     TRY_ROOM(m->force_rows, t->n_rows * width, "forces", err);
-    for (size_t c = 0; c < t->n_cols; c++) {
-        floor = 0;
-        if (c > 0)
-            TRY(floor_of(t, c, &floor, err));
-        for (size_t i = 0; i < t->n_rows; i++)
-            m->force_rows[i * width + floor] += t->values[i * t->n_cols + c];
+    for (size_t i = 0; i < t->n_rows; i++) {
+        const double *row = t->values + i * t->n_cols;
+        for (size_t c = 0; c < t->n_cols; c++)
+            if (isnan(row[c]))
+                return bad_data(err, "%s:%d: column %s is missing", t->path, t->line[i], t->names[c]);
+        if (i == 0 ? row[0] != 0 : !(row[0] > row[-(long)t->n_cols]))
+            return bad_data(err, "%s:%d: time_s is %g; times begin at 0 and ascend", t->path, t->line[i], row[0]);
+        for (size_t c = 0; c < t->n_cols; c++) {
+            floor = 0;
+            if (c > 0)
+                TRY(floor_of(t, c, &floor, err));
+            m->force_rows[i * width + floor] += row[c];
+            largest = c > 0 ? fmax(largest, fabs(row[c])) : largest;
+        }
     }
+    if (t->n_rows < 2)
+        return bad_data(err, "%s: %zu rows; forces need two or more", t->path, t->n_rows);
+    if (!(largest > 0))
+        return bad_data(err, "%s: every force is 0; leave motion.forces at none", t->path);
     m->forces_hash = hash_fnv1a(m->force_rows, t->n_rows * width * sizeof *m->force_rows, HASH_SEED);
     return STATUS_OK;
 }
@@ -68,7 +63,7 @@ Status forces_read(Motion *m, const char *path, Err *err)
     Err why = {0};
     Status status = table_read(&t, path, TABLE_HEADED, &why);
     if (status == STATUS_OK)
-        status = take_rows(m, &t, &why);
+        status = read_rows(m, &t, &why);
     table_free(&t);
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "motion.forces: %s", why.text);
 }
@@ -78,17 +73,8 @@ static const double *row_of(const Motion *m, size_t i)
     return m->force_rows + i * ((size_t)m->n_force + 1);
 }
 
-/* Are all times of the rows multiples of the step? */
-static int step_fits(const Motion *m, double step)
-{
-    double off = 0;
-    for (size_t i = 0; i < m->n_force_rows; i++)
-        off = fmax(off, fabs(*row_of(m, i) / step - round(*row_of(m, i) / step)));
-    return off < 1e-6;
-}
-
-/* [s] for both: the longest that fits, of so many parts of the ground's step, or of the shortest distance of two rows
- * where it is at rest. */
+/* [s] for both: the longest step of which all times of the rows are multiples, a part of the ground's step, or of the
+ * shortest distance of two rows where it is at rest. */
 static double common_step(Motion *m, int is_still, size_t *parts)
 {
     enum { PARTS_TRIED = 100 };
@@ -97,24 +83,20 @@ static double common_step(Motion *m, int is_still, size_t *parts)
         shortest = fmin(shortest, *row_of(m, i) - *row_of(m, i - 1));
     const double whole = is_still ? shortest : m->dt_s, longest = is_still ? STEP_MAX : shortest;
     const size_t least = (size_t)fmax(ceil(whole / longest * (1 - 1e-9)), 1);
-    for (*parts = least; *parts < least + PARTS_TRIED; ++*parts)
-        if (step_fits(m, whole / (double)*parts))
-            return whole / (double)*parts;
+    for (*parts = least; *parts < least + PARTS_TRIED; ++*parts) {
+        const double step = whole / (double)*parts;
+        double off = 0;
+        for (size_t i = 0; i < m->n_force_rows; i++)
+            off = fmax(off, fabs(*row_of(m, i) / step - round(*row_of(m, i) / step)));
+        if (off < 1e-6)
+            return step;
+    }
     *parts = least;
     snprintf(m->warning, sizeof m->warning,
              "motion.forces: times that are no multiples of %g s, the step of the simulation; corners there move by "
              "less than that",
              whole / (double)least);
     return whole / (double)least;
-}
-
-static void place_at(Motion *m, double t, size_t *row, double out[])
-{
-    while (*row + 2 < m->n_force_rows && *row_of(m, *row + 1) <= t)
-        ++*row;
-    const double *a = row_of(m, *row), *b = row_of(m, *row + 1), x = (t - a[0]) / (b[0] - a[0]);
-    for (int j = 0; j < m->n_force; j++)
-        out[j] = x <= 1 + 1e-9 ? a[1 + j] + fmin(x, 1) * (b[1 + j] - a[1 + j]) : 0;
 }
 
 Status forces_place(Motion *m, Err *err)
@@ -140,7 +122,14 @@ Status forces_place(Motion *m, Err *err)
             accel[i] = in == 0        ? m->accel[k]
                        : k + 1 < m->n ? m->accel[k] + (m->accel[k + 1] - m->accel[k]) * (double)in / (double)parts
                                       : 0;
-        place_at(m, (double)i * step, &row, m->force + i * width);
+
+        /* Linear between the rows about this time, and none after the last. */
+        const double t = (double)i * step;
+        while (row + 2 < m->n_force_rows && *row_of(m, row + 1) <= t)
+            row++;
+        const double *a = row_of(m, row), *b = row_of(m, row + 1), x = (t - a[0]) / (b[0] - a[0]);
+        for (size_t j = 0; j < width; j++)
+            m->force[i * width + j] = x <= 1 + 1e-9 ? a[1 + j] + fmin(x, 1) * (b[1 + j] - a[1 + j]) : 0;
     }
     free(m->accel);
     free(m->force_rows);

@@ -69,6 +69,7 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
 
 /* ---- which channel -------------------------------------------------------------------------------------------- */
 
+/* Is the channel an acceleration, or does its name say velocity, displacement or spectrum? */
 static int is_acceleration(const Channel *c)
 {
     const char *p = c->name, *end = p + strlen(p);
@@ -303,7 +304,7 @@ static Status check_peak(Motion *m, const Series *s, double offset, double to_m_
 
 /* The samples in m/s2 become the motion's; uneven ones are resampled by straight lines, at begin + k dt up to the end.
  * A step so short that it would multiply the file many times is a mistake. */
-static Status take_samples(Motion *m, const Series *s, const MotionHow *how, Err *err)
+static Status convert_samples(Motion *m, const Series *s, const MotionHow *how, Err *err)
 {
     const Channel *c = s->c;
     MotionUnit unit;
@@ -356,7 +357,7 @@ typedef struct {
 static Status read_content(Record *r, const char *path, const char *bytes, size_t n, Err *err);
 
 /* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a damaged one not. */
-static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
+static Status add_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
 {
     Members *members = user;
     Err why = {0};
@@ -392,7 +393,7 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
     if (archive_is(raw, n)) {
         if (r->deep == ARCHIVES_DEEP)
             return bad_data(err, "%s: an archive in an archive in an archive", path);
-        TRY(archive_each(path, bytes, n, take_member, &members, err));
+        TRY(archive_each(path, bytes, n, add_member, &members, err));
         return r->n_channels > 0 ? STATUS_OK
                                  : bad_data(err, "%s: no member of this archive is a record: %.300s", path,
                                             members.first.text[0] ? members.first.text : "it is empty");
@@ -432,7 +433,7 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
     if (s == STATUS_OK)
         s = choose_channel(r, path, &c, err);
     if (s == STATUS_OK)
-        s = take_samples(m, &(Series){path, c, r->row + c->first}, how, err);
+        s = convert_samples(m, &(Series){path, c, r->row + c->first}, how, err);
     if (s == STATUS_OK) {
         if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
             snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,

@@ -16,6 +16,7 @@
 enum { PADDING_MAX = 10000000 };                        /* samples: 80 MB */
 static const double HIGHPASS_PAD = 0.75 * FILTER_ORDER; /* [-] times 1 / fc, before and behind */
 
+/* Adds to what was done to the samples. */
 static __attribute__((format(printf, 2, 3))) void say(Motion *m, const char *format, ...)
 {
     const size_t used = strlen(m->processed);
@@ -38,6 +39,7 @@ static void orthogonal(double s, double n, double p[DEGREE_MAX + 1])
     p[2] = s * s - (n + 1) / (3 * (n - 1)); /* mean of s_i^2 */
 }
 
+/* Subtracts the polynomial of that degree that fits the samples best. */
 static Status subtract_baseline(Motion *m, int degree, Err *err)
 {
     static const char *const WORDS[] = {"mean", "straight line", "parabola"};
@@ -66,38 +68,31 @@ static Status subtract_baseline(Motion *m, int degree, Err *err)
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
-/* Zeros before and behind the record. */
-static Status pad(Motion *m, size_t before, size_t behind, Err *err)
-{
-    double *wider;
-    TRY_ROOM(wider, before + m->n + behind, "samples of a motion", err);
-    memcpy(wider + before, m->accel, m->n * sizeof *wider);
-    free(m->accel);
-    m->accel = wider;
-    m->n += before + behind;
-    return STATUS_OK;
-}
-
+/* Passes over the record, with zeros behind it, and before it too for a high pass, which keeps them. */
 static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_hz, Err *err)
 {
     Filter f;
     Err why = {0};
+    double *wider;
+    char added[64] = "";
     const int is_high = kind == FILTER_HIGH_PASS;
     const Status status = filter_butterworth(&f, kind, cutoff_hz, m->dt_s, &why);
     if (status != STATUS_OK)
         return fail(err, status, "%s: motion.%s: %s", m->name, key, why.text);
     const size_t padding = is_high ? (size_t)ceil(HIGHPASS_PAD / cutoff_hz / m->dt_s) : filter_padding(&f);
+    const size_t before = is_high ? padding : 0, n = before + m->n + padding;
     if (padding > PADDING_MAX)
         return bad_data(err, "%s: motion.%s: %g Hz needs %zu samples of padding; at most %d", m->name, key, cutoff_hz,
                         padding, PADDING_MAX);
-    TRY(pad(m, is_high ? padding : 0, padding, err));
-    filter_zero_phase(&f, m->n, 1, m->accel);
-    say(m, "%s-pass %g Hz (4th order Butterworth, zero phase)", is_high ? "high" : "low", cutoff_hz);
+    TRY_ROOM(wider, n, "samples of a motion", err);
+    memcpy(wider + before, m->accel, m->n * sizeof *wider);
+    free(m->accel);
+    m->accel = wider;
+    filter_zero_phase(&f, n, 1, m->accel);
+    m->n = is_high ? n : m->n;
     if (is_high)
-        snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
-                 ", %.4g s of zeros added at both ends", (double)padding * m->dt_s);
-    else
-        m->n -= padding;
+        snprintf(added, sizeof added, ", %.4g s of zeros added at both ends", (double)padding * m->dt_s);
+    say(m, "%s-pass %g Hz (4th order Butterworth, zero phase)%s", is_high ? "high" : "low", cutoff_hz, added);
     return STATUS_OK;
 }
 
@@ -143,15 +138,31 @@ static const double OTHERWISE[N_KEYS] = {[TL] = 8, [FROM] = 0.2, [TO] = 2};
 static const double SOILS[][4] = {
     {1, 0.15, 0.4, 2}, {1.2, 0.15, 0.5, 2}, {1.15, 0.2, 0.6, 2}, {1.35, 0.2, 0.8, 2}, {1.4, 0.15, 0.5, 2}};
 
-/* Both codes rise from 0.4 to a plateau, which ends at TC, and fall with T and from TD on with its square. */
-static Status settle_target(CodeSpectrum *c, double x[N_KEYS], Err *err)
+Status target_parse(const char *text, CodeSpectrum *c, Err *err)
 {
+    static const char *const KINDS[] = {"none", "eurocode8", "asce7"};
+    char copy[OPTION_TEXT_MAX], *rest = copy;
+    double x[N_KEYS] = {0};
+    int kind = 0;
+    snprintf(copy, sizeof copy, "%s", *text ? text : KINDS[TARGET_NONE]);
+    const char *word = strsep(&rest, " ");
+    while (kind <= TARGET_ASCE7 && strcmp(word, KINDS[kind]) != 0)
+        kind++;
+    *c = (CodeSpectrum){.kind = kind};
+    if (kind > TARGET_ASCE7 || (kind == TARGET_NONE && rest))
+        return bad_data(err, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...", text);
+    if (rest)
+        TRY(keyed_numbers("motion.target", rest, 1u << kind, N_KEYS, KEYS, x, err));
+    if (kind == TARGET_NONE)
+        return STATUS_OK;
+
+    /* Both codes rise from 0.4 to a plateau, which ends at TC, and fall with T and from TD on with its square. */
     for (int k = 0; k < N_KEYS; k++)
         x[k] = x[k] != 0 ? x[k] : k >= S && k <= TD && x[SOIL] > 0 ? SOILS[(int)x[SOIL] - 1][k - S] : OTHERWISE[k];
-    const int is_eurocode = c->kind == TARGET_EUROCODE8;
+    const int is_eurocode = kind == TARGET_EUROCODE8;
     const double ts = x[SD1] / x[SDS];
-    *c = is_eurocode ? (CodeSpectrum){c->kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
-                     : (CodeSpectrum){c->kind, x[FROM], x[TO], x[SDS], 0.2 * ts, ts, x[TL]};
+    *c = is_eurocode ? (CodeSpectrum){kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
+                     : (CodeSpectrum){kind, x[FROM], x[TO], x[SDS], 0.2 * ts, ts, x[TL]};
     if (!(c->plateau_g > 0 && c->tb_s > 0 && c->tc_s > 0 && c->td_s > 0))
         return bad_data(err, "motion.target: %s",
                         is_eurocode ? "eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place"
@@ -162,23 +173,6 @@ static Status settle_target(CodeSpectrum *c, double x[N_KEYS], Err *err)
                ? STATUS_OK
                : bad_data(err, "motion.target: %s=%g, %s=%g and %s=%g must rise", is_eurocode ? "tb" : "T0", c->tb_s,
                           is_eurocode ? "tc" : "TS", c->tc_s, is_eurocode ? "td" : "tl", c->td_s);
-}
-
-Status target_parse(const char *text, CodeSpectrum *out, Err *err)
-{
-    static const char *const KINDS[] = {"none", "eurocode8", "asce7"};
-    char copy[OPTION_TEXT_MAX], *rest = copy;
-    double x[N_KEYS] = {0};
-    *out = (CodeSpectrum){0};
-    snprintf(copy, sizeof copy, "%s", *text ? text : KINDS[TARGET_NONE]);
-    const char *word = strsep(&rest, " ");
-    while (out->kind <= TARGET_ASCE7 && strcmp(word, KINDS[out->kind]) != 0)
-        out->kind++;
-    if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
-        return bad_data(err, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...", text);
-    if (rest)
-        TRY(keyed_numbers("motion.target", rest, 1u << out->kind, N_KEYS, KEYS, x, err));
-    return out->kind == TARGET_NONE ? STATUS_OK : settle_target(out, x, err);
 }
 
 double target_psa(const CodeSpectrum *c, double T)
@@ -214,45 +208,6 @@ double target_misfit(const Motion *m, const CodeSpectrum *c)
 
 /* ---- scaling ----------------------------------------------------------------------------------------------------- */
 
-/* own: of the source. */
-static double factor_of(const Motion *m, const MotionOptions *o, const CodeSpectrum *c, double own)
-{
-    double psa, mean, rms;
-    if (o->sa_g > 0) {
-        spectrum_psa(m, DAMPING, 1, &o->sa_period_s, &psa);
-        return o->sa_g * GRAVITY / psa;
-    }
-    if (c->kind != TARGET_NONE) {
-        compare(m, c, &mean, &rms);
-        return exp(mean);
-    }
-    return o->factor * own;
-}
-
-/* Behind what the reader has to say. */
-static void warn_of_scale(Motion *m)
-{
-    const size_t used = strlen(m->warning);
-    if (m->scale > SCALE_PLAUSIBLE || m->scale < 1 / SCALE_PLAUSIBLE)
-        snprintf(m->warning + used, sizeof m->warning - used,
-                 "%sscaled by %.3g; records are scaled by %g to %g as a rule", used ? "; " : "", m->scale,
-                 1 / SCALE_PLAUSIBLE, SCALE_PLAUSIBLE);
-}
-
-/* A record that must be multiplied by so much is not what it is taken for. A factor of one's own may convert units. */
-static Status check_scale(const Motion *m, const MotionOptions *o, double own, double peak_g, Err *err)
-{
-    char scaling[SCALINGS_TEXT_MAX];
-    if (o->factor != 1 || own != 1 || m->scale <= SCALE_MAX)
-        return STATUS_OK;
-    motion_scalings(o, scaling);
-    return bad_data(
-        err,
-        "%s: %s would multiply it by %.3g, for it peaks at %.3g g%s%s; beyond %g its unit is wrong, or nothing is "
-        "left of it",
-        m->name, scaling, m->scale, peak_g, m->processed[0] ? " after this: " : "", m->processed, SCALE_MAX);
-}
-
 /* Is the ground at rest? */
 static int is_still(const MotionOptions *o)
 {
@@ -262,6 +217,8 @@ static int is_still(const MotionOptions *o)
 Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 {
     const double peak_g = motion_peak(m) / GRAVITY;
+    double factor, psa, mean, rms;
+    char scaling[SCALINGS_TEXT_MAX];
     CodeSpectrum target;
     Source source;
     if (is_still(o)) {
@@ -276,14 +233,39 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
                         "motion.sa_g or motion.target): leave one out",
                         source.path);
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
-    const double factor = factor_of(m, o, &target, source.factor);
+
+    /* To a spectral value, to a code spectrum, or by the factors of setting and source. */
+    if (o->sa_g > 0) {
+        spectrum_psa(m, DAMPING, 1, &o->sa_period_s, &psa);
+        factor = o->sa_g * GRAVITY / psa;
+    } else if (target.kind != TARGET_NONE) {
+        compare(m, &target, &mean, &rms);
+        factor = exp(mean);
+    } else {
+        factor = o->factor * source.factor;
+    }
     if (!(factor > 0 && isfinite(factor)))
         return bad_data(err, "%s: cannot be scaled to a response spectrum: it moves no such oscillator", m->name);
     for (size_t i = 0; i < m->n && factor != 1; i++)
         m->accel[i] *= factor;
     m->scale *= factor;
-    warn_of_scale(m);
-    TRY(check_scale(m, o, source.factor, peak_g, err));
+
+    /* A record that must be multiplied by so much is not what it is taken for. A factor of one's own may convert
+     * units. */
+    if (m->scale > SCALE_PLAUSIBLE || m->scale < 1 / SCALE_PLAUSIBLE) {
+        const size_t used = strlen(m->warning);
+        snprintf(m->warning + used, sizeof m->warning - used,
+                 "%sscaled by %.3g; records are scaled by %g to %g as a rule", used ? "; " : "", m->scale,
+                 1 / SCALE_PLAUSIBLE, SCALE_PLAUSIBLE);
+    }
+    if (o->factor == 1 && source.factor == 1 && m->scale > SCALE_MAX) {
+        motion_scalings(o, scaling);
+        return bad_data(
+            err,
+            "%s: %s would multiply it by %.3g, for it peaks at %.3g g%s%s; beyond %g its unit is wrong, or nothing is "
+            "left of it",
+            m->name, scaling, m->scale, peak_g, m->processed[0] ? " after this: " : "", m->processed, SCALE_MAX);
+    }
     return forces_place(m, err);
 }
 
@@ -312,6 +294,7 @@ void motion_unscale(MotionOptions *o)
     o->target[0] = 0;
 }
 
+/* Reads a file or makes a built-in motion; a word that is neither may be one misspelt. */
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
     static const char *const MOTIONS[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
@@ -327,22 +310,20 @@ Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
     return load(m, source, &(MotionHow){.unit = unit}, err);
 }
 
-/* The ground at rest, for forces on the floors alone. */
-static Status stand_still(Motion *m, const MotionOptions *o, Err *err)
-{
-    if (!list_is_given(o->forces))
-        return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");
-    *m = (Motion){.accel = calloc(2, sizeof *m->accel), .n = 2, .dt_s = 1, .name = "none", .format = "none"};
-    return m->accel ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for two samples");
-}
-
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
     Source source;
     TRY(source_read(o->record, &source, err));
     MotionHow how = {.channel = source.channel[0] ? source.channel : o->channel, .dt_s = o->dt_s};
     TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
-    TRY(is_still(o) ? stand_still(m, o, err) : load(m, source.path, &how, err));
+    if (is_still(o)) {
+        if (!list_is_given(o->forces))
+            return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");
+        *m = (Motion){.n = 2, .dt_s = 1, .name = "none", .format = "none"};
+        TRY_ROOM(m->accel, m->n, "samples of a motion", err);
+    } else {
+        TRY(load(m, source.path, &how, err));
+    }
     const char *words = o->record + source_path_length(o->record);
     if (*words)
         m->file_hash = hash_fnv1a(words, strlen(words), m->file_hash);

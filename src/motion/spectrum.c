@@ -33,6 +33,7 @@ static Flow flow_series(const Oscillator *o, double tau)
     return (Flow){.h = y1 / w, .h1 = 1 - 2 * o->zeta * y1 - y, .I1 = y / (w * w), .I2 = y_int / (w * w * w)};
 }
 
+/* What an interval of length tau does, in closed form where that keeps its digits. */
 static Flow flow(const Oscillator *o, double tau)
 {
     if (o->w * tau < 1)
@@ -49,26 +50,23 @@ typedef struct {
     double u, v; /* [m], [m/s] */
 } State;
 
-/* Ground acceleration a + slope tau. The response to unit initial displacement is h1 + 2 zeta w h. */
-static State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
-{
-    const double g = f->h1 + 2 * o->zeta * o->w * f->h;
-    return (State){.u = g * y.u + f->h * y.v - a * f->I1 - slope * f->I2,
-                   .v = -o->w * o->w * f->h * y.u + f->h1 * y.v - a * f->h - slope * f->I1};
-}
-
 /* ---- largest displacement inside an interval ------------------------------------------------------------------- */
 
 typedef struct {
     const Oscillator *o;
     State y;         /* at its beginning */
-    double a, slope; /* [m/s2], [m/s3] */
+    double a, slope; /* [m/s2], [m/s3] ground acceleration a + slope tau */
 } Interval;
 
+/* The response to unit initial displacement is h1 + 2 zeta w h. */
 static State state_at(const Interval *in, double tau)
 {
-    const Flow f = flow(in->o, tau);
-    return advance(in->o, &f, in->y, in->a, in->slope);
+    const Oscillator *o = in->o;
+    const State y = in->y;
+    const Flow f = flow(o, tau);
+    const double g = f.h1 + 2 * o->zeta * o->w * f.h;
+    return (State){.u = g * y.u + f.h * y.v - in->a * f.I1 - in->slope * f.I2,
+                   .v = -o->w * o->w * f.h * y.u + f.h1 * y.v - in->a * f.h - in->slope * f.I1};
 }
 
 /* The velocity is monotone in lo..hi and changes sign: Newton, kept inside by bisection. |u| at its zero. */
@@ -135,9 +133,33 @@ typedef struct {
     double dt, chord;                       /* dt^4 / 64 */
 } Step;
 
-static Step step_of(const Oscillator *o, double dt)
+/* Advances y over an interval and raises the largest |u| to what is in it. u is a line p (what the ground's line leads
+ * to in the end) and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) /
+ * w)^2). A good bound for short periods. Where |u''| <= c, u lies less than dt^2 / 8 c above its chord; u'' = r at the
+ * beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. A good bound for periods much longer than dt. */
+static void cross(const Oscillator *o, const Step *g, State *y, double *largest, double a, double slope)
 {
-    const Flow f = flow(o, dt);
+    const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
+    const double rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
+    const double e = in.y.u - p, de = (in.y.v - rise) * g->per_w, square = e * e + de * de;
+    const double line0 = *largest - fabs(p), line1 = *largest - fabs(p + rise * g->dt);
+    y->u = g->uu * in.y.u + g->uv * in.y.v - a * g->I1 - slope * g->I2;
+    y->v = g->vu * in.y.u + g->vv * in.y.v - a * g->uv - slope * g->I1;
+    *largest = fmax(*largest, fabs(y->u));
+    if (line0 >= 0 && line1 >= 0 && square <= line0 * line0 && square <= line1 * line1)
+        return;
+    const double r = -a - g->damping * in.y.v - g->ww * in.y.u, j = -slope - g->damping * r - g->ww * in.y.v;
+    const double above = g->chord * (r * r + j * j * g->per_ww);
+    const double room0 = *largest - fabs(in.y.u), room1 = *largest - fabs(y->u);
+    if (!(above <= room0 * room0 && above <= room1 * room1))
+        *largest = fmax(*largest, largest_inside(&in, g->dt, y->v));
+}
+
+/* Over the motion and then half a period at rest. */
+static double largest_displacement(const Motion *m, const Oscillator *o)
+{
+    const double half_period = M_PI / o->wd;
+    const Flow f = flow(o, m->dt_s);
     Step g = {.uv = f.h,
               .vv = f.h1,
               .I1 = f.I1,
@@ -146,47 +168,11 @@ static Step step_of(const Oscillator *o, double dt)
               .per_w = o->w * o->per_ww,
               .ww = o->w * o->w,
               .damping = 2 * o->zeta * o->w,
-              .dt = dt,
-              .chord = pow(dt, 4) / 64};
+              .dt = m->dt_s,
+              .chord = pow(m->dt_s, 4) / 64};
     g.lag = g.damping * g.per_ww;
     g.uu = f.h1 + g.damping * f.h;
     g.vu = -g.ww * f.h;
-    return g;
-}
-
-/* Can |u| become larger inside the interval than it was so far and is at both ends? Where |u''| <= c, u lies less than
- * dt^2 / 8 c above its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. A
- * good bound for periods much longer than dt. */
-static int may_rise(const Step *g, const Interval *in, double largest, double u_end)
-{
-    const double r = -in->a - g->damping * in->y.v - g->ww * in->y.u, j = -in->slope - g->damping * r - g->ww * in->y.v;
-    const double above = g->chord * (r * r + j * j * g->per_ww);
-    const double room0 = largest - fabs(in->y.u), room1 = largest - fabs(u_end);
-    return !(above <= room0 * room0 && above <= room1 * room1);
-}
-
-/* Advances y over an interval and raises the largest |u| to what is in it. u is a line p (what the ground's line leads
- * to in the end) and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) /
- * w)^2). A good bound for short periods. */
-static void cross(const Oscillator *o, const Step *g, State *y, double *largest, double a, double slope)
-{
-    const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
-    const double rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
-    const double e = in.y.u - p, de = (in.y.v - rise) * g->per_w, square = e * e + de * de;
-    const double room0 = *largest - fabs(p), room1 = *largest - fabs(p + rise * g->dt);
-    y->u = g->uu * in.y.u + g->uv * in.y.v - a * g->I1 - slope * g->I2;
-    y->v = g->vu * in.y.u + g->vv * in.y.v - a * g->uv - slope * g->I1;
-    *largest = fmax(*largest, fabs(y->u));
-    if (!(room0 >= 0 && room1 >= 0 && square <= room0 * room0 && square <= room1 * room1) &&
-        may_rise(g, &in, *largest, y->u))
-        *largest = fmax(*largest, largest_inside(&in, g->dt, y->v));
-}
-
-/* Over the motion and then half a period at rest. */
-static double largest_displacement(const Motion *m, const Oscillator *o)
-{
-    const double half_period = M_PI / o->wd;
-    const Step g = step_of(o, m->dt_s);
     Interval rest = {.o = o};
     double largest = 0;
     for (size_t i = 0; i + 1 < m->n; i++)
@@ -222,40 +208,11 @@ static double displacement(const Ground *g, double tau)
     return g->d + tau * (g->v + tau * (g->a / 2 + tau * g->slope / 6));
 }
 
-/* The velocity peaks where the acceleration is zero. */
-static double largest_velocity(const Ground *g)
-{
-    const double tau = -g->a / g->slope;
-    const double inside = tau > 0 && tau < g->dt ? fabs(velocity(g, tau)) : 0;
-    return fmax(inside, fabs(velocity(g, g->dt)));
-}
-
-/* The displacement peaks where the velocity v + a tau + slope tau^2 / 2 is zero; roots without cancellation. */
-static double largest_ground_displacement(const Ground *g)
-{
-    double largest = fabs(displacement(g, g->dt));
-    const double root = sqrt(g->a * g->a - 2 * g->slope * g->v); /* NaN: none */
-    const double q = -(g->a + copysign(root, g->a));
-    const double zeros[2] = {q / g->slope, 2 * g->v / q};
-    for (int i = 0; i < 2; i++)
-        if (zeros[i] > 0 && zeros[i] < g->dt) /* false for NaN and infinity */
-            largest = fmax(largest, fabs(displacement(g, zeros[i])));
-    return largest;
-}
-
 /* int a^2 from the beginning of the interval to tau */
 static double square_integral(const Ground *g, double tau)
 {
     const double b = g->a + g->slope * tau;
     return tau * (g->a * g->a + g->a * b + b * b) / 3;
-}
-
-static double absolute_integral(const Ground *g)
-{
-    const double b = g->a + g->slope * g->dt;
-    if (g->a * b >= 0)
-        return g->dt * fabs(g->a + b) / 2;
-    return g->dt * (g->a * g->a + b * b) / (2 * fabs(b - g->a));
 }
 
 /* Interval i, behind another one or, where that is of no length, at rest. */
@@ -298,9 +255,22 @@ void motion_figures(const Motion *m, MotionFigures *out)
     *out = (MotionFigures){.pga_m_s2 = motion_peak(m), .duration_s = motion_duration(m)};
     for (size_t i = 0; i + 1 < m->n; i++) {
         g = ground_behind(&g, m, i);
-        out->pgv_m_s = fmax(out->pgv_m_s, largest_velocity(&g));
-        out->pgd_m = fmax(out->pgd_m, largest_ground_displacement(&g));
-        out->cav_m_s += absolute_integral(&g);
+        const double a = g.a, b = a + g.slope * g.dt, peak = -a / g.slope;
+
+        /* The velocity peaks where the acceleration is zero. */
+        if (peak > 0 && peak < g.dt)
+            out->pgv_m_s = fmax(out->pgv_m_s, fabs(velocity(&g, peak)));
+        out->pgv_m_s = fmax(out->pgv_m_s, fabs(velocity(&g, g.dt)));
+
+        /* The displacement peaks where the velocity v + a tau + slope tau^2 / 2 is zero; roots without cancellation,
+         * NaN where there are none, which like infinity lies in no interval. */
+        const double q = -(a + copysign(sqrt(a * a - 2 * g.slope * g.v), a));
+        const double at[] = {q / g.slope, 2 * g.v / q};
+        for (int k = 0; k < 2; k++)
+            if (at[k] > 0 && at[k] < g.dt)
+                out->pgd_m = fmax(out->pgd_m, fabs(displacement(&g, at[k])));
+        out->pgd_m = fmax(out->pgd_m, fabs(displacement(&g, g.dt)));
+        out->cav_m_s += a * b >= 0 ? g.dt * fabs(a + b) / 2 : g.dt * (a * a + b * b) / (2 * fabs(b - a));
         squares += square_integral(&g, g.dt);
     }
     out->arias_m_s = M_PI / (2 * GRAVITY) * squares;

@@ -90,6 +90,7 @@ static Status put_inside(char out[OPTION_TEXT_MAX], const char *path, size_t n, 
     return STATUS_OK;
 }
 
+/* Hands over the files of a folder in the order of their names. */
 static Status each_of_folder(const char *folder, SourceFn take, void *user, Err *err)
 {
     struct dirent **names = NULL;
@@ -114,6 +115,7 @@ static Status each_of_folder(const char *folder, SourceFn take, void *user, Err 
     return status == STATUS_OK && n_files == 0 ? bad_data(err, "%s: is empty", folder) : status;
 }
 
+/* Hands over the sources of a list; what is wrong with one is said with its line. */
 static Status each_of_list(const char *path, SourceFn take, void *user, Err *err)
 {
     char line[OPTION_TEXT_MAX], source[OPTION_TEXT_MAX];
@@ -145,16 +147,6 @@ static Status each_of_list(const char *path, SourceFn take, void *user, Err *err
     return status == STATUS_OK && n == 0 ? bad_data(err, "%s: names no record", path) : status;
 }
 
-static Status each_of_program(SourceFn take, void *user, Err *err)
-{
-    char source[OPTION_TEXT_MAX];
-    for (int i = 1; i <= SUITE_MOTIONS; i++) {
-        snprintf(source, sizeof source, SUITE_SOURCE "-%02d", i);
-        TRY(take(source, user, err));
-    }
-    return STATUS_OK;
-}
-
 static int is_list(const char *path)
 {
     static const char END[] = "list.txt";
@@ -162,18 +154,18 @@ static int is_list(const char *path)
     return n >= sizeof END - 1 && strcmp(path + n - (sizeof END - 1), END) == 0;
 }
 
-static int is_suite(const char *item)
-{
-    return strcmp(item, SUITE_SOURCE) == 0 || is_list(item) || is_folder(item);
-}
-
 Status suite_each(const char *item, SourceFn take, void *user, Err *err)
 {
-    if (strcmp(item, SUITE_SOURCE) == 0)
-        return each_of_program(take, user, err);
+    char source[OPTION_TEXT_MAX];
     if (is_list(item) || is_folder(item))
         return (is_list(item) ? each_of_list : each_of_folder)(item, take, user, err);
-    return take(item, user, err); /* who reads it says what is not there */
+    if (strcmp(item, SUITE_SOURCE) != 0)
+        return take(item, user, err); /* who reads it says what is not there */
+    for (int i = 1; i <= SUITE_MOTIONS; i++) {
+        snprintf(source, sizeof source, SUITE_SOURCE "-%02d", i);
+        TRY(take(source, user, err));
+    }
+    return STATUS_OK;
 }
 
 /* -- a study ------------------------------------------------------------------------------------------------------- */
@@ -184,21 +176,18 @@ typedef struct {
     void *user;
 } Others;
 
-/* The same file, however its path is written, with the same words behind it. */
-static int is_same(const char *a, const char *b)
-{
-    struct stat s, t;
-    Source of_a, of_b;
-    return strcmp(a, b) == 0 ||
-           (strcmp(a + source_path_length(a), b + source_path_length(b)) == 0 &&
-            source_read(a, &of_a, NULL) == STATUS_OK && source_read(b, &of_b, NULL) == STATUS_OK &&
-            stat(of_a.path, &s) == 0 && stat(of_b.path, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
-}
-
-static Status take_other(const char *source, void *user, Err *err)
+/* Leaves out the first record: the same file, however its path is written, with the same words behind it. */
+static Status hand_over_other(const char *source, void *user, Err *err)
 {
     const Others *o = user;
-    return is_same(source, o->first) ? STATUS_OK : o->take(source, o->user, err);
+    const char *a = source, *b = o->first;
+    struct stat s, t;
+    Source of_a, of_b;
+    const int is_same = strcmp(a, b) == 0 || (strcmp(a + source_path_length(a), b + source_path_length(b)) == 0 &&
+                                              source_read(a, &of_a, NULL) == STATUS_OK &&
+                                              source_read(b, &of_b, NULL) == STATUS_OK && stat(of_a.path, &s) == 0 &&
+                                              stat(of_b.path, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino);
+    return is_same ? STATUS_OK : o->take(source, o->user, err);
 }
 
 Status suite_of_study(const MotionOptions *o, SourceFn take, void *user, Err *err)
@@ -209,8 +198,9 @@ Status suite_of_study(const MotionOptions *o, SourceFn take, void *user, Err *er
     for (size_t i = 0; i < n; i++) {
         if (!list_item(o->records, i, item, sizeof item))
             return bad_data(err, "motion.records: item %zu is empty or too long", i + 1);
-        TRY(is_suite(item) ? suite_each(item, take_other, &(Others){o->record, take, user}, err)
-                           : take(item, user, err));
+        TRY(strcmp(item, SUITE_SOURCE) == 0 || is_list(item) || is_folder(item)
+                ? suite_each(item, hand_over_other, &(Others){o->record, take, user}, err)
+                : take(item, user, err));
     }
     return STATUS_OK;
 }

@@ -38,14 +38,6 @@ static double scatter(size_t i, size_t j)
     return exp(SUITE_SPREAD * eps);
 }
 
-static double target_of(size_t i, size_t j)
-{
-    double sum = 0;
-    for (size_t other = 0; other < SUITE_MOTIONS; other++)
-        sum += scatter(other, j) / SUITE_MOTIONS;
-    return synthetic_target(period(j)) * scatter(i, j) / sum;
-}
-
 /* (n) zero at both ends. */
 static void draw_envelope(size_t i, size_t n, double e[])
 {
@@ -59,33 +51,26 @@ static void draw_envelope(size_t i, size_t n, double e[])
     }
 }
 
-/* Adds a cosine along the envelope to two neighbouring bands, by its shares of them. */
-static void add_line(size_t n, const double e[], double hz, double phase, const double share[2], double *band[2])
-{
-    const double turn = 2 * M_PI * hz * DT_S, c = cos(turn), s = sin(turn);
-    double x = cos(phase), y = sin(phase);
-    for (size_t k = 0; k < n; k++) {
-        const double a = e[k] * x, next = c * x - s * y;
-        y = s * x + c * y;
-        x = next;
-        band[0][k] += share[0] * a;
-        band[1][k] += share[1] * a;
-    }
-}
-
 /* Bands (SUITE_PERIODS, n): cosines about each period, with the amplitudes that a flat spectrum of unit height has but
  * for a factor. */
-static void make_bands(size_t i, size_t n, const double e[], double bands[])
+static void make_bands(size_t motion, size_t n, const double e[], double bands[])
 {
-    Random random = stream(i, OF_PHASES);
+    Random random = stream(motion, OF_PHASES);
     const double step = log(SUITE_LONGEST_S / SUITE_SHORTEST_S) / (SUITE_PERIODS - 1);
     for (long k = lround(LOWEST_HZ * SECONDS); k <= lround(HIGHEST_HZ * SECONDS); k++) {
         const double hz = (double)k / SECONDS, phase = 2 * M_PI * random_uniform(&random);
         const double at = fmin(fmax(-log(hz * SUITE_SHORTEST_S) / step, 0), SUITE_PERIODS - 1.000001);
         const size_t j = (size_t)at;
-        const double share = at - (double)j;
-        add_line(n, e, hz, phase, (double[]){(1 - share) / sqrt(hz), share / sqrt(hz)},
-                 (double *[]){bands + j * n, bands + (j + 1) * n});
+        const double share = (at - (double)j) / sqrt(hz), rest = (1 - (at - (double)j)) / sqrt(hz);
+        const double turn = 2 * M_PI * hz * DT_S, c = cos(turn), s = sin(turn);
+        double x = cos(phase), y = sin(phase), *band = bands + j * n;
+        for (size_t i = 0; i < n; i++) {
+            const double a = e[i] * x, next = c * x - s * y;
+            y = s * x + c * y;
+            x = next;
+            band[i] += rest * a;
+            band[n + i] += share * a;
+        }
     }
 }
 
@@ -108,28 +93,28 @@ static void end_at_rest(size_t n, const double e[], double a[])
         a[k] -= e[k] * (p + q * (double)k * DT_S);
 }
 
-static void add_bands(const double factor[SUITE_PERIODS], const double bands[], Motion *m)
-{
-    memset(m->accel, 0, m->n * sizeof *m->accel);
-    for (size_t j = 0; j < SUITE_PERIODS; j++)
-        for (size_t k = 0; k < m->n; k++)
-            m->accel[k] += factor[j] * bands[j * m->n + k];
-}
-
+/* The sum of the bands whose spectrum is the motion's own target: each band is corrected by the ratio of both. */
 static void fit(size_t i, const double bands[], Motion *m)
 {
     double T[SUITE_PERIODS], psa[SUITE_PERIODS], factor[SUITE_PERIODS], target[SUITE_PERIODS];
     for (size_t j = 0; j < SUITE_PERIODS; j++) {
+        double sum = 0;
+        for (size_t other = 0; other < SUITE_MOTIONS; other++)
+            sum += scatter(other, j) / SUITE_MOTIONS;
         T[j] = period(j);
-        factor[j] = target[j] = target_of(i, j);
+        factor[j] = target[j] = synthetic_target(T[j]) * scatter(i, j) / sum;
     }
-    for (int c = 0; c < CORRECTIONS; c++) {
-        add_bands(factor, bands, m);
+    for (int c = 0; c <= CORRECTIONS; c++) {
+        memset(m->accel, 0, m->n * sizeof *m->accel);
+        for (size_t j = 0; j < SUITE_PERIODS; j++)
+            for (size_t k = 0; k < m->n; k++)
+                m->accel[k] += factor[j] * bands[j * m->n + k];
+        if (c == CORRECTIONS)
+            break;
         spectrum_psa(m, DAMPING, SUITE_PERIODS, T, psa);
         for (size_t j = 0; j < SUITE_PERIODS; j++)
             factor[j] *= target[j] / psa[j];
     }
-    add_bands(factor, bands, m);
     for (size_t k = 0; k < m->n; k++)
         m->accel[k] = rint(m->accel[k] * 1e6) / 1e6;
 }

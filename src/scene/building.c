@@ -6,13 +6,13 @@
 #include "scene/building_read.h"
 #include "scene/reduction.h"
 #include "scene/sheets.h"
-#include "scene/yielding.h"
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
 /* [m] Of the tower that both built-in models are matrices of. */
 static const double BUILT_IN_FIRST_M = 5.4864, BUILT_IN_M = 3.9624;
 
+/* Takes the heights of storeys from the files, or else from the setting, which a built-in building does not have. */
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
     const int is_own =
@@ -32,30 +32,6 @@ static Status find_heights(Building *b, const BuildingFiles *files, const Buildi
     return STATUS_OK;
 }
 
-/* ---- P-delta -------------------------------------------------------------------------------------------------- */
-
-/* K (m, m), the floors first. */
-static Status add_p_delta(const Building *b, const BuildingOptions *o, int m, double K[], Err *err)
-{
-    const int n = b->n;
-    double weight = 0;
-    for (int j = n - 1; j >= 0; j--) {
-        for (int k = 0; k < n; k++)
-            weight += GRAVITY * b->M[j * n + k];
-        const double k = weight / b->storey_m[j];
-        K[j * m + j] -= k;
-        if (j > 0) {
-            K[(j - 1) * m + j - 1] -= k;
-            K[j * m + j - 1] += k;
-            K[(j - 1) * m + j] += k;
-        }
-    }
-    const int pivot = linalg_indefinite_at(m, K);
-    if (pivot < 0)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", m, m);
-    return pivot == 0 ? STATUS_OK : bad_data(err, "%s: buckles under its own weight (building.p_delta)", o->model);
-}
-
 /* ---- plausible ------------------------------------------------------------------------------------------------ */
 
 static int is_period(double per_storey)
@@ -66,43 +42,29 @@ static int is_period(double per_storey)
 /* [s] Beyond it and its inverse the energies of building and core differ by more digits than there are. */
 static const double PERIOD_MIN = 1e-6;
 
-static double mean_floor_mass(const Building *b)
-{
-    double sum = 0;
-    for (int j = 0; j < b->n; j++)
-        sum += building_floor_mass(b, j);
-    return sum / b->n;
-}
-
-static int is_floor(double mass_kg)
-{
-    return mass_kg >= 1e3 && mass_kg <= 1e7;
-}
-
-static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
-{
-    const double period = 2 * M_PI / b->omega[0];
-    return period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN)
-               ? bad_data(err, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model, period)
-               : STATUS_OK;
-}
-
-/* Units that are wrong by a factor of a thousand move the period by 32; where both are, the floors are too light. */
-static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
+/* Units that are wrong by a factor of a thousand move the period by 32; where both are, the floors are too light.
+ * is_matrix: the files say no unit by their headers. */
+static Status check_units(const Building *b, const BuildingOptions *o, int is_matrix, Err *err)
 {
     static const char *const WORDS[] = {BUILDING_UNITS_LIST(CHOICE_WORD)};
-    const double per_storey = 2 * M_PI / b->omega[0] / b->n, mass = mean_floor_mass(b);
+    const double period = 2 * M_PI / b->omega[0], per_storey = period / b->n;
     const int is_right = is_period(per_storey);
-    if (o->units != BUILDING_AUTO || (is_right && mass >= 1e3))
-        return STATUS_OK;
+    double mass = 0;
     char fits[240] = "";
+    if (period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
+        return bad_data(err, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model, period);
+    for (int j = 0; j < b->n; j++)
+        mass += building_floor_mass(b, j);
+    mass /= b->n;
+    if (!is_matrix || o->units != BUILDING_AUTO || (is_right && mass >= 1e3))
+        return STATUS_OK;
     for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
         const BuildingUnit unit = building_unit(u);
         const size_t used = strlen(fits);
-        const double other = per_storey * sqrt(unit.mass / unit.stiffness);
-        if (is_period(other) && (!is_right || is_floor(unit.mass * mass)))
+        const double other = per_storey * sqrt(unit.mass / unit.stiffness), floor = unit.mass * mass;
+        if (is_period(other) && (!is_right || (floor >= 1e3 && floor <= 1e7)))
             snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g t)", used ? ", " : "",
-                     WORDS[u], other, unit.mass * mass / 1e3);
+                     WORDS[u], other, floor / 1e3);
     }
     if (fits[0])
         return bad_data(
@@ -119,10 +81,22 @@ static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */
 
-/* a / w + b w = 2 zeta at two frequencies, those of the floors alone. */
-static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
+Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 {
+    const BuildingModel *m = &b->model;
     const double *mode = o->rayleigh_modes.at;
+    if (o->damping_model != DAMPING_RAYLEIGH) {
+        if (o->damping.n > b->n)
+            return bad_data(err, "building.damping: has %d ratios; the building has %d mode%s", o->damping.n, b->n,
+                            b->n == 1 ? "" : "s");
+        for (int i = 0; i < b->n; i++)
+            b->zeta[i] = list_at(&o->damping, i);
+        for (int i = 0; i < m->n; i++)
+            m->zeta[i] = b->zeta[m->like[i] >= 0 ? m->like[i] : b->n - 1];
+        return STATUS_OK;
+    }
+
+    /* a / w + b w = 2 zeta at two frequencies, those of the floors alone. */
     for (int i = 0; i < 2; i++)
         if (mode[i] != floor(mode[i]) || mode[i] > b->n)
             return bad_data(err, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
@@ -130,22 +104,8 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
     const double mass = 2 * o->damping.at[0] * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping.at[0] / (w1 + w2);
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);
-    for (int i = 0; i < b->model.n; i++)
-        b->model.zeta[i] = 0.5 * (mass / b->model.omega[i] + stiffness * b->model.omega[i]);
-    return STATUS_OK;
-}
-
-Status building_damp(Building *b, const BuildingOptions *o, Err *err)
-{
-    if (o->damping_model == DAMPING_RAYLEIGH)
-        return rayleigh(b, o, err);
-    if (o->damping.n > b->n)
-        return bad_data(err, "building.damping: has %d ratios; the building has %d mode%s", o->damping.n, b->n,
-                        b->n == 1 ? "" : "s");
-    for (int i = 0; i < b->n; i++)
-        b->zeta[i] = list_at(&o->damping, i);
-    for (int i = 0; i < b->model.n; i++)
-        b->model.zeta[i] = b->zeta[b->model.like[i] >= 0 ? b->model.like[i] : b->n - 1];
+    for (int i = 0; i < m->n; i++)
+        m->zeta[i] = 0.5 * (mass / m->omega[i] + stiffness * m->omega[i]);
     return STATUS_OK;
 }
 
@@ -164,6 +124,7 @@ void building_model_layout(void *model, Carve *c)
     CARVE(c, m->like, n);
 }
 
+/* Room for a model with these matrices. */
 static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *from, Err *err)
 {
     const size_t bytes = from->n * from->n * sizeof(double);
@@ -176,20 +137,100 @@ static Status copy_matrices(BuildingModel *m, void **store, const FrameFull *fro
     return STATUS_OK;
 }
 
-/* r NULL: all of it moves with the ground. */
+/* Modes of K and M, of whose degrees of freedom the floors come first; with P-delta K loses the geometric stiffness of
+ * the weights above. r NULL: all of it moves with the ground. */
 static Status find_modes(const Building *b, BuildingModel *m, const double *r, const BuildingOptions *o, Err *err)
 {
-    if (o->p_delta)
-        TRY(add_p_delta(b, o, m->n, m->K, err));
+    double weight = 0;
+    for (int j = b->n - 1; j >= 0 && o->p_delta; j--) {
+        for (int k = 0; k < b->n; k++)
+            weight += GRAVITY * b->M[j * b->n + k];
+        storey_spring(m->n, j, -weight / b->storey_m[j], m->K);
+    }
+    const int pivot = o->p_delta ? linalg_indefinite_at(m->n, m->K) : 0;
+    if (pivot < 0)
+        return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", m->n, m->n);
+    if (pivot > 0)
+        return bad_data(err, "%s: buckles under its own weight (building.p_delta)", o->model);
     TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
     linalg_participation(m->n, m->M, r, m->phi, m->gamma);
     reduction_alike(b->n, b->phi, b->M, m->n, m->phi, m->like);
     return STATUS_OK;
 }
 
-static Status make_floors(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+/* ---- yielding storeys ----------------------------------------------------------------------------------------- */
+
+/* Of what may yield without the rest of the building falling: below 1 by this share. */
+static const double STANDS = 0.98;
+
+/* Finds the part of each storey's stiffness that yields, where any does (scene/building.h). K: without P-delta. */
+static Status find_yielding(Building *b, const double of_file[], const double K[], const BuildingOptions *o, Err *err)
 {
+    const int n = b->n;
+    double *k = b->yield_n_m, *phi, shear = 0;
+    b->hardening = o->hardening;
+    for (int j = 0; j < n; j++) {
+        b->yield_m[j] = b->storey_m[j] * (of_file && of_file[j] > 0 ? of_file[j] : o->yield_drift);
+        b->yields |= b->yield_m[j] > 0;
+    }
+    if (!b->yields)
+        return STATUS_OK;
+    TRY_ROOM(phi, (2 * (size_t)n + 1) * n, "yielding storeys", err);
+    double *yields = phi + n * n, *omega = yields + n * n;
+    Status status = linalg_modes(n, K, b->M, omega, phi, err);
+
+    /* k_j = V_j / d_j of the first mode under the forces K phi. */
+    for (int j = n - 1; j >= 0 && status == STATUS_OK; j--) {
+        for (int i = 0; i < n; i++)
+            shear += K[j * n + i] * phi[i * n];
+        const double drift = phi[j * n] - (j > 0 ? phi[(j - 1) * n] : 0);
+        k[j] = b->yield_m[j] > 0 ? shear / drift : 0;
+        if (b->yield_m[j] > 0 && !(k[j] > 0 && isfinite(k[j])))
+            status =
+                bad_data(err,
+                         "building: storey %d has no stiffness in the first mode (%.3g N/m), so that nothing of it can "
+                         "yield; leave building.yield_drift at 0",
+                         j + 1, k[j]);
+    }
+
+    /* The largest eigenvalue of B' diag(k) B x = lambda K x says how much of that may yield. */
+    for (int j = 0; j < n && status == STATUS_OK; j++)
+        storey_spring(n, j, k[j], yields);
+    if (status == STATUS_OK)
+        status = linalg_modes(n, yields, b->K, omega, phi, err);
+    const double c = fmin(1 - b->hardening, STANDS / (omega[n - 1] * omega[n - 1]));
+    free(phi);
+    TRY(status);
+    b->hardening = 1 - c;
+    b->hardening_raised = b->hardening > o->hardening + 1e-12;
+    for (int j = 0; j < n; j++)
+        k[j] *= c;
+    return STATUS_OK;
+}
+
+/* ---- all of it ------------------------------------------------------------------------------------------------ */
+
+static uint64_t hash_matrices(const FrameFull *f, uint64_t hash)
+{
+    const size_t bytes = f->n * f->n * sizeof *f->K;
+    return hash_fnv1a(f->M, bytes, hash_fnv1a(f->K, bytes, hash));
+}
+
+/* Makes the building of what its files hold. */
+static Status make_building(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+{
+    const FrameFull *full = &files->full;
+    const double *drift = files->yield_drift;
     BuildingModel *m = &b->floors;
+    memcpy(b->note, files->note, sizeof b->note);
+    b->hash = hash_matrices(full, hash_matrices(&files->floors, HASH_SEED));
+    if (files->storey_m)
+        b->hash = hash_fnv1a(files->storey_m, files->floors.n * sizeof *files->storey_m, b->hash);
+    for (int j = 0; drift && j < files->floors.n; j++)
+        if (drift[j] > 0)
+            b->hash = hash_fnv1a((double[]){j, drift[j]}, 2 * sizeof(double), b->hash);
+
+    /* The floors alone. */
     TRY(copy_matrices(m, &b->store, &files->floors, err));
     b->n = m->n;
     b->K = m->K;
@@ -203,67 +244,25 @@ static Status make_floors(Building *b, const BuildingFiles *files, const Buildin
     b->yield_n_m = b->yield_m + b->n;
     TRY(find_heights(b, files, o, err));
     TRY(find_modes(b, m, NULL, o, err));
-    for (int i = 0; i < b->n; i++)
-        m->like[i] = i;
-    return STATUS_OK;
-}
 
-/* ---- yielding storeys ----------------------------------------------------------------------------------------- */
+    for (int j = 0; j < b->n; j++)
+        m->like[j] = j;
+    TRY(find_yielding(b, drift, files->floors.K, o, err));
 
-static Status find_yielding(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
-{
-    b->hardening = o->hardening;
-    for (int j = 0; j < b->n; j++) {
-        const double of_file = files->yield_drift ? files->yield_drift[j] : 0;
-        b->yield_m[j] = b->storey_m[j] * (of_file > 0 ? of_file : o->yield_drift);
-        b->yields |= b->yield_m[j] > 0;
+    /* The model that is integrated: the floors, or more where the files have it, with as many modes as are wanted. */
+    b->model = *m;
+    if (full->n > 0) {
+        FrameFull reduced = {0};
+        const int reduces = o->modes > 0 && o->modes < full->n - b->n;
+        Status status = reduces ? reduction_craig_bampton(full, b->n, o->modes, &reduced, err) : STATUS_OK;
+        if (status == STATUS_OK)
+            status = copy_matrices(&b->model, &b->model_store, reduces ? &reduced : full, err);
+        if (status == STATUS_OK)
+            status = find_modes(b, &b->model, reduces ? reduced.influence : full->influence, o, err);
+        frame_full_free(&reduced);
+        TRY(status);
     }
-    if (b->yields)
-        TRY(yielding_parts(b->n, files->floors.K, b->M, b->K, b->yield_m, &b->hardening, b->yield_n_m, err));
-    b->hardening_raised = b->hardening > o->hardening + 1e-12;
-    return STATUS_OK;
-}
-
-static Status make_model(Building *b, const FrameFull *full, const BuildingOptions *o, Err *err)
-{
-    FrameFull reduced = {0};
-    b->model = b->floors;
-    if (full->n == 0)
-        return STATUS_OK;
-    const int reduces = o->modes > 0 && o->modes < full->n - b->n;
-    if (reduces)
-        TRY(reduction_craig_bampton(full, b->n, o->modes, &reduced, err));
-    const FrameFull *more = reduces ? &reduced : full;
-    Status status = copy_matrices(&b->model, &b->model_store, more, err);
-    if (status == STATUS_OK)
-        status = find_modes(b, &b->model, more->influence, o, err);
-    frame_full_free(&reduced);
-    return status;
-}
-
-/* ---- all of it ------------------------------------------------------------------------------------------------ */
-
-static uint64_t hash_matrices(const FrameFull *f, uint64_t hash)
-{
-    const size_t bytes = f->n * f->n * sizeof *f->K;
-    return hash_fnv1a(f->M, bytes, hash_fnv1a(f->K, bytes, hash));
-}
-
-static Status take(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
-{
-    memcpy(b->note, files->note, sizeof b->note);
-    b->hash = hash_matrices(&files->full, hash_matrices(&files->floors, HASH_SEED));
-    if (files->storey_m)
-        b->hash = hash_fnv1a(files->storey_m, files->floors.n * sizeof *files->storey_m, b->hash);
-    for (int j = 0; files->yield_drift && j < files->floors.n; j++)
-        if (files->yield_drift[j] > 0)
-            b->hash = hash_fnv1a((double[]){j, files->yield_drift[j]}, 2 * sizeof(double), b->hash);
-    TRY(make_floors(b, files, o, err));
-    TRY(find_yielding(b, files, o, err));
-    TRY(make_model(b, &files->full, o, err));
-    TRY(check_period(b, o, err));
-    if (!files->storey_m) /* matrices: their headers say no unit */
-        TRY(check_units(b, o, err));
+    TRY(check_units(b, o, !files->storey_m, err));
     return building_damp(b, o, err);
 }
 
@@ -273,7 +272,7 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err)
     memset(b, 0, sizeof *b);
     Status s = building_read(&files, o, err);
     if (s == STATUS_OK)
-        s = take(b, &files, o, err);
+        s = make_building(b, &files, o, err);
     building_files_free(&files);
     if (s != STATUS_OK)
         building_free(b);

@@ -8,35 +8,31 @@
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
 
-static Status check_symmetric(int n, double A[], const char *path, Err *err)
+/* Is the matrix square, symmetric to rounding, which is removed, and positive definite? */
+static Status check_matrix(Table *t, Err *err)
 {
-    double largest = 0;
+    const int n = (int)t->n_rows;
+    double *A = t->values, largest = 0;
+    if (t->n_rows != t->n_cols)
+        return bad_data(err, "%s: %zu rows of %zu columns; a square matrix is needed", t->path, t->n_rows, t->n_cols);
+    if (n > FLOORS_MAX)
+        return bad_data(err, "%s: %zu floors; at most %d are supported", t->path, t->n_rows, FLOORS_MAX);
     for (int i = 0; i < n * n; i++)
         largest = fmax(largest, fabs(A[i]));
     for (int i = 0; i < n; i++)
         for (int j = 0; j < i; j++) {
             double *lower = &A[i * n + j], *upper = &A[j * n + i];
             if (!(fabs(*lower - *upper) <= 1e-6 * largest))
-                return bad_data(err, "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g", path,
-                                i + 1, j + 1, *lower, j + 1, i + 1, *upper);
+                return bad_data(err, "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g",
+                                t->path, i + 1, j + 1, *lower, j + 1, i + 1, *upper);
             *lower = *upper = 0.5 * (*lower + *upper);
         }
     const int pivot = linalg_indefinite_at(n, A);
     if (pivot < 0)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", path, n, n);
-    if (pivot > 0)
-        return bad_data(err, "%s: not positive definite: the leading block of %d rows is singular or worse", path,
-                        pivot);
-    return STATUS_OK;
-}
-
-static Status check_square(const Table *t, Err *err)
-{
-    if (t->n_rows != t->n_cols)
-        return bad_data(err, "%s: %zu rows of %zu columns; a square matrix is needed", t->path, t->n_rows, t->n_cols);
-    if (t->n_rows > FLOORS_MAX)
-        return bad_data(err, "%s: %zu floors; at most %d are supported", t->path, t->n_rows, FLOORS_MAX);
-    return check_symmetric((int)t->n_rows, t->values, t->path, err);
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", t->path, n, n);
+    return pivot == 0 ? STATUS_OK
+                      : bad_data(err, "%s: not positive definite: the leading block of %d rows is singular or worse",
+                                 t->path, pivot);
 }
 
 #define INCH       0.0254                   /* m */
@@ -65,8 +61,8 @@ typedef struct {
     double factor;
 } UnitWord;
 
-static const UnitWord STIFFNESS_WORDS[] = {{"N/m", 1}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"kip/in", KIP_PER_IN}, {NULL, 0}};
-static const UnitWord MASS_WORDS[] = {{"kg", 1}, {"t", 1e3}, {"kip", KIP_PER_IN}, {NULL, 0}};
+static const UnitWord WORDS[][5] = {{{"N/m", 1}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"kip/in", KIP_PER_IN}, {NULL, 0}},
+                                    {{"kg", 1}, {"t", 1e3}, {"kip", KIP_PER_IN}, {NULL, 0}}};
 
 /* The first of the words in a line; NULL: none of them. */
 static const UnitWord *unit_in(const char *line, size_t length, const UnitWord words[])
@@ -84,78 +80,60 @@ static const UnitWord *unit_in(const char *line, size_t length, const UnitWord w
     return NULL;
 }
 
-/* The unit that a comment of the file states; NULL: none does. */
-static Status header_unit(const char *path, const UnitWord words[], const UnitWord **unit, Err *err)
+/* What the entries of a matrix are multiplied by: as a comment of the file says, which building.units, `set`, must not
+ * contradict. */
+static Status matrix_factor(const BuildingOptions *o, const char *path, const UnitWord words[], double set,
+                            double *factor, Err *err)
 {
+    const UnitWord *unit = NULL;
     char *text;
     size_t length;
     Lines l;
-    *unit = NULL;
     TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     const Status status = lines_open(&l, path, text, length, err);
-    while (status == STATUS_OK && !*unit && lines_next(&l))
+    while (status == STATUS_OK && !unit && lines_next(&l))
         if (l.from < l.to && *l.from == '#')
-            *unit = unit_in(l.from + 1, (size_t)(l.to - l.from) - 1, words);
+            unit = unit_in(l.from + 1, (size_t)(l.to - l.from) - 1, words);
     free(text);
-    return status;
-}
-
-/* What the entries of a matrix are multiplied by: as the file says, which building.units must not contradict. */
-static Status matrix_factor(const BuildingOptions *o, const char *file, const UnitWord words[], double set,
-                            double *factor, Err *err)
-{
-    char path[600];
-    const UnitWord *unit;
-    snprintf(path, sizeof path, "%s/%s", o->model, file);
-    TRY(header_unit(path, words, &unit, err));
     *factor = unit ? unit->factor : set;
     return !unit || o->units == BUILDING_AUTO || unit->factor == set
-               ? STATUS_OK
+               ? status
                : bad_data(err, "%s: says that it is in %s; leave building.units at auto", path, unit->word);
 }
 
-/* Of K.csv or M.csv. */
-static Status take_matrix(const BuildingOptions *o, const Table *t, const char *file, const UnitWord words[],
-                          double set, double A[], Err *err)
-{
-    double factor = 1;
-    if (!model_is_built_in(o->model))
-        TRY(matrix_factor(o, file, words, set, &factor, err));
-    for (size_t i = 0; i < t->n_rows * t->n_rows; i++)
-        A[i] = factor * t->values[i];
-    return STATUS_OK;
-}
-
-static Status take_matrices(BuildingFiles *b, const BuildingOptions *o, const Table *K, const Table *M, Err *err)
-{
-    const BuildingUnit unit = building_unit(o->units);
-    TRY(check_square(K, err));
-    TRY(check_square(M, err));
-    if (M->n_rows != K->n_rows)
-        return bad_data(err, "%s: %zu floors, but K.csv has %zu", M->path, M->n_rows, K->n_rows);
-    TRY(frame_full_make(&b->floors, (int)K->n_rows, err));
-    TRY(take_matrix(o, K, "K.csv", STIFFNESS_WORDS, unit.stiffness, b->floors.K, err));
-    return take_matrix(o, M, "M.csv", MASS_WORDS, unit.mass, b->floors.M, err);
-}
-
+/* Reads K.csv and M.csv, of one size. */
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
-    Table K, M = {0};
-    TRY(model_table(&K, o->model, "K.csv", TABLE_PLAIN, err));
-    Status status = model_table(&M, o->model, "M.csv", TABLE_PLAIN, err);
-    if (status == STATUS_OK)
-        status = take_matrices(b, o, &K, &M, err);
-    table_free(&K);
-    table_free(&M);
-    return status;
+    static const char *const NAMES[] = {"K.csv", "M.csv"};
+    const BuildingUnit unit = building_unit(o->units);
+    Table t[2] = {0};
+    Status s = STATUS_OK;
+    for (int i = 0; i < 2 && s == STATUS_OK; i++)
+        s = model_table(&t[i], o->model, NAMES[i], TABLE_PLAIN, err);
+    for (int i = 0; i < 2 && s == STATUS_OK; i++)
+        s = check_matrix(&t[i], err);
+    if (s == STATUS_OK && t[1].n_rows != t[0].n_rows)
+        s = bad_data(err, "%s: %zu floors, but K.csv has %zu", t[1].path, t[1].n_rows, t[0].n_rows);
+    if (s == STATUS_OK)
+        s = frame_full_make(&b->floors, (int)t[0].n_rows, err);
+    for (int i = 0; i < 2 && s == STATUS_OK; i++) {
+        double *A = i ? b->floors.M : b->floors.K, factor = 1;
+        if (!model_is_built_in(o->model))
+            s = matrix_factor(o, t[i].path, WORDS[i], i ? unit.mass : unit.stiffness, &factor, err);
+        for (size_t k = 0; k < t[i].n_rows * t[i].n_rows; k++)
+            A[k] = factor * t[i].values[k];
+    }
+    table_free(&t[0]);
+    table_free(&t[1]);
+    return s;
 }
 
 static Status allocate(BuildingFiles *b, int n, Err *err)
 {
     TRY(frame_full_make(&b->floors, n, err));
-    b->storey_m = calloc(2 * (size_t)n, sizeof *b->storey_m);
-    b->yield_drift = b->storey_m ? b->storey_m + n : NULL;
-    return b->storey_m ? STATUS_OK : fail_memory(err, n, "floors");
+    TRY_ROOM(b->storey_m, 2 * (size_t)n, "floors", err);
+    b->yield_drift = b->storey_m + n;
+    return STATUS_OK;
 }
 
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
@@ -180,7 +158,8 @@ static Status choose(const SheetRow *r, int plain, const char *names, double *va
 /* As in building.heights_m; what is implausible within them is warned of (scene/summary.h). */
 static const double HEIGHT_MIN_M = 0.1, HEIGHT_MAX_M = 100;
 
-static Status take_storey(void *storeys, const SheetRow *r, Err *err)
+/* Checks a row of storeys.csv and keeps it. */
+static Status add_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
     if (r->n_rows > FLOORS_MAX)
@@ -207,7 +186,7 @@ static Status take_storey(void *storeys, const SheetRow *r, Err *err)
 }
 
 static const SheetForm STOREYS = {"storeys.csv",
-                                  take_storey,
+                                  add_storey,
                                   {{"height_m", COLUMN_ABOVE_0, NAN},
                                    {"mass_kg", COLUMN_ABOVE_0, 0},
                                    {"mass_t", COLUMN_ABOVE_0, 0},
@@ -217,22 +196,22 @@ static const SheetForm STOREYS = {"storeys.csv",
                                    {"bending_kn_m2", COLUMN_ABOVE_0, 0},
                                    {"yield_drift", COLUMN_ABOVE_0, 0}}};
 
-static void shear_building(int n, const Storey storey[], double K[])
+void storey_spring(int n, int j, double spring, double K[])
 {
-    for (int j = 0; j < n; j++) {
-        K[j * n + j] += storey[j].shear;
-        if (j > 0) {
-            K[(j - 1) * n + j - 1] += storey[j].shear;
-            K[j * n + j - 1] = K[(j - 1) * n + j] = -storey[j].shear;
-        }
+    K[j * n + j] += spring;
+    if (j > 0) {
+        K[(j - 1) * n + j - 1] += spring;
+        K[j * n + j - 1] -= spring;
+        K[(j - 1) * n + j] -= spring;
     }
 }
 
+/* Makes the matrices of a shear building, or of a cantilever where storeys bend. */
 static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
     Storeys all = {0};
     Beam beam[FLOORS_MAX];
-    TRY(sheet_take(&STOREYS, folder, &all, err));
+    TRY(sheet_read(&STOREYS, folder, &all, err));
     const int n = all.n;
     TRY(allocate(b, n, err));
     for (int j = 0; j < n; j++) {
@@ -241,8 +220,8 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
     }
     if (all.storey[0].bending > 0)
         TRY(beam_cantilever(n, beam, NULL, b->floors.K, b->floors.M, err));
-    else
-        shear_building(n, all.storey, b->floors.K);
+    for (int j = 0; j < n && all.storey[0].bending == 0; j++)
+        storey_spring(n, j, all.storey[j].shear, b->floors.K);
     memset(b->floors.M, 0, n * n * sizeof *b->floors.M);
     for (int j = 0; j < n; j++) {
         b->floors.M[j * n + j] = all.storey[j].mass;
@@ -254,29 +233,29 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 
 /* ---- frame ---------------------------------------------------------------------------------------------------- */
 
-/* The floors alone are the first rows; what they do not miss is no model of its own. */
-static Status condense_frame(BuildingFiles *b, const Frame *f, Err *err)
-{
-    const int n = f->n_floors;
-    TRY(allocate(b, n, err));
-    memcpy(b->storey_m, f->storey_m, n * sizeof *b->storey_m);
-    TRY(frame_reduce(f, FRAME_FLOORS, &b->full, err));
-    for (int j = 0; j < n; j++) {
-        memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, n * sizeof *b->floors.K);
-        memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, n * sizeof *b->floors.M);
-    }
-    if (b->full.n == n)
-        frame_full_free(&b->full);
-    return STATUS_OK;
-}
-
 /* Condensed unless that is there already, and in full where it is asked for. */
 static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     Frame f;
     TRY(frame_read(&f, o, err));
+    const int n = f.n_floors;
+    Status status = STATUS_OK;
     snprintf(b->note, sizeof b->note, "%s", f.note);
-    Status status = b->floors.n ? STATUS_OK : condense_frame(b, &f, err);
+    if (b->floors.n == 0) {
+        status = allocate(b, n, err);
+        if (status == STATUS_OK) {
+            memcpy(b->storey_m, f.storey_m, n * sizeof *b->storey_m);
+            status = frame_reduce(&f, FRAME_FLOORS, &b->full, err);
+        }
+
+        /* The floors alone are the first rows; what they do not miss is no model of its own. */
+        for (int j = 0; j < n && status == STATUS_OK; j++) {
+            memcpy(b->floors.K + j * n, b->full.K + j * b->full.n, n * sizeof *b->floors.K);
+            memcpy(b->floors.M + j * n, b->full.M + j * b->full.n, n * sizeof *b->floors.M);
+        }
+        if (b->full.n == n)
+            frame_full_free(&b->full);
+    }
     if (status == STATUS_OK && o->modes > 0) {
         frame_full_free(&b->full);
         status = frame_reduce(&f, FRAME_FULL, &b->full, err);
@@ -320,20 +299,15 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
     return STATUS_OK;
 }
 
-static Status read_folder(BuildingFiles *b, const BuildingOptions *o, Err *err)
-{
-    int has[KINDS] = {0};
-    if (!model_is_built_in(o->model))
-        TRY(check_kind(o->model, has, err));
-    if (has[KIND_FRAME])
-        return read_frame(b, o, err);
-    return has[KIND_STOREYS] ? read_storeys(b, o->model, err) : read_matrices(b, o, err);
-}
-
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
+    int has[KINDS] = {0};
     memset(b, 0, sizeof *b);
-    TRY(read_folder(b, o, err));
+    if (!model_is_built_in(o->model))
+        TRY(check_kind(o->model, has, err));
+    TRY(has[KIND_FRAME]     ? read_frame(b, o, err)
+        : has[KIND_STOREYS] ? read_storeys(b, o->model, err)
+                            : read_matrices(b, o, err));
     if (o->modes == 0 || b->full.n)
         return STATUS_OK;
     if (!frame_is(o->model))

@@ -23,6 +23,9 @@ typedef struct {
 
 BuildingUnit building_unit(BuildingUnits units);
 
+/* Adds a spring [N/m] between floor j = 0..n-1 and the one below it, or the ground, to K (n, n). */
+void storey_spring(int n, int j, double spring, double K[]);
+
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err);
 void building_files_free(BuildingFiles *b);
 

@@ -4,29 +4,18 @@
 
 /* ---- beams ---------------------------------------------------------------------------------------------------- */
 
-static void mirror(double a[4][4])
+void beam_element(const Beam *b, double k[4][4], double m[4][4])
 {
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < i; j++)
-            a[i][j] = a[j][i];
-}
+    const double l = b->length, phi = b->kGA > 0 ? 12 * b->EI / (b->kGA * l * l) : 0;
 
-static void stiffness(const Beam *b, double phi, double k[4][4])
-{
-    const double l = b->length, scale = b->EI / (l * l * l * (1 + phi));
+    /* Stiffness, its upper half. */
+    const double scale = b->EI / (l * l * l * (1 + phi));
     const double shape[4][4] = {{12, 6 * l, -12, 6 * l},
                                 {0, (4 + phi) * l * l, -6 * l, (2 - phi) * l * l},
                                 {0, 0, 12, -6 * l},
                                 {0, 0, 0, (4 + phi) * l * l}};
-    for (int i = 0; i < 4; i++)
-        for (int j = i; j < 4; j++)
-            k[i][j] = scale * shape[i][j];
-    mirror(k);
-}
 
-static void mass(const Beam *b, double phi, double m[4][4])
-{
-    const double l = b->length, over = 1 / ((1 + phi) * (1 + phi));
+    /* Mass that moves sideways and inertia that turns. */
     const double w0 = 70 * phi * phi + 147 * phi + 78, w1 = 35 * phi * phi + 63 * phi + 27;
     const double c0 = (35 * phi * phi + 77 * phi + 44) * l / 4, c1 = (35 * phi * phi + 63 * phi + 26) * l / 4;
     const double r0 = (7 * phi * phi + 14 * phi + 8) * l * l / 4, r1 = (7 * phi * phi + 14 * phi + 6) * l * l / 4;
@@ -34,18 +23,13 @@ static void mass(const Beam *b, double phi, double m[4][4])
     const double d = (15 * phi - 3) * l, e0 = (10 * phi * phi + 5 * phi + 4) * l * l,
                  e1 = (5 * phi * phi - 5 * phi - 1) * l * l;
     const double turned[4][4] = {{36, -d, -36, -d}, {0, e0, d, e1}, {0, 0, 36, d}, {0, 0, 0, e0}};
+    const double over = 1 / ((1 + phi) * (1 + phi));
     const double along = b->mass_per_m * l / 210 * over, about = b->rotary_kg_m / (30 * l) * over;
     for (int i = 0; i < 4; i++)
-        for (int j = i; j < 4; j++)
-            m[i][j] = along * moved[i][j] + about * turned[i][j];
-    mirror(m);
-}
-
-void beam_element(const Beam *b, double k[4][4], double m[4][4])
-{
-    const double phi = b->kGA > 0 ? 12 * b->EI / (b->kGA * b->length * b->length) : 0;
-    stiffness(b, phi, k);
-    mass(b, phi, m);
+        for (int j = i; j < 4; j++) {
+            k[i][j] = k[j][i] = scale * shape[i][j];
+            m[i][j] = m[j][i] = along * moved[i][j] + about * turned[i][j];
+        }
 }
 
 /* ---- cantilever ----------------------------------------------------------------------------------------------- */
@@ -99,61 +83,37 @@ Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double 
 
 /* ---- the core -------------------------------------------------------------------------------------------------- */
 
-/* Shear area over area of a thin-walled square tube: Cowper, J. Appl. Mech. 33 (1966) 335-340. */
-static double tube_shear_factor(double poisson)
+CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
 {
-    return 20 * (1 + poisson) / (48 + 39 * poisson);
-}
-
-static const double PLATE_SHEAR_FACTOR = 5.0 / 6; /* solid rectangle, parabola of shear stress */
-
-static CoreStorey box(const CoreOptions *o, double t)
-{
+    const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
     const double side = o->width_m, inner = side - 2 * t;
+    if (o->section == CORE_EFFECTIVE)
+        return (CoreStorey){.thickness = t,
+                            .area = list_along(&o->areas_m2, storey, n),
+                            .inertia = list_along(&o->inertias_m4, storey, n),
+                            .shear_area = list_along(&o->shear_areas_m2, storey, n),
+                            .mass_kg = o->masses_kg.n ? list_along(&o->masses_kg, storey, n) : 0};
+
+    /* Solid rectangle, whose shear stress is a parabola. */
+    if (o->section == CORE_PLATE)
+        return (CoreStorey){.thickness = t,
+                            .depth = t,
+                            .area = side * t,
+                            .inertia = side * t * t * t / 12,
+                            .shear_area = 5.0 / 6 * side * t,
+                            .shear_stress_per_n = 1.5 / (side * t)};
+
+    /* Thin-walled square tube, its shear area by Cowper, J. Appl. Mech. 33 (1966) 335-340; stress Q / (I 2t). */
     const double area = side * side - inner * inner, inertia = (pow(side, 4) - pow(inner, 4)) / 12;
     return (CoreStorey){.thickness = t,
                         .depth = side,
                         .area = area,
                         .inertia = inertia,
-                        .shear_area = tube_shear_factor(o->poisson) * area,
-                        .shear_stress_per_n =
-                            (side * side * side - inner * inner * inner) / 8 / (inertia * 2 * t)}; /* Q / (I 2t) */
+                        .shear_area = 20 * (1 + o->poisson) / (48 + 39 * o->poisson) * area,
+                        .shear_stress_per_n = (side * side * side - inner * inner * inner) / 8 / (inertia * 2 * t)};
 }
 
-static CoreStorey plate(const CoreOptions *o, double t)
-{
-    const double area = o->width_m * t;
-    return (CoreStorey){.thickness = t,
-                        .depth = t,
-                        .area = area,
-                        .inertia = o->width_m * t * t * t / 12,
-                        .shear_area = PLATE_SHEAR_FACTOR * o->width_m * t,
-                        .shear_stress_per_n = 1.5 / area};
-}
-
-CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
-{
-    const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
-    if (o->section != CORE_EFFECTIVE)
-        return o->section == CORE_BOX ? box(o, t) : plate(o, t);
-    return (CoreStorey){.thickness = t,
-                        .area = list_along(&o->areas_m2, storey, n),
-                        .inertia = list_along(&o->inertias_m4, storey, n),
-                        .shear_area = list_along(&o->shear_areas_m2, storey, n),
-                        .mass_kg = o->masses_kg.n ? list_along(&o->masses_kg, storey, n) : 0};
-}
-
-static Beam storey_beam(const CoreOptions *o, const CoreStorey *a, double length)
-{
-    const double E = o->youngs_modulus_pa, G = E / (2 * (1 + o->poisson));
-    const int shears = o->theory == CORE_TIMOSHENKO;
-    return (Beam){.EI = E * a->inertia,
-                  .kGA = shears ? G * a->shear_area : 0,
-                  .mass_per_m = a->mass_kg > 0 ? a->mass_kg / length : o->density_kg_m3 * a->area,
-                  .rotary_kg_m = shears ? o->density_kg_m3 * a->inertia : 0,
-                  .length = length};
-}
-
+/* Refuses thicknesses that the section does not have, and lists of a length that the storeys do not have. */
 static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m, Err *err)
 {
     if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
@@ -197,41 +157,41 @@ double core_beam_dashpot_share(const CoreBeam *c)
     return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
 }
 
-static void set_base(CoreBeam *c, const double storey_m[])
-{
-    double z = 0;
-    if (c->base.rotation == 0 && c->base.translation == 0)
-        return;
-    for (int j = 0; j < c->n; j++) {
-        z += storey_m[j];
-        for (int i = 0; i < c->n; i++) {
-            c->base_rotation[i] += c->base.rotation > 0 ? z * c->K[j * c->n + i] / c->base.rotation : 0;
-            c->base_translation[i] += c->base.translation > 0 ? c->K[j * c->n + i] / c->base.translation : 0;
-        }
-    }
-    for (int i = 0; i < c->n; i++)
-        c->zeta[i] += core_beam_base_loss(c, c->omega[i], c->phi + i, c->n) / (2 * c->omega[i]);
-}
-
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err)
 {
+    const double E = o->youngs_modulus_pa, G = E / (2 * (1 + o->poisson));
+    const int shears = o->theory == CORE_TIMOSHENKO;
+    const Foundation *base = &c->base;
     Beam beam[FLOORS_MAX];
+    double z = 0;
     TRY(check(o, n, t_base_m, t_top_m, err));
     memset(c, 0, sizeof *c);
     c->n = c->top = n;
     TRY(foundation_parse(o->foundation, o->foundation_factor, &c->base, err));
     for (int e = 0; e < n; e++) {
-        const CoreStorey section = core_beam_storey(o, n, e, t_base_m, t_top_m);
-        beam[e] = storey_beam(o, &section, storey_m[e]);
+        const CoreStorey a = core_beam_storey(o, n, e, t_base_m, t_top_m);
+        beam[e] = (Beam){.EI = E * a.inertia,
+                         .kGA = shears ? G * a.shear_area : 0,
+                         .mass_per_m = a.mass_kg > 0 ? a.mass_kg / storey_m[e] : o->density_kg_m3 * a.area,
+                         .rotary_kg_m = shears ? o->density_kg_m3 * a.inertia : 0,
+                         .length = storey_m[e]};
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }
-    TRY(beam_cantilever(n, beam, &c->base, c->K, c->M, err));
+    TRY(beam_cantilever(n, beam, base, c->K, c->M, err));
     TRY(linalg_modes(n, c->K, c->M, c->omega, c->phi, err));
     linalg_participation(n, c->M, NULL, c->phi, c->gamma);
+
+    /* How the base moves with the nodes, and what its dashpots take of the modes. */
+    for (int j = 0; j < n; j++) {
+        z += storey_m[j];
+        for (int i = 0; i < n; i++) {
+            c->base_rotation[i] += base->rotation > 0 ? z * c->K[j * n + i] / base->rotation : 0;
+            c->base_translation[i] += base->translation > 0 ? c->K[j * n + i] / base->translation : 0;
+        }
+    }
     for (int i = 0; i < n; i++)
-        c->zeta[i] = o->damping;
-    set_base(c, storey_m);
+        c->zeta[i] = o->damping + core_beam_base_loss(c, c->omega[i], c->phi + i, n) / (2 * c->omega[i]);
     return STATUS_OK;
 }
 

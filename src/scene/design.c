@@ -29,7 +29,7 @@ static const struct {
 };
 
 /* The words of design.variables as a set of groups. */
-static Status take_words(const char *list, unsigned *set, Err *err)
+static Status read_variables(const char *list, unsigned *set, Err *err)
 {
     static const Group LISTED[] = {GAP, WALL, BUMPER, SIDE, LINK, MASS, SLIP};
     enum { N = N_OF(LISTED) };
@@ -68,7 +68,7 @@ enum { ROOF_MASS, ROOF_NONE, N_ROOF_DEVICES };
 static const char *const ROOF_WORDS[] = {[ROOF_MASS] = "tuned_mass", [ROOF_NONE] = "none"};
 
 /* The words of design.devices, in their order. */
-static Status take_devices(DesignSpace *s, const DesignOptions *o, unsigned set, Err *err)
+static Status read_devices(DesignSpace *s, const DesignOptions *o, unsigned set, Err *err)
 {
     /* What says how large a device is; there always are gaps. */
     static const Group NEEDS[] = {
@@ -107,12 +107,12 @@ Status design_space_make(DesignSpace *s, const DesignOptions *o, CoreSection sec
                                   [DEVICE] = o->device_zones};
     unsigned set = 1U << GAP | 1U << WALL;
     if (o->variables[0])
-        TRY(take_words(o->variables, &set, err));
+        TRY(read_variables(o->variables, &set, err));
     *s = (DesignSpace){.n_floors = n_floors, .gap_sides = o->gap_sides};
     for (int g = 0; g < N_GROUPS; g++) {
         const int by_floor = GROUPS[g].unit != NULL;
         if (g == DEVICE) {
-            TRY(take_devices(s, o, set, err));
+            TRY(read_devices(s, o, set, err));
             set |= s->n_words == 0 ? 0 : set >> MASS & 1 ? 1U << DEVICE | 1U << ROOF : 1U << DEVICE;
         }
         s->zones[g] = (int)zones[g];
@@ -344,7 +344,7 @@ Status design_cell(const DesignSpace *s, int j, const Table *t, size_t row, doub
 }
 
 /* Numbers in the place of words; other columns keep those that they have. */
-static Status take_words_of_table(Table *t, const DesignSpace *s, Err *err)
+static Status number_words(Table *t, const DesignSpace *s, Err *err)
 {
     char name[TABLE_NAME_MAX];
     TRY_ROOM(t->values, t->n_rows * t->n_cols + 1, "numbers", err);
@@ -362,7 +362,7 @@ static Status take_words_of_table(Table *t, const DesignSpace *s, Err *err)
 Status design_table_read(Table *t, const char *path, const DesignSpace *space, Err *err)
 {
     TRY(table_read(t, path, space->n_choices > 0 ? TABLE_WORDS : TABLE_HEADED, err));
-    const Status status = space->n_choices > 0 ? take_words_of_table(t, space, err) : STATUS_OK;
+    const Status status = space->n_choices > 0 ? number_words(t, space, err) : STATUS_OK;
     if (status != STATUS_OK)
         table_free(t);
     return status;

@@ -22,20 +22,15 @@ static const struct {
     double from_m_s, to_m_s, reduced;
 } SOILS[] = {{1500, 1500, 1}, {760, 1500, 0.95}, {360, 760, 0.75}, {180, 360, 0.5}};
 
-static void set_disc(Foundation *f, double G, double r, double nu, double rho)
+Status foundation_parse(const char *text, double factor, Foundation *f, Err *err)
 {
-    const double v_s = sqrt(G / rho), c = nu < 1.0 / 3 ? v_s * sqrt(2 * (1 - nu) / (1 - 2 * nu)) : 2 * v_s;
-    const double z = 9 * M_PI / 32 * (1 - nu) * pow(c / v_s, 2) * r;
-    f->rotation = 8 * G * pow(r, 3) / (3 * (1 - nu));
-    f->translation = 8 * G * r / (2 - nu);
-    f->rotation_dashpot = rho * c * M_PI * pow(r, 4) / 4;
-    f->translation_dashpot = rho * v_s * M_PI * r * r;
-    f->cone_s = z / c;
-}
-
-static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *err)
-{
+    double x[N_KEYS] = {0};
+    *f = (Foundation){0};
+    if (strcmp(text, "fixed") == 0)
+        return STATUS_OK;
+    TRY(keyed_numbers("core.foundation", text, 1, N_KEYS, KEYS, x, err));
     const double nu = x[NU] > 0 ? x[NU] : NU_OTHERWISE, rho = x[DENSITY] > 0 ? x[DENSITY] : DENSITY_OTHERWISE;
+    const double r = x[RADIUS];
     double G = x[SHEAR];
     if (G > 0 && x[SOIL] > 0)
         return bad_data(err, "core.foundation: soil= and g= both give a shear modulus; leave one out");
@@ -43,10 +38,21 @@ static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *
         const int k = (int)x[SOIL] - 1;
         G = rho * SOILS[k].from_m_s * SOILS[k].to_m_s * SOILS[k].reduced;
     }
-    if (G > 0 && x[RADIUS] == 0)
+    if (G > 0 && r == 0)
         return bad_data(err, "core.foundation: soil= or g= needs radius= of the foundation [m]");
-    if (G > 0)
-        set_disc(f, factor * G, x[RADIUS], nu, rho);
+
+    /* The disc on the half-space. */
+    if (G > 0) {
+        G *= factor;
+        const double v_s = sqrt(G / rho), c = nu < 1.0 / 3 ? v_s * sqrt(2 * (1 - nu) / (1 - 2 * nu)) : 2 * v_s;
+        f->rotation = 8 * G * pow(r, 3) / (3 * (1 - nu));
+        f->translation = 8 * G * r / (2 - nu);
+        f->rotation_dashpot = rho * c * M_PI * pow(r, 4) / 4;
+        f->translation_dashpot = rho * v_s * M_PI * r * r;
+        f->cone_s = 9 * M_PI / 32 * (1 - nu) * pow(c / v_s, 2) * r / c;
+    }
+
+    /* Springs and dashpots that are given take its place. */
     f->rotation = x[ROTATION] > 0 ? factor * x[ROTATION] : f->rotation;
     f->translation = x[TRANSLATION] > 0 ? factor * x[TRANSLATION] : f->translation;
     if (x[ROTATION_DASHPOT] > 0) {
@@ -55,7 +61,7 @@ static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *
     }
     if (x[TRANSLATION_DASHPOT] > 0)
         f->translation_dashpot = sqrt(factor) * x[TRANSLATION_DASHPOT];
-    f->radius_m = x[RADIUS];
+    f->radius_m = r;
     f->weight_n = x[WEIGHT];
     if (f->rotation == 0 && f->translation == 0)
         return bad_data(err, "core.foundation: nothing gives way: it needs soil=A..D or g= [Pa] with "
@@ -64,16 +70,6 @@ static Status settle(Foundation *f, const double x[N_KEYS], double factor, Err *
         return bad_data(err, "core.foundation: a dashpot needs the spring beside it: rotation= [N m/rad], "
                              "translation= [N/m]");
     return STATUS_OK;
-}
-
-Status foundation_parse(const char *text, double factor, Foundation *out, Err *err)
-{
-    double x[N_KEYS] = {0};
-    *out = (Foundation){0};
-    if (strcmp(text, "fixed") == 0)
-        return STATUS_OK;
-    TRY(keyed_numbers("core.foundation", text, 1, N_KEYS, KEYS, x, err));
-    return settle(out, x, factor, err);
 }
 
 double foundation_uplift_nm(const Foundation *f, double weight_n)

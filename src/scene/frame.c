@@ -26,26 +26,12 @@ int frame_find(const Frame *f, FrameKind kind, const char *name)
     return found ? (*found)->index : -1;
 }
 
-static Status add_name(Frame *f, FrameKind kind, const char *name, Err *err)
-{
-    static const char *const WORDS[FRAME_KINDS] = {"node", "section", "element"};
-    if (frame_find(f, kind, name) >= 0)
-        return bad_data(err, "%s %s is there twice", WORDS[kind], name);
-    Entry *entry = malloc(sizeof *entry);
-    if (entry) {
-        *entry = (Entry){.kind = kind, .index = f->n[kind]};
-        snprintf(entry->name, sizeof entry->name, "%s", name);
-    }
-    if (entry && tsearch(entry, &f->names, by_name))
-        return STATUS_OK;
-    free(entry);
-    return fail(err, STATUS_NO_MEMORY, "no memory for the %ss of a frame", WORDS[kind]);
-}
-
 /* A part, which begins with its name, behind those of the list, whose room doubles. */
 static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, size_t size, Err *err)
 {
+    static const char *const WORDS[FRAME_KINDS] = {"node", "section", "element"};
     const size_t n = f->n[kind];
+    const char *name = part;
     char *parts;
     memcpy(&parts, list, sizeof parts);
     if ((n & (n - 1)) == 0) {
@@ -55,7 +41,16 @@ static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, s
         memcpy(list, &wider, sizeof wider);
         parts = wider;
     }
-    TRY(add_name(f, kind, part, err));
+    if (frame_find(f, kind, name) >= 0)
+        return bad_data(err, "%s %s is there twice", WORDS[kind], name);
+    Entry *entry;
+    TRY_ROOM(entry, 1, "the name of a part", err);
+    *entry = (Entry){.kind = kind, .index = (int)n};
+    snprintf(entry->name, sizeof entry->name, "%s", name);
+    if (!tsearch(entry, &f->names, by_name)) {
+        free(entry);
+        return fail_memory(err, 1, "the name of a part");
+    }
     memcpy(parts + n * size, part, size);
     f->n[kind]++;
     return STATUS_OK;
@@ -139,68 +134,33 @@ void frame_free(Frame *f)
 
 /* ---- floors --------------------------------------------------------------------------------------------------- */
 
-static double frame_extent(const Frame *f)
+/* Numbers the floors: heights of the level elements whose ends may move sideways, each once, from below. */
+static Status number_floors(Frame *f, Err *err)
 {
-    double lo = f->node[0].z, hi = lo;
+    const FrameNode *node = f->node;
+    double *z, lo = node[0].z, hi = lo;
+    int found = 0, n = 0;
+    TRY_ROOM(z, f->n[FRAME_ELEMENTS], "heights of a frame", err);
     for (int i = 1; i < f->n[FRAME_NODES]; i++) {
-        lo = fmin(lo, f->node[i].z);
-        hi = fmax(hi, f->node[i].z);
+        lo = fmin(lo, node[i].z);
+        hi = fmax(hi, node[i].z);
     }
-    return hi - lo;
-}
-
-/* Heights of the level elements whose ends may move sideways, each once: *n of z, ascending. */
-static void find_levels(const Frame *f, double tolerance, double z[], int *n)
-{
-    int found = 0;
-    *n = 0;
+    const double tolerance = 1e-6 * (hi - lo);
     for (int e = 0; e < f->n[FRAME_ELEMENTS]; e++) {
-        const FrameNode *a = &f->node[f->element[e].node[0]], *b = &f->node[f->element[e].node[1]];
+        const FrameNode *a = &node[f->element[e].node[0]], *b = &node[f->element[e].node[1]];
         if (fabs(a->z - b->z) <= tolerance && !a->fixed[FRAME_X] && !b->fixed[FRAME_X])
             z[found++] = a->z;
     }
     sort_values(found, z);
     for (int i = 0; i < found; i++)
-        if (*n == 0 || z[i] - z[*n - 1] > tolerance)
-            z[(*n)++] = z[i];
-}
-
-static Status number_floors(Frame *f, Err *err)
-{
-    double *z;
-    TRY_ROOM(z, f->n[FRAME_ELEMENTS], "heights of a frame", err);
-    const double tolerance = 1e-6 * frame_extent(f);
-    int n;
-    find_levels(f, tolerance, z, &n);
+        if (n == 0 || z[i] - z[n - 1] > tolerance)
+            z[n++] = z[i];
     for (int i = 0; i < f->n[FRAME_NODES]; i++)
         for (int k = 0; k < n; k++)
-            if (fabs(f->node[i].z - z[k]) <= tolerance && !f->node[i].fixed[FRAME_X])
+            if (fabs(node[i].z - z[k]) <= tolerance && !node[i].fixed[FRAME_X])
                 f->node[i].floor = k + 1;
     free(z);
     return STATUS_OK;
-}
-
-/* Mean height of the nodes of a floor; 0: the ground under the first one. *count: its nodes. */
-static double floor_height(const Frame *f, int floor, int *count)
-{
-    double sum = 0;
-    *count = 0;
-    for (int i = 0; i < f->n[FRAME_NODES]; i++)
-        if (f->node[i].floor == floor) {
-            sum += f->node[i].z;
-            ++*count;
-        }
-    return sum / (*count > 0 ? *count : 1);
-}
-
-/* The highest node that is held sideways below a height. */
-static int ground_below(const Frame *f, double height, double *z)
-{
-    *z = -HUGE_VAL;
-    for (int i = 0; i < f->n[FRAME_NODES]; i++)
-        if (f->node[i].fixed[FRAME_X] && f->node[i].z < height)
-            *z = fmax(*z, f->node[i].z);
-    return isfinite(*z);
 }
 
 int frame_floor_node(const Frame *f, int floor)
@@ -219,25 +179,26 @@ int frame_floor_node(const Frame *f, int floor)
     return best;
 }
 
-static void tie_floors(Frame *f)
-{
-    for (int floor = 1; floor <= f->n_floors; floor++) {
-        const int first = frame_floor_node(f, floor);
-        for (int i = 0; i < f->n[FRAME_NODES]; i++)
-            if (f->node[i].floor == floor)
-                f->node[frame_followed(f, i, FRAME_X)].follows[FRAME_X] = frame_followed(f, first, FRAME_X);
-    }
-}
-
+/* Storey heights: between the mean heights of the nodes of floors; the first one is above the highest node that is held
+ * sideways below it. */
 static Status measure_storeys(Frame *f, const char *model, Err *err)
 {
-    double below = 0;
+    double below = -HUGE_VAL;
     for (int k = 1; k <= f->n_floors; k++) {
-        int count;
-        const double z = floor_height(f, k, &count);
+        int count = 0;
+        double z = 0;
+        for (int i = 0; i < f->n[FRAME_NODES]; i++)
+            if (f->node[i].floor == k) {
+                z += f->node[i].z;
+                count++;
+            }
         if (count == 0)
             return bad_data(err, "%s: there is no floor %d, but a floor %d", model, k, f->n_floors);
-        if (k == 1 && !ground_below(f, z, &below))
+        z /= count;
+        for (int i = 0; i < f->n[FRAME_NODES] && k == 1; i++)
+            if (f->node[i].fixed[FRAME_X] && f->node[i].z < z)
+                below = fmax(below, f->node[i].z);
+        if (!isfinite(below))
             return bad_data(err, "%s: no node below the first floor (z %g m) is held along x", model, z);
         if (!(z > below))
             return bad_data(err, "%s: floor %d at %g m is not above %g m; bottom floor first", model, k, z, below);
@@ -261,7 +222,11 @@ Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
     if (f->n_floors > FLOORS_MAX)
         return bad_data(err, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
     TRY_ROOM(f->storey_m, f->n_floors, "storeys of a frame", err);
-    if (rigid)
-        tie_floors(f);
+    for (int floor = 1; floor <= f->n_floors && rigid; floor++) {
+        const int first = frame_floor_node(f, floor);
+        for (int i = 0; i < f->n[FRAME_NODES]; i++)
+            if (f->node[i].floor == floor)
+                f->node[frame_followed(f, i, FRAME_X)].follows[FRAME_X] = frame_followed(f, first, FRAME_X);
+    }
     return measure_storeys(f, model, err);
 }

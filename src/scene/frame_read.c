@@ -24,7 +24,8 @@ static Status look_up(const Frame *f, FrameKind kind, const char *column, const 
                                   kind == FRAME_NODES ? "nodes.csv" : "sections.csv");
 }
 
-static Status take_node(void *frame, const SheetRow *r, Err *err)
+/* Adds a node with what holds it, its floor, and what the full model keeps of it. */
+static Status add_node(void *frame, const SheetRow *r, Err *err)
 {
     FrameNode node = {.x = r->x[1], .z = r->x[2], .floor = (int)fmin(r->x[6], 1e6)};
     set_name(node.name, r->word[0]);
@@ -35,7 +36,8 @@ static Status take_node(void *frame, const SheetRow *r, Err *err)
     return frame_add_node(frame, &node, err);
 }
 
-static Status take_section(void *frame, const SheetRow *r, Err *err)
+/* Adds a section. */
+static Status add_section(void *frame, const SheetRow *r, Err *err)
 {
     FrameSection section = {.area = r->x[1],
                             .inertia = r->x[2],
@@ -47,7 +49,8 @@ static Status take_section(void *frame, const SheetRow *r, Err *err)
     return frame_add_section(frame, &section, err);
 }
 
-static Status take_element(void *frame, const SheetRow *r, Err *err)
+/* Adds an element between nodes that are there. */
+static Status add_element(void *frame, const SheetRow *r, Err *err)
 {
     FrameElement e = {.pinned = {(int)r->x[4], (int)r->x[5]}, .added_mass = r->x[6]};
     set_name(e.name, r->word[0]);
@@ -57,7 +60,8 @@ static Status take_element(void *frame, const SheetRow *r, Err *err)
     return frame_add_element(frame, &e, err);
 }
 
-static Status take_mass(void *frame, const SheetRow *r, Err *err)
+/* Adds mass to a node; along z the same as along x unless its column says otherwise. */
+static Status add_mass(void *frame, const SheetRow *r, Err *err)
 {
     int node;
     TRY(look_up(frame, FRAME_NODES, "node", r->word[0], &node, err));
@@ -67,7 +71,7 @@ static Status take_mass(void *frame, const SheetRow *r, Err *err)
         (double[]){has[FRAME_X] + r->x[1], has[FRAME_Z] + r->x[*r->word[2] ? 2 : 1], has[FRAME_ROT] + r->x[3]}, err);
 }
 
-static Status take_tie(void *frame, const SheetRow *r, Err *err)
+static Status add_tie(void *frame, const SheetRow *r, Err *err)
 {
     int node, same_as, dof[FRAME_DOFS];
     TRY(look_up(frame, FRAME_NODES, "node", r->word[0], &node, err));
@@ -81,7 +85,7 @@ static Status take_tie(void *frame, const SheetRow *r, Err *err)
 /* In the order in which they refer to each other; the last two may be missing. */
 static const SheetForm SHEETS[] = {
     {"nodes.csv",
-     take_node,
+     add_node,
      {{"node", COLUMN_NAME, NAN},
       {"x_m", COLUMN_NUMBER, NAN},
       {"z_m", COLUMN_NUMBER, NAN},
@@ -93,7 +97,7 @@ static const SheetForm SHEETS[] = {
       {"keep_z", COLUMN_SWITCH, 0},
       {"keep_rot", COLUMN_SWITCH, 0}}},
     {"sections.csv",
-     take_section,
+     add_section,
      {{"section", COLUMN_NAME, NAN},
       {"A_m2", COLUMN_NUMBER, NAN},
       {"I_m4", COLUMN_NUMBER, NAN},
@@ -102,7 +106,7 @@ static const SheetForm SHEETS[] = {
       {"poisson", COLUMN_NUMBER, 0.3},
       {"mass_kg_per_m", COLUMN_LEAST_0, 0}}},
     {"elements.csv",
-     take_element,
+     add_element,
      {{"element", COLUMN_NAME, NAN},
       {"node_i", COLUMN_NAME, NAN},
       {"node_j", COLUMN_NAME, NAN},
@@ -111,13 +115,13 @@ static const SheetForm SHEETS[] = {
       {"pin_j", COLUMN_SWITCH, 0},
       {"added_mass_kg", COLUMN_LEAST_0, 0}}},
     {"masses.csv",
-     take_mass,
+     add_mass,
      {{"node", COLUMN_NAME, NAN},
       {"mass_kg", COLUMN_LEAST_0, NAN},
       {"mass_z_kg", COLUMN_LEAST_0, 0},
       {"rotary_kg_m2", COLUMN_LEAST_0, 0}}},
     {"ties.csv",
-     take_tie,
+     add_tie,
      {{"node", COLUMN_NAME, NAN},
       {"same_as", COLUMN_NAME, NAN},
       {"x", COLUMN_SWITCH, 0},
@@ -139,32 +143,26 @@ int frame_is(const char *model)
     return text_ends(model, ".tcl") || model_has(model, SHEETS[0].file);
 }
 
-static Status read_sheets(Frame *f, const char *model, Err *err)
-{
-    for (int i = 0; i < N_SHEETS; i++)
-        if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
-            TRY(sheet_take(&SHEETS[i], model, f, err));
-    return STATUS_OK;
-}
-
-static Status read_tcl(Frame *f, const BuildingOptions *o, Err *err)
-{
-    const BuildingUnit u = building_unit(o->units);
-    if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
-        return bad_data(
-            err,
-            "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
-            "for %s",
-            o->model);
-    return opensees_read(f, o->model, u.length, u.stiffness * u.length, err);
-}
-
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
 {
+    const char *model = o->model;
+    const BuildingUnit u = building_unit(o->units);
+    Status status = STATUS_OK;
     memset(f, 0, sizeof *f);
-    Status status = text_ends(o->model, ".tcl") ? read_tcl(f, o, err) : read_sheets(f, o->model, err);
+    if (text_ends(model, ".tcl")) {
+        if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
+            return bad_data(
+                err,
+                "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
+                "for %s",
+                model);
+        status = opensees_read(f, model, u.length, u.stiffness * u.length, err);
+    }
+    for (int i = 0; i < N_SHEETS && !text_ends(model, ".tcl") && status == STATUS_OK; i++)
+        if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
+            status = sheet_read(&SHEETS[i], model, f, err);
     if (status == STATUS_OK)
-        status = frame_find_floors(f, o->model, o->rigid_floors, err);
+        status = frame_find_floors(f, model, o->rigid_floors, err);
     if (status != STATUS_OK)
         frame_free(f);
     return status;

@@ -247,9 +247,10 @@ static void assemble_slaves(const Condensation *c)
     }
 }
 
-/* Factors the stiffness of the slaves, or of the masters, in place; a pivot that has lost so many digits of the
- * diagonal is zero but for rounding, and what has it moves without resistance. */
+/* A pivot that has lost so many digits of the diagonal is zero but for rounding. */
 static const double PIVOT_LOST = 1e-11, SWAY_LOST = 1e-12;
+
+/* Factors the stiffness of the slaves or the masters in place. What has a pivot of zero moves without resistance. */
 static Status factor(const Condensation *c, int masters, double A[], Err *err)
 {
     static const char *const WORDS[] = {"moves along x", "moves along z", "turns"};

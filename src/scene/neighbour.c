@@ -15,6 +15,7 @@ const char *core_word(const CoreOptions *o)
     return neighbour_is_given(o) ? o->model : core_theory_word(o->theory);
 }
 
+/* Refuses a neighbour whose floors do not meet those of the building. */
 static Status check_floors(const Building *n, const Building *b, const char *model, Err *err)
 {
     double z = 0, own = 0;
@@ -38,25 +39,6 @@ static Status check_floors(const Building *n, const Building *b, const char *mod
     return STATUS_OK;
 }
 
-static void take_building(CoreBeam *c, const Building *n, int floors, double damping)
-{
-    memset(c, 0, sizeof *c);
-    c->n = floors;
-    c->top = n->n;
-    c->mass_kg = building_mass(n);
-    for (int i = 0; i < floors; i++) {
-        const int own = i < n->n;
-        c->omega[i] = n->omega[own ? i : n->n - 1];
-        c->zeta[i] = damping;
-        c->gamma[i] = own ? n->gamma[i] : 0;
-        for (int j = 0; own && j < n->n; j++) {
-            c->K[i * floors + j] = n->K[i * n->n + j];
-            c->M[i * floors + j] = n->M[i * n->n + j];
-            c->phi[i * floors + j] = n->phi[i * n->n + j];
-        }
-    }
-}
-
 Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, const Building *b, double t_base_m,
                  double t_top_m, Err *err)
 {
@@ -69,8 +51,21 @@ Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, c
     options.yield_drift = 0;
     TRY(building_load(&n, &options, err));
     const Status status = check_floors(&n, b, o->model, err);
-    if (status == STATUS_OK)
-        take_building(c, &n, b->n, o->damping);
+    memset(c, 0, sizeof *c);
+    c->n = b->n;
+    c->top = n.n;
+    c->mass_kg = building_mass(&n);
+    for (int i = 0; i < b->n && status == STATUS_OK; i++) {
+        const int own = i < n.n;
+        c->omega[i] = n.omega[own ? i : n.n - 1];
+        c->zeta[i] = o->damping;
+        c->gamma[i] = own ? n.gamma[i] : 0;
+        for (int j = 0; own && j < n.n; j++) {
+            c->K[i * b->n + j] = n.K[i * n.n + j];
+            c->M[i * b->n + j] = n.M[i * n.n + j];
+            c->phi[i * b->n + j] = n.phi[i * n.n + j];
+        }
+    }
     building_free(&n);
     return status;
 }

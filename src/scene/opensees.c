@@ -62,7 +62,7 @@ static int is_taken(Reader *r, Status status)
     return status == STATUS_OK || refuse(r, "%s", r->why.text);
 }
 
-static int take_numbers(Reader *r, Words w, int first, int n, double values[])
+static int read_numbers(Reader *r, Words w, int first, int n, double values[])
 {
     for (int i = 0; i < n; i++)
         if (Tcl_GetDoubleFromObj(NULL, w[first + i], &values[i]) != TCL_OK || !isfinite(values[i]))
@@ -71,7 +71,7 @@ static int take_numbers(Reader *r, Words w, int first, int n, double values[])
 }
 
 /* A name from a tag, behind what it is of where that is not NULL. */
-static int take_tag(Reader *r, Tcl_Obj *word, const char *what, char name[TABLE_NAME_MAX])
+static int read_tag(Reader *r, Tcl_Obj *word, const char *what, char name[TABLE_NAME_MAX])
 {
     int tag;
     if (Tcl_GetIntFromObj(NULL, word, &tag) != TCL_OK)
@@ -84,7 +84,7 @@ static int take_tag(Reader *r, Tcl_Obj *word, const char *what, char name[TABLE_
 static int find(Reader *r, Tcl_Obj *word, const char *what, int *index)
 {
     char name[TABLE_NAME_MAX];
-    if (!take_tag(r, word, what, name))
+    if (!read_tag(r, word, what, name))
         return 0;
     *index = what ? frame_find(&r->library, FRAME_SECTIONS, name) : frame_find(r->frame, FRAME_NODES, name);
     return *index >= 0 || refuse(r, "there is no %s%s above", what ? "" : "node ", name);
@@ -93,12 +93,13 @@ static int find(Reader *r, Tcl_Obj *word, const char *what, int *index)
 /* Into the library, under the tag behind the two words of its kind. */
 static int define(Reader *r, Words w, FrameSection s)
 {
-    return take_tag(r, w[2], r->command, s.name) && is_taken(r, frame_add_section(&r->library, &s, &r->why));
+    return read_tag(r, w[2], r->command, s.name) && is_taken(r, frame_add_section(&r->library, &s, &r->why));
 }
 
 /* ---- nodes and what they are given ---------------------------------------------------------------------------- */
 
-static int take_model(Reader *r, int n, Words w)
+/* Only plane models of three unknowns per node are frames. */
+static int check_model(Reader *r, int n, Words w)
 {
     int dimensions = 0, unknowns = FRAME_DOFS;
     for (int i = 1; i + 1 < n; i++)
@@ -112,21 +113,22 @@ static int take_model(Reader *r, int n, Words w)
 static int set_mass(Reader *r, int node, Words w, int first)
 {
     double m[FRAME_DOFS];
-    if (!take_numbers(r, w, first, FRAME_DOFS, m))
+    if (!read_numbers(r, w, first, FRAME_DOFS, m))
         return 0;
     for (int d = 0; d < FRAME_DOFS; d++)
         m[d] *= r->force / r->length * (d == FRAME_ROT ? r->length * r->length : 1);
     return is_taken(r, frame_set_mass(r->frame, node, m, &r->why));
 }
 
-static int take_node(Reader *r, int n, Words w)
+/* Adds a node, with a mass where it says so. */
+static int add_node(Reader *r, int n, Words w)
 {
     double xy[2];
     FrameNode node = {0};
     if (!r->has_model || r->is_wiped)
         return refuse(r, r->is_wiped ? "the model above was wiped; keep one of the two"
                                      : "'model BasicBuilder -ndm 2 -ndf 3' must stand above");
-    if (!take_numbers(r, w, 2, 2, xy) || !take_tag(r, w[1], NULL, node.name))
+    if (!read_numbers(r, w, 2, 2, xy) || !read_tag(r, w[1], NULL, node.name))
         return 0;
     node.x = xy[0] * r->length;
     node.z = xy[1] * r->length;
@@ -137,26 +139,28 @@ static int take_node(Reader *r, int n, Words w)
                                                           : refuse(r, "behind TAG x y only -mass mx my mr is read"));
 }
 
-static int take_fix(Reader *r, int n, Words w)
+/* Holds displacements of a node. */
+static int fix_node(Reader *r, int n, Words w)
 {
     double fixed[FRAME_DOFS];
     int node;
     (void)n;
-    if (!find(r, w[1], NULL, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
+    if (!find(r, w[1], NULL, &node) || !read_numbers(r, w, 2, FRAME_DOFS, fixed))
         return 0;
     for (int d = 0; d < FRAME_DOFS; d++)
         r->frame->node[node].fixed[d] |= fixed[d] != 0;
     return 1;
 }
 
-static int take_mass(Reader *r, int n, Words w)
+static int replace_mass(Reader *r, int n, Words w)
 {
     int node;
     (void)n;
     return find(r, w[1], NULL, &node) && set_mass(r, node, w, 2);
 }
 
-static int take_equal(Reader *r, int n, Words w)
+/* Ties displacements of the second node to the first. */
+static int tie_nodes(Reader *r, int n, Words w)
 {
     int node, same_as, dof, dofs[FRAME_DOFS] = {0};
     if (!find(r, w[1], NULL, &same_as) || !find(r, w[2], NULL, &node))
@@ -171,7 +175,7 @@ static int take_equal(Reader *r, int n, Words w)
 
 /* ---- elements ------------------------------------------------------------------------------------------------- */
 
-static int take_transformation(Reader *r, int n, Words w)
+static int add_transformation(Reader *r, int n, Words w)
 {
     return n == 3 && (is_word(w[1], "Linear") || is_word(w[1], "PDelta"))
                ? define(r, w, (FrameSection){.area = 1, .inertia = 1, .E = 1})
@@ -179,13 +183,13 @@ static int take_transformation(Reader *r, int n, Words w)
 }
 
 /* section Elastic TAG E A I, uniaxialMaterial Elastic TAG E */
-static int take_elastic(Reader *r, int n, Words w)
+static int add_elastic(Reader *r, int n, Words w)
 {
     const int is_section = is_word(w[0], "section"), numbers = is_section ? 3 : 1;
     double value[3] = {1, 1, 1};
     if (!is_word(w[1], "Elastic") || n < 3 + numbers)
         return refuse(r, " %.60s: only Elastic TAG E%s is read", Tcl_GetString(w[1]), is_section ? " A I" : "");
-    return take_numbers(r, w, 3, numbers, value) &&
+    return read_numbers(r, w, 3, numbers, value) &&
            define(r, w, (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]});
 }
 
@@ -197,7 +201,7 @@ static const struct {
                {"nonlinearBeamColumn", "-ST"}, {"dispBeamColumn", "-ST"},   {"truss", "AM"}};
 
 /* Takes the words behind the nodes into a section in the units of the model. *options: where they begin. */
-static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
+static int read_member(Reader *r, int n, Words w, FrameSection *s, int *options)
 {
     size_t form = 0;
     for (*options = 5; *options < n && Tcl_GetString(w[*options])[0] != '-';)
@@ -216,7 +220,7 @@ static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
         const char *what = word == 'S' ? "section" : word == 'M' ? "uniaxialMaterial" : "geomTransf";
         double *const number = word == 'A' ? &s->area : word == 'E' ? &s->E : word == 'I' ? &s->inertia : NULL;
         int found;
-        if (number ? !take_numbers(r, w, i, 1, number) : word != '-' && !find(r, w[i], what, &found))
+        if (number ? !read_numbers(r, w, i, 1, number) : word != '-' && !find(r, w[i], what, &found))
             return 0;
         if (word == 'S')
             *s = r->library.section[found];
@@ -227,7 +231,7 @@ static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
 }
 
 /* A mass that is not consistent goes to both ends in halves, as OpenSees lumps it: added_mass until all is read. */
-static int take_element(Reader *r, int n, Words w)
+static int add_element(Reader *r, int n, Words w)
 {
     Frame *f = r->frame;
     const double L = r->length, F = r->force;
@@ -235,7 +239,7 @@ static int take_element(Reader *r, int n, Words w)
     FrameElement e = {.section = f->n[FRAME_SECTIONS]};
     int at, is_consistent = 0;
     double mass = 0, release = 0;
-    if (!find(r, w[3], NULL, &e.node[0]) || !find(r, w[4], NULL, &e.node[1]) || !take_member(r, n, w, &s, &at))
+    if (!find(r, w[3], NULL, &e.node[0]) || !find(r, w[4], NULL, &e.node[1]) || !read_member(r, n, w, &s, &at))
         return 0;
     for (; at < n; at++) {
         const int is_mass = is_word(w[at], "-mass") || is_word(w[at], "-rho");
@@ -243,14 +247,14 @@ static int take_element(Reader *r, int n, Words w)
             is_consistent = is_word(w[at], "-cMass");
         else if ((!is_mass && !is_word(w[at], "-release")) || at + 1 == n)
             return refuse(r, " %s: '%.60s' is not read", Tcl_GetString(w[1]), Tcl_GetString(w[at]));
-        else if (!take_numbers(r, w, ++at, 1, is_mass ? &mass : &release))
+        else if (!read_numbers(r, w, ++at, 1, is_mass ? &mass : &release))
             return 0;
     }
     if (mass < 0)
         return refuse(r, "a mass of %g; it must not be negative", mass);
     if (release != 0 && release != 1 && release != 2 && release != 3)
         return refuse(r, "-release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", release);
-    if (!take_tag(r, w[2], NULL, e.name))
+    if (!read_tag(r, w[2], NULL, e.name))
         return 0;
 
     /* From the units of the model, where a mass is one per length, to those of a frame. */
@@ -300,21 +304,21 @@ static int skip(Reader *r, int n, Words w)
 }
 
 /* A script often ends so, and OpenSees forgets the model. */
-static int take_wipe(Reader *r, int n, Words w)
+static int note_wipe(Reader *r, int n, Words w)
 {
     (void)n, (void)w;
     r->is_wiped = r->frame->n[FRAME_NODES] > 0;
     return 1;
 }
 
-static int take_exit(Reader *r, int n, Words w)
+static int end_script(Reader *r, int n, Words w)
 {
     (void)n, (void)w;
     r->has_ended = 1;
     return 0;
 }
 
-static int take_unknown(Reader *r, int n, Words w)
+static int refuse_unknown(Reader *r, int n, Words w)
 {
     r->command = "";
     return refuse(r, "'%.60s' is not among the commands that are read (docs/building.md)", Tcl_GetString(w[n > 1]));
@@ -402,7 +406,8 @@ static int run_file(Reader *r, const char *path)
     return 0;
 }
 
-static int take_source(Reader *r, int n, Words w)
+/* Runs a file below the folder of the model, and no other: a model may come from anywhere. */
+static int source_file(Reader *r, int n, Words w)
 {
     char path[PATH_MAX], whole[PATH_MAX];
     const size_t length = strlen(r->folder);
@@ -426,19 +431,19 @@ typedef struct {
 } TclCommand;
 
 static const TclCommand COMMANDS[] = {
-    {"model", 2, take_model, "BasicBuilder -ndm 2 -ndf 3"},
-    {"node", 4, take_node, "TAG x y"},
-    {"fix", 2 + FRAME_DOFS, take_fix, "TAG x y rot"},
-    {"mass", 2 + FRAME_DOFS, take_mass, "TAG mx my mr"},
-    {"equalDOF", 4, take_equal, "NODE NODE DOF ..."},
-    {"geomTransf", 3, take_transformation, "Linear TAG"},
-    {"section", 4, take_elastic, "Elastic TAG E A I"},
-    {"uniaxialMaterial", 4, take_elastic, "Elastic TAG E"},
-    {"element", 7, take_element, "TYPE TAG i j ..."},
-    {"wipe", 1, take_wipe, ""},
-    {"source", 2, take_source, "FILE"},
-    {"exit", 1, take_exit, ""},
-    {"unknown", 1, take_unknown, ""},
+    {"model", 2, check_model, "BasicBuilder -ndm 2 -ndf 3"},
+    {"node", 4, add_node, "TAG x y"},
+    {"fix", 2 + FRAME_DOFS, fix_node, "TAG x y rot"},
+    {"mass", 2 + FRAME_DOFS, replace_mass, "TAG mx my mr"},
+    {"equalDOF", 4, tie_nodes, "NODE NODE DOF ..."},
+    {"geomTransf", 3, add_transformation, "Linear TAG"},
+    {"section", 4, add_elastic, "Elastic TAG E A I"},
+    {"uniaxialMaterial", 4, add_elastic, "Elastic TAG E"},
+    {"element", 7, add_element, "TYPE TAG i j ..."},
+    {"wipe", 1, note_wipe, ""},
+    {"source", 2, source_file, "FILE"},
+    {"exit", 1, end_script, ""},
+    {"unknown", 1, refuse_unknown, ""},
     {"", 1, skip, ""}, /* those of SKIPPED */
 };
 

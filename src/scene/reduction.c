@@ -7,42 +7,29 @@
 /* ---- Craig-Bampton -------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    int n, f, i, modes, columns; /* floors, others, fixed-interface modes, shapes that are kept */
-    double *Kii, *Mii, *factor;  /* (i, i) */
-    double *Psi;                 /* (i, f) */
-    double *mu, *phi;            /* (i), (i, i) column k is mode k */
-    double *missed, *M_r;        /* (i) the shape that is added, Mii times it */
-    double *T, *work;            /* (n, n + 1) of which `columns` columns are used */
-    void *store;
+    int n, f, i, modes;         /* floors, others, fixed-interface modes that are kept */
+    double *Kii, *Mii, *factor; /* (i, i) */
+    double *Psi;                /* (i, f) */
+    double *mu, *phi;           /* (i), (i, i) column k is mode k */
+    double *missed, *M_r;       /* (i) the shape that is added, Mii times it */
+    double *T, *work;           /* (n, n + 1) of which as many columns are used as shapes are kept */
 } Reduction;
 
+/* Names every array, for base/carve.h. */
 static void layout(void *reduction, Carve *c)
 {
     Reduction *r = reduction;
     const size_t n = r->n, i = r->i;
-    double **const square[] = {&r->Kii, &r->Mii, &r->factor, &r->phi};
-    for (int k = 0; k < 4; k++)
-        CARVE(c, *square[k], i * i);
+    CARVE(c, r->Kii, i * i);
+    CARVE(c, r->Mii, i * i);
+    CARVE(c, r->factor, i * i);
+    CARVE(c, r->phi, i * i);
     CARVE(c, r->Psi, i * r->f);
     CARVE(c, r->mu, i);
     CARVE(c, r->missed, i);
     CARVE(c, r->M_r, i);
     CARVE(c, r->T, n * (n + 1));
     CARVE(c, r->work, n * (n + 1));
-}
-
-static Status constraint_modes(Reduction *r, const FrameFull *full, Err *err)
-{
-    for (int a = 0; a < r->i; a++) {
-        const double *K = full->K + (r->f + a) * r->n, *M = full->M + (r->f + a) * r->n;
-        for (int b = 0; b < r->f; b++)
-            r->Psi[a * r->f + b] = -K[b];
-        memcpy(r->Kii + a * r->i, K + r->f, r->i * sizeof *K);
-        memcpy(r->factor + a * r->i, K + r->f, r->i * sizeof *K);
-        memcpy(r->Mii + a * r->i, M + r->f, r->i * sizeof *M);
-    }
-    TRY(linalg_solve_spd(r->i, r->f, r->factor, r->Psi, err));
-    return linalg_modes(r->i, r->Kii, r->Mii, r->mu, r->phi, err);
 }
 
 /* Mii missed, and missed' Mii missed. */
@@ -61,10 +48,25 @@ static double weigh_missed(const Reduction *r)
 /* Below this share of its mass the missed shape is rounding. */
 static const double MISSED_MIN = 1e-12;
 
-/* Coordinates of r in the columns of T: 1 for the floors, c for the modes; what is left, normalised, and its norm (0:
- * nothing is). */
-static double missed_shape(Reduction *r, const FrameFull *full, double influence[])
+/* Fills out with the matrices in the columns of T, and with the coordinates of the ground's motion in them. */
+static Status reduce(Reduction *r, const FrameFull *full, FrameFull *out, Err *err)
 {
+    TRY(frame_full_make(out, r->f + r->modes + 1, err));
+    double *influence = out->influence;
+
+    /* Constraint modes Psi, and the fixed-interface modes phi. */
+    for (int a = 0; a < r->i; a++) {
+        const double *K = full->K + (r->f + a) * r->n, *M = full->M + (r->f + a) * r->n;
+        for (int b = 0; b < r->f; b++)
+            r->Psi[a * r->f + b] = -K[b];
+        memcpy(r->Kii + a * r->i, K + r->f, r->i * sizeof *K);
+        memcpy(r->factor + a * r->i, K + r->f, r->i * sizeof *K);
+        memcpy(r->Mii + a * r->i, M + r->f, r->i * sizeof *M);
+    }
+    TRY(linalg_solve_spd(r->i, r->f, r->factor, r->Psi, err));
+    TRY(linalg_modes(r->i, r->Kii, r->Mii, r->mu, r->phi, err));
+
+    /* r is 1 of the floors and c of the modes; what is left, normalised, is one shape more. */
     memcpy(influence, full->influence, r->f * sizeof *influence);
     for (int a = 0; a < r->i; a++) {
         r->missed[a] = full->influence[r->f + a];
@@ -80,38 +82,22 @@ static double missed_shape(Reduction *r, const FrameFull *full, double influence
             r->missed[a] -= *c * r->phi[a * r->i + k];
     }
     const double square = weigh_missed(r);
-    if (r->modes == r->i || !(square > MISSED_MIN * whole))
-        return 0;
-    for (int a = 0; a < r->i; a++)
-        r->missed[a] /= sqrt(square);
-    return sqrt(square);
-}
+    const int is_missed = r->modes < r->i && square > MISSED_MIN * whole, n = out->n = r->f + r->modes + is_missed;
+    if (is_missed)
+        influence[n - 1] = sqrt(square);
 
-static void set_columns(Reduction *r, int with_missed)
-{
-    const int columns = r->columns = r->f + r->modes + with_missed;
+    /* The columns of T. */
     for (int b = 0; b < r->f; b++)
-        r->T[b * columns + b] = 1;
+        r->T[b * n + b] = 1;
     for (int a = 0; a < r->i; a++) {
-        double *row = r->T + (r->f + a) * columns;
+        double *row = r->T + (r->f + a) * n;
         memcpy(row, r->Psi + a * r->f, r->f * sizeof *row);
         memcpy(row + r->f, r->phi + a * r->i, r->modes * sizeof *row);
-        if (with_missed)
-            row[columns - 1] = r->missed[a];
+        if (is_missed)
+            row[n - 1] = r->missed[a] / sqrt(square);
     }
-}
-
-static Status reduce(Reduction *r, const FrameFull *full, FrameFull *out, Err *err)
-{
-    TRY(constraint_modes(r, full, err));
-    TRY(frame_full_make(out, r->f + r->modes + 1, err));
-    const double missed = missed_shape(r, full, out->influence);
-    set_columns(r, missed > 0);
-    out->n = r->columns;
-    if (missed > 0)
-        out->influence[out->n - 1] = missed;
-    linalg_congruent(r->n, r->columns, full->K, r->T, r->work, out->K);
-    linalg_congruent(r->n, r->columns, full->M, r->T, r->work, out->M);
+    linalg_congruent(r->n, n, full->K, r->T, r->work, out->K);
+    linalg_congruent(r->n, n, full->M, r->T, r->work, out->M);
     return STATUS_OK;
 }
 
@@ -120,11 +106,11 @@ Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, 
     Reduction r = {.n = full->n, .f = n_floors, .i = full->n - n_floors};
     r.modes = modes < r.i ? (int)modes : r.i;
     *out = (FrameFull){0};
-    r.store = carve_all(layout, &r);
-    const Status status = r.store
+    void *store = carve_all(layout, &r);
+    const Status status = store
                               ? reduce(&r, full, out, err)
                               : fail(err, STATUS_NO_MEMORY, "building: no memory to reduce %d degrees of freedom", r.n);
-    free(r.store);
+    free(store);
     if (status != STATUS_OK)
         frame_full_free(out);
     return status;

@@ -75,19 +75,17 @@ static void list_columns(const SheetForm *form, int required, char list[200])
             snprintf(list + strlen(list), 200 - strlen(list), "%s%s", *list ? " " : "", c->name);
 }
 
+/* Refuses a file without a column that must be there, or with one that is not known. */
 static Status check_columns(const SheetForm *form, const Table *s, Err *err)
 {
     char required[200], optional[200];
     list_columns(form, 1, required);
     list_columns(form, 0, optional);
-    size_t known = 0;
-    for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++) {
-        known += table_column(s, c->name) >= 0;
+    for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++)
         if (isnan(c->otherwise) && table_column(s, c->name) < 0)
             return bad_data(err, "%s: has no column %s; it needs %s, and may have %s", s->path, c->name, required,
                             optional);
-    }
-    for (size_t j = 0; j < s->n_cols && known < s->n_cols; j++) {
+    for (size_t j = 0; j < s->n_cols; j++) {
         const Column *c = form->column;
         while (c < form->column + COLUMNS_MAX && c->name && strcmp(c->name, s->names[j]) != 0)
             c++;
@@ -98,39 +96,38 @@ static Status check_columns(const SheetForm *form, const Table *s, Err *err)
     return STATUS_OK;
 }
 
-static Status take_cell(const Column *c, const Table *s, size_t row, const char **word, double *x, Err *err)
-{
-    *word = sheet_text(s, row, c->name);
-    if (c->kind == COLUMN_NAME)
-        return **word && strlen(*word) < TABLE_NAME_MAX
-                   ? STATUS_OK
-                   : bad_data(err, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row], c->name,
-                              *word, TABLE_NAME_MAX - 1);
-    TRY(sheet_number(s, row, c->name, c->otherwise, x, err));
-    const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && **word    ? "it must be above 0"
-                       : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
-                       : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
-                                                                           : NULL;
-    return must ? bad_data(err, "%s:%d: %s is %g; %s", s->path, s->line[row], c->name, *x, must) : STATUS_OK;
-}
-
-static Status take_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
+/* Takes the cells of a row by their columns and hands it over. */
+static Status read_row(const SheetForm *form, const Table *s, size_t row, void *user, Err *err)
 {
     SheetRow r = {.n_rows = s->n_rows, .row = row};
     Err wrong = {0};
-    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name; j++)
-        TRY(take_cell(&form->column[j], s, row, &r.word[j], &r.x[j], err));
-    const Status status = form->take(user, &r, &wrong);
-    return status == STATUS_OK ? status : fail(err, status, "%s:%d: %s", s->path, s->line[row], wrong.text);
+    for (size_t j = 0; j < COLUMNS_MAX && form->column[j].name && wrong.code == STATUS_OK; j++) {
+        const Column *c = &form->column[j];
+        const char *word = r.word[j] = sheet_text(s, row, c->name);
+        const double *x = &r.x[j];
+        if (c->kind != COLUMN_NAME)
+            TRY(sheet_number(s, row, c->name, c->otherwise, &r.x[j], err));
+        else if (!*word || strlen(word) >= TABLE_NAME_MAX)
+            bad_data(&wrong, "%s '%.60s' is no name of 1 to %d characters", c->name, word, TABLE_NAME_MAX - 1);
+        const char *must = c->kind == COLUMN_ABOVE_0 && !(*x > 0) && *word     ? "it must be above 0"
+                           : c->kind == COLUMN_LEAST_0 && !(*x >= 0)           ? "it must not be negative"
+                           : c->kind == COLUMN_SWITCH && !(*x == 0 || *x == 1) ? "it is 0 or 1"
+                                                                               : NULL;
+        if (must)
+            bad_data(&wrong, "%s is %g; %s", c->name, *x, must);
+    }
+    if (wrong.code == STATUS_OK)
+        form->take(user, &r, &wrong);
+    return wrong.code == STATUS_OK ? STATUS_OK : fail(err, wrong.code, "%s:%d: %s", s->path, s->line[row], wrong.text);
 }
 
-Status sheet_take(const SheetForm *form, const char *model, void *user, Err *err)
+Status sheet_read(const SheetForm *form, const char *model, void *user, Err *err)
 {
     Table s;
     TRY(model_table(&s, model, form->file, TABLE_WORDS, err));
     Status status = check_columns(form, &s, err);
     for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_row(form, &s, i, user, err);
+        status = read_row(form, &s, i, user, err);
     table_free(&s);
     return status;
 }

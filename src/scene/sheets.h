@@ -38,4 +38,4 @@ typedef struct {
     Status (*take)(void *user, const SheetRow *row, Err *err);
     Column column[COLUMNS_MAX]; /* the rest has no names */
 } SheetForm;
-Status sheet_take(const SheetForm *form, const char *model, void *user, Err *err);
+Status sheet_read(const SheetForm *form, const char *model, void *user, Err *err);

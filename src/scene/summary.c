@@ -10,37 +10,7 @@
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 
-static void summarise_mass(SceneSummary *s, const Building *b)
-{
-    s->floor_mass_min_kg = HUGE_VAL;
-    s->floor_mass_max_kg = -HUGE_VAL;
-    s->mass_kg = building_mass(b);
-    for (int j = 0; j < b->n; j++) {
-        const double row = building_floor_mass(b, j);
-        if (row < s->floor_mass_min_kg) {
-            s->floor_mass_min_kg = row;
-            s->lightest = j + 1;
-        }
-        if (row > s->floor_mass_max_kg) {
-            s->floor_mass_max_kg = row;
-            s->heaviest = j + 1;
-        }
-    }
-}
-
-/* The first mode falls from row to row. Of storeys it rises in any order: there each is stiffer than the one below, and
- * the last floor heavier than the first. */
-static int is_top_first(const SceneSummary *s, const Building *b)
-{
-    int falls = b->n > 1, stiffens = s->lightest < s->heaviest;
-    for (int j = 1; j < b->n; j++) {
-        const double *row = b->K + (j - 1) * b->n, below = j > 1 ? -row[j - 2] : row[0] + row[1];
-        falls &= fabs(b->phi[j * b->n]) < fabs(b->phi[(j - 1) * b->n]);
-        stiffens &= -row[j] > below;
-    }
-    return falls || stiffens;
-}
-
+/* Root of the sum of squares of the modal base shears over the weight. */
 static double base_shear(const BuildingModel *m, const Motion *motion, double mass)
 {
     double squares = 0;
@@ -53,51 +23,43 @@ static double base_shear(const BuildingModel *m, const Motion *motion, double ma
     return sqrt(squares) / (mass * GRAVITY);
 }
 
-/* First modes of the cantilever by both theories, and clamped. */
-static Status compare_theories(SceneSummary *s, const CoreOptions *core, const double storey_m[], double t_base,
-                               double t_top, Err *err)
-{
-    const int n = s->n_floors;
-    TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, n, storey_m, t_base, t_top, &s->timoshenko_hz, err));
-    TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, n, storey_m, t_base, t_top, &s->euler_bernoulli_hz, err));
-    CoreOptions clamped = *core;
-    snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
-    return core_beam_first_hz(&clamped, core->theory, n, storey_m, t_base, t_top, &s->clamped_hz, err);
-}
-
-static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *of, const Building *b,
-                             double t_base, double t_top, Err *err)
-{
-    CoreBeam *beam;
-    TRY_ROOM(beam, 1, "a core", err);
-    Status status = core_make(beam, core, of, b, t_base, t_top, err);
-    if (status == STATUS_OK) {
-        s->core_mass_kg = beam->mass_kg;
-        s->core_hz = s->timoshenko_hz = s->euler_bernoulli_hz = s->clamped_hz = beam->omega[0] / (2 * M_PI);
-        while (s->core_modes_within < beam->top && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
-            s->core_modes_within++;
-    }
-    free(beam);
-    if (status == STATUS_OK && !neighbour_is_given(core))
-        status = compare_theories(s, core, b->storey_m, t_base, t_top, err);
-    return status;
-}
-
+/* The building's figures. */
 static void summarise_building(SceneSummary *s, const Building *b)
 {
-    *s = (SceneSummary){.n_floors = b->n,
+    const int n = b->n;
+    *s = (SceneSummary){.n_floors = n,
                         .note = b->note,
+                        .mass_kg = building_mass(b),
+                        .floor_mass_min_kg = HUGE_VAL,
+                        .floor_mass_max_kg = -HUGE_VAL,
                         .lowest_m = HUGE_VAL,
                         .heights_assumed = b->heights_assumed,
                         .hardening_raised = b->hardening_raised ? b->hardening : 0};
-    summarise_mass(s, b);
-    s->top_first = is_top_first(s, b);
-    for (int j = 0; j < b->n; j++) {
+    for (int j = 0; j < n; j++) {
+        const double row = building_floor_mass(b, j);
+        if (row < s->floor_mass_min_kg) {
+            s->floor_mass_min_kg = row;
+            s->lightest = j + 1;
+        }
+        if (row > s->floor_mass_max_kg) {
+            s->floor_mass_max_kg = row;
+            s->heaviest = j + 1;
+        }
         s->height_m += b->storey_m[j];
         s->lowest_m = fmin(s->lowest_m, b->storey_m[j]);
         s->highest_m = fmax(s->highest_m, b->storey_m[j]);
     }
-    for (int i = 0; i < 3 && i < b->n; i++) {
+
+    /* From the top down the first mode falls from row to row. Of storeys it rises in any order: there each is stiffer
+     * than the one below, and the last floor heavier than the first. */
+    int falls = n > 1, stiffens = s->lightest < s->heaviest;
+    for (int j = 1; j < n; j++) {
+        const double *row = b->K + (j - 1) * n, below = j > 1 ? -row[j - 2] : row[0] + row[1];
+        falls &= fabs(b->phi[j * n]) < fabs(b->phi[(j - 1) * n]);
+        stiffens &= -row[j] > below;
+    }
+    s->top_first = falls || stiffens;
+    for (int i = 0; i < 3 && i < n; i++) {
         s->period_s[i] = 2 * M_PI / b->omega[i];
         s->damping[i] = b->zeta[i];
     }
@@ -107,10 +69,29 @@ static void summarise_building(SceneSummary *s, const Building *b)
 Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const BuildingOptions *of,
                        const Motion *motion, double t_base_m, double t_top_m, Err *err)
 {
+    CoreOptions clamped = *core;
+    CoreBeam *beam;
+    const double *h = b->storey_m;
     summarise_building(s, b);
     s->content_hz = 0.5 / motion->dt_s;
     s->base_shear = base_shear(&b->model, motion, s->mass_kg);
-    return summarise_core(s, core, of, b, t_base_m, t_top_m, err);
+    TRY_ROOM(beam, 1, "a core", err);
+    const Status status = core_make(beam, core, of, b, t_base_m, t_top_m, err);
+    if (status == STATUS_OK) {
+        s->core_mass_kg = beam->mass_kg;
+        s->core_hz = s->timoshenko_hz = s->euler_bernoulli_hz = s->clamped_hz = beam->omega[0] / (2 * M_PI);
+        while (s->core_modes_within < beam->top && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
+            s->core_modes_within++;
+    }
+    free(beam);
+    if (status != STATUS_OK || neighbour_is_given(core))
+        return status;
+
+    /* The first mode of a cantilever also by both theories, and clamped. */
+    TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, b->n, h, t_base_m, t_top_m, &s->timoshenko_hz, err));
+    TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, b->n, h, t_base_m, t_top_m, &s->euler_bernoulli_hz, err));
+    snprintf(clamped.foundation, sizeof clamped.foundation, "fixed");
+    return core_beam_first_hz(&clamped, core->theory, b->n, h, t_base_m, t_top_m, &s->clamped_hz, err);
 }
 
 /* ---- warnings ------------------------------------------------------------------------------------------------- */
@@ -120,6 +101,7 @@ typedef struct {
     void *user;
 } Warner;
 
+/* Warns of what the setting `key` leads to. */
 __attribute__((format(printf, 3, 4))) static void say(const Warner *w, const char *key, const char *format, ...)
 {
     char text[300];
@@ -141,6 +123,7 @@ static void warn_of_mass(const Warner *w, int floor, double mass_kg)
         FLOOR_MASS_MIN_KG / 1e3, FLOOR_MASS_MAX_KG / 1e3);
 }
 
+/* Warns of figures of the building outside the ranges of summary.h. */
 static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
@@ -176,6 +159,7 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
         }
 }
 
+/* Warns of a core that is damped, slow or modelled unlike others. */
 static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warner *w)
 {
     if (o->damping > DAMPING_MAX)

@@ -26,9 +26,8 @@ typedef struct {
     size_t lines_behind; /* the samples, of velocities and displacements */
 } Header;
 
-/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE; either may be empty, WORD also left out
- * with
- * its bar. "=LTV": the line is one of these letters. */
+/* "LINE|WORD": the value stands behind WORD of a line that begins with LINE. Either may be empty, WORD left out
+ * with its bar. "=LTV": the line is one of these letters. */
 typedef struct {
     Field field;
     const char *text;
@@ -70,7 +69,7 @@ static int recognise(const Format *f, Lines l)
 static const Format *format_at(Lines l);
 
 /* The value behind the word of the line; 0: there is none. */
-static int take_behind(Header *h, Field field, const Lines *l, const char *word)
+static int find_behind(Header *h, Field field, const Lines *l, const char *word)
 {
     const char *p = find_word(l->from, l->to, word);
     h->at[field] = *l;
@@ -106,7 +105,7 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
             Lines rest = *l;
             rest.from += is_letter ? 0 : n;
             if (!h->at[w->field].from && (is_letter || (rest.from <= l->to && !strncasecmp(l->from, w->text, n))))
-                take_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
+                find_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
         }
         h->last = l->from < l->to ? *l : h->last;
         ended |= f->ends && line_has(l, f->ends);
@@ -145,6 +144,7 @@ static double number_of(const Header *h, Field field, int k)
     return c.from && number_behind(c.from, c.to, "", &x) ? x : NAN;
 }
 
+/* Names the line of the header that should have said the number of points, or the step. */
 static Status fail_word(const Format *f, const Lines *l, Field first, Field second, Err *err)
 {
     const HeaderWord *w = f->words;
@@ -193,7 +193,7 @@ static MotionUnit unit_within(const char *from, const char *to)
 }
 
 /* The number at `from`, in the unit of its line, or else in the channel's. */
-static void take_peak(Channel *c, const char *line, const char *from, const char *to)
+static void read_peak(Channel *c, const char *line, const char *from, const char *to)
 {
     static const double M_S2[] = {0, 1, 0.01, GRAVITY};
     double x, digit = 1;
@@ -228,7 +228,7 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
     if (!f->peak_of) {
         const Cell item = item_of(peak, k);
         if (item.from)
-            take_peak(c, peak->raw, item.from, item.to);
+            read_peak(c, peak->raw, item.from, item.to);
         return;
     }
     snprintf(word, sizeof word, f->peak_of, c->name);
@@ -237,12 +237,13 @@ static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
         return;
     const char *stop = memchr(at, '\n', end - at);
     stop = stop ? stop : end;
-    take_peak(c, at, at + strlen(word), stop);
+    read_peak(c, at, at + strlen(word), stop);
     const char *wave = memchr(at, '~', stop - at);
     if (wave)
-        take_peak(c, at, wave + 1, stop);
+        read_peak(c, at, wave + 1, stop);
 }
 
+/* Refuses a header that says velocity or displacement. */
 static Status check_type(const Lines *type, Err *err)
 {
     Lines whole = *type;
@@ -315,7 +316,7 @@ static int says_corrected(const Lines *l)
 
 /* "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof": with the location, which tells the channels of a
  * building apart. */
-static void take_name(const Header *h, Channel *c)
+static void read_name(const Header *h, Channel *c)
 {
     const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
     const char *from = name->from, *to = from;
@@ -335,6 +336,7 @@ static void take_name(const Header *h, Channel *c)
     }
 }
 
+/* One record of a format: one channel row by row, or a column for each. */
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 {
     Header h;
@@ -345,7 +347,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     if (f->parting)
         return read_columns(f, r, l, &h, err);
     TRY(record_channel(r, l, &c, err));
-    take_name(&h, c);
+    read_name(&h, c);
     if (f->one_word)
         c->name[strcspn(c->name, " ")] = 0;
     c->digitized = f->pairs && !f->more;
@@ -359,7 +361,8 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
         TRY(settle_steps(f, l, &h, 0, err));
     settle_channel(f, &h, c, 0);
     c->is_corrected = says_corrected(&h.first) || says_corrected(&h.at[TYPE]);
-    return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
+    c->dt = h.dt;
+    return record_block(r, l, h.count, h.width, h.lines_behind, err);
 }
 
 /* ---- what no row can say ----------------------------------------------------------------------------------------- */
@@ -395,8 +398,8 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
         h->dt = text_is(HOLDS, l->from, l->to, "pts/s|points/s|samples/s") ? 1 / x : x;
     const Lines above = h->at[UNIT];
-    if (!take_behind(h, UNIT, l, " in units of ") && !take_behind(h, UNIT, l, " in units ") &&
-        !take_behind(h, UNIT, l, " in "))
+    if (!find_behind(h, UNIT, l, " in units of ") && !find_behind(h, UNIT, l, " in units ") &&
+        !find_behind(h, UNIT, l, " in "))
         h->at[UNIT] = above;
     return STATUS_OK;
 }
@@ -435,11 +438,11 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     h->dt = reals[STEP_AT] * 1e-3;
     h->width = format_width(l);
     h->at[COUNT] = *l;
-    take_behind(h, DURATION, l, "approx");
-    take_behind(h, UNIT, l, "units=");
+    find_behind(h, DURATION, l, "approx");
+    find_behind(h, UNIT, l, "units=");
 
-    /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal, the others up to 9
-     * are no accelerations in them. */
+    /* The code behind a unit, "cm/sec2(04)", is that of COSMOS' Table 2: 2 is g, 4 cm/s2, 10 gal; others up to 9 are no
+     * accelerations. */
     const Lines *unit = &h->at[UNIT];
     const char *open = unit->from ? memchr(unit->from, '(', unit->to - unit->from) : NULL;
     if (!open || !number_behind(open, unit->to, "(", &code) || !(code >= 1 && code <= 10))
@@ -466,6 +469,7 @@ static int smc_is(Lines l)
            lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
 }
 
+/* Takes what the integers and reals of the header say, and passes over the comments. */
 static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     enum {
@@ -571,6 +575,7 @@ static int at2_is(Lines l)
     return 0;
 }
 
+/* Takes number and step of "3930    0.0050    NPTS, DT", or the step of "NPTS=  3930, DT=   .0050 SEC". */
 static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     const Lines *npts = &h->at[COUNT];
@@ -597,6 +602,7 @@ static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
  *
  * then samples row by row (SLIST), or "time  sample" (TSPAIR). A segment is a channel; a gap makes two. */
 
+/* Takes name, number, rate and unit of the fields between commas. */
 static Status series_more(Lines *l, Header *h, Channel *c, Err *err)
 {
     const char *p = l->from;
@@ -736,11 +742,9 @@ static Status find_next(Lines *l, const Format **next, Err *err)
             is_known = *next || text_is(HOLDS, ahead.from, ahead.to, "veloc|displ| vel | dis");
             *next = NULL;
         } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
-            return bad_data(
-                err,
-                "%s:%d: more numbers, below words, than the header announces; is it a second record? Keep one "
-                "of them",
-                l->path, ahead.number);
+            return fail_at(err, &ahead,
+                           "more numbers, below words, than the header announces; is it a second record? Keep one "
+                           "of them");
         *l = ahead;
     }
     return STATUS_OK;

@@ -10,19 +10,10 @@ int archive_is(const unsigned char bytes[], size_t n)
             (n > 6 && memcmp(bytes, "\3757zXZ", 5) == 0) || (n > 512 && memcmp(bytes + 257, "ustar", 5) == 0));
 }
 
-static struct archive *open_memory(const char *bytes, size_t n)
+static Status fail_damaged(struct archive *a, const char *path, Err *err)
 {
-    struct archive *a = archive_read_new();
-    if (!a)
-        return NULL;
-    archive_read_support_filter_all(a);
-    archive_read_support_format_zip(a);
-    archive_read_support_format_tar(a);
-    archive_read_support_format_raw(a);
-    if (archive_read_open_memory(a, bytes, n) == ARCHIVE_OK)
-        return a;
-    archive_read_free(a);
-    return NULL;
+    return bad_data(err, "%s: a damaged archive: %s", path,
+                    archive_error_string(a) ? archive_error_string(a) : "unreadable");
 }
 
 /* All of the present member; *total counts the bytes of all members. */
@@ -41,8 +32,7 @@ static Status read_member(struct archive *a, const char *path, char **out, size_
         }
         const la_ssize_t got = archive_read_data(a, *out + *n, capacity - *n);
         if (got < 0)
-            return bad_data(err, "%s: a damaged archive: %s", path,
-                            archive_error_string(a) ? archive_error_string(a) : "unreadable");
+            return fail_damaged(a, path, err);
         if (got == 0)
             break;
         *n += got;
@@ -54,34 +44,36 @@ static Status read_member(struct archive *a, const char *path, char **out, size_
     return STATUS_OK;
 }
 
-static Status each_member(struct archive *a, const char *path, ArchiveFn take, void *user, Err *err)
-{
-    struct archive_entry *entry;
-    size_t total = 0;
-    int code;
-    while ((code = archive_read_next_header(a, &entry)) == ARCHIVE_OK) {
-        const char *name = archive_entry_pathname(entry);
-        char *bytes;
-        size_t n;
-        if (archive_entry_filetype(entry) && archive_entry_filetype(entry) != AE_IFREG)
-            continue;
-        Status status = read_member(a, path, &bytes, &n, &total, err);
-        if (status == STATUS_OK && n > 0)
-            status = take(name ? name : "", bytes, n, user, err);
-        free(bytes);
-        TRY(status);
-    }
-    return code == ARCHIVE_EOF ? STATUS_OK
-                               : bad_data(err, "%s: a damaged archive: %s", path,
-                                          archive_error_string(a) ? archive_error_string(a) : "unreadable");
-}
-
 Status archive_each(const char *path, const char *bytes, size_t n, ArchiveFn take, void *user, Err *err)
 {
-    struct archive *a = open_memory(bytes, n);
-    if (!a)
+    struct archive *a = archive_read_new();
+    struct archive_entry *entry;
+    Status status = STATUS_OK;
+    size_t total = 0, length;
+    int code = ARCHIVE_FATAL;
+    char *member;
+    if (a) {
+        archive_read_support_filter_all(a);
+        archive_read_support_format_zip(a);
+        archive_read_support_format_tar(a);
+        archive_read_support_format_raw(a);
+        code = archive_read_open_memory(a, bytes, n);
+    }
+    if (code != ARCHIVE_OK) {
+        archive_read_free(a);
         return bad_data(err, "%s: a damaged archive", path);
-    const Status status = each_member(a, path, take, user, err);
+    }
+    while (status == STATUS_OK && (code = archive_read_next_header(a, &entry)) == ARCHIVE_OK) {
+        const char *name = archive_entry_pathname(entry);
+        if (archive_entry_filetype(entry) && archive_entry_filetype(entry) != AE_IFREG)
+            continue;
+        status = read_member(a, path, &member, &length, &total, err);
+        if (status == STATUS_OK && length > 0)
+            status = take(name ? name : "", member, length, user, err);
+        free(member);
+    }
+    if (status == STATUS_OK && code != ARCHIVE_EOF)
+        status = fail_damaged(a, path, err);
     archive_read_free(a);
     return status;
 }

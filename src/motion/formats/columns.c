@@ -36,7 +36,7 @@ typedef struct {
 /* ---- header ------------------------------------------------------------------------------------------------------ */
 
 /* A step or a count that is stated twice must be the same. */
-static void take_number(Plain *t, double *have, double x, const char *what, const Lines *l)
+static void state_number(Plain *t, double *have, double x, const char *what, const Lines *l)
 {
     if (*have == 0)
         *have = x;
@@ -77,7 +77,7 @@ static int names_times(Cell c)
 }
 
 /* The unit that the text begins with, where it begins with one. */
-static void take_unit(Channel *c, const char *from, const char *to)
+static void read_unit(Channel *c, const char *from, const char *to)
 {
     channel_unit(c, from, to);
     if (!c->counts && !is_quantity(c->stated, c->stated + strlen(c->stated)))
@@ -103,15 +103,15 @@ static const struct {
             {"step", STEP}};
 
 /* The value of a key behind its mark. */
-static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
+static void read_value(Plain *t, int kind, const Lines *l, const char *mark)
 {
     double x;
     if (kind == UNIT) {
         Channel c = {.scale = 1};
-        take_unit(&c, mark, l->to);
+        read_unit(&c, mark, l->to);
         const char *next = memchr(mark, ',', l->to - mark); /* "units: s, g" */
         if (next && names_seconds((Cell){.from = c.stated, .to = c.stated + strlen(c.stated)}))
-            take_unit(&c, next + 1, l->to);
+            read_unit(&c, next + 1, l->to);
         if (c.unit && t->all.unit && c.unit != t->all.unit)
             fail_at(&t->wrong, l, "states another unit than a line above");
         if (!t->all.unit && c.scale == 1)
@@ -123,13 +123,13 @@ static void take_value(Plain *t, int kind, const Lines *l, const char *mark)
     if (got < 0)
         fail_at(&t->wrong, l, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
     else if (got > 0 && x > 0 && x <= 1e6 && kind == COUNT)
-        take_number(t, &t->count, x, "number of samples", l);
+        state_number(t, &t->count, x, "number of samples", l);
     else if (got > 0 && x > 0 && x <= 1e6)
-        take_number(t, &t->dt, kind == RATE ? 1 / x : x, "step", l);
+        state_number(t, &t->dt, kind == RATE ? 1 / x : x, "step", l);
 }
 
 /* Every "key ... = value" or "key ... : value" of a comment or a line of words. */
-static void take_pairs(Plain *t, const Lines *l)
+static void read_pairs(Plain *t, const Lines *l)
 {
     for (size_t i = 0; i < N_OF(KEYS); i++) {
         const size_t n = strlen(KEYS[i].word);
@@ -142,7 +142,7 @@ static void take_pairs(Plain *t, const Lines *l)
             if (mark == l->to || strchr(";,", *mark) || (at > l->from && isalnum((unsigned char)at[-1])) ||
                 isalpha((unsigned char)at[n]) || find_word(at + n, mark, " per "))
                 continue;
-            take_value(t, KEYS[i].kind, l, mark);
+            read_value(t, KEYS[i].kind, l, mark);
             t->restated_line = t->r->n ? l->number : 0;
         }
     }
@@ -208,7 +208,7 @@ static Cell name_at(const Plain *t, size_t k)
     return c;
 }
 
-static void take_names(Plain *t, const Lines *l)
+static void set_names(Plain *t, const Lines *l)
 {
     t->names = *l;
     t->n_names = 0;
@@ -235,7 +235,7 @@ static void unit_in_name(Cell name, Channel *c)
         if (open[-1] == '(' && close - open == 1 && strchr("NSEWUDVZ", *open)) /* a direction */
             return;
         open += find_word(open, close, "in ") == open ? 3 : 0;
-        take_unit(c, open, close);
+        read_unit(c, open, close);
         if (c->scale != 1 || (c->unit && unit_of(open, close) != c->unit)) { /* tenths, or more than a unit */
             c->unit = UNIT_FROM_FILE;
             c->scale = 1;
@@ -262,13 +262,12 @@ static Status check_times(const Plain *t, Cell name, Err *err)
     for (const char *p = name.from; p < name.to; p++)
         is_title |= (unsigned char)*p > 127; /* in another script, perhaps of time */
     if (!t->is_timed && name.from < name.to && !is_title)
-        return bad_data(
-            err,
-            "%s:%d: the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
-            "step of the samples (--set motion.dt_s=0.01)",
-            t->l->path, l->number, (int)(name.to - name.from), name.from);
+        return fail_at(err, l,
+                       "the first column is '%.*s', which is no time: name the one of the times time_s, or give the "
+                       "step of the samples (--set motion.dt_s=0.01)",
+                       (int)(name.to - name.from), name.from);
     for (const char *p = name.from; p <= name.to;) {
-        const Cell word = cell_next(&p, name.to, "_ ()[],");
+        const Cell word = cell_next(&p, name.to, PARTS);
         if (word.from > name.from && text_is(EQUALS, word.from, word.to, "ms|msec|us|min|minutes|h|hours"))
             return bad_data(err, "%s: the column of times is '%.*s'; times must be in seconds", t->l->path,
                             (int)(name.to - name.from), name.from);
@@ -304,6 +303,7 @@ static int has_decimal_commas(const Plain *t)
                                        csv_has_decimal_commas(l->from, l->to));
 }
 
+/* Refuses a text that is no table either, with its first line, by which people see what they have. */
 static Status fail_unknown(const Plain *t, Err *err)
 {
     Lines start = t->start;
@@ -344,11 +344,11 @@ static Status read_rows(Plain *t, Err *err)
             continue;
         const int is_above = before == 0 && is_words(l);
         if (is_comment(l) || (is_above && memchr(l->from, '=', l->to - l->from))) {
-            take_pairs(t, l);
+            read_pairs(t, l);
             if (before > 0)
                 continue;
 
-            /* A comment heads columns that parts names as a table does, the first of which is of times or periods. */
+            /* A comment heads the columns if it parts names as a table does, the first one of times or periods. */
             Lines h = *l;
             while (h.from < h.to && strchr("#%!/ ", *h.from))
                 h.from++;
@@ -359,8 +359,8 @@ static Status read_rows(Plain *t, Err *err)
                 t->above = h;
         } else if (is_above) {
             if (t->names.from)
-                take_pairs(t, &t->names);
-            take_names(t, l);
+                read_pairs(t, &t->names);
+            set_names(t, l);
         } else {
             if (t->restated_line)
                 return bad_data(
@@ -382,7 +382,7 @@ static Status read_rows(Plain *t, Err *err)
 
 /* Two numbers before the samples are "npts dt" where they stand alone in their row, or one each in two, and the first
  * counts the samples, or the rows, that follow; one number is "npts" in the same way. */
-static void take_count(Plain *t)
+static void read_count(Plain *t)
 {
     enum { SAMPLES_MIN = 10 }; /* of fewer a sample might be their number */
     Record *r = t->r;
@@ -396,8 +396,8 @@ static void take_count(Plain *t)
     if (!has_dt && !(t->width == 1 && (count == n - 1 || count == rows - 1)))
         return;
     if (has_dt)
-        take_number(t, &t->dt, dt, "step", &l);
-    take_number(t, &t->count, count, "number of samples", &l);
+        state_number(t, &t->dt, dt, "step", &l);
+    state_number(t, &t->count, count, "number of samples", &l);
     r->n -= 1 + has_dt;
     memmove(r->row, r->row + 1 + has_dt, r->n * sizeof *r->row);
     measure_rows(t);
@@ -418,11 +418,11 @@ static Status read_table(Plain *t, Err *err)
         TRY(read_rows(t, err));
         measure_rows(t);
     }
-    take_count(t);
+    read_count(t);
     if (t->names.from && !is_named(t))
-        take_pairs(t, &t->names);
+        read_pairs(t, &t->names);
     if (!t->names.from && t->above.from)
-        take_names(t, &t->above);
+        set_names(t, &t->above);
     if (t->wrong.text[0]) {
         *err = t->wrong;
         return STATUS_BAD_DATA;
@@ -512,6 +512,16 @@ static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
                        : "");
 }
 
+/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
+static int counts_samples(const Plain *t)
+{
+    const Row *row = t->r->row;
+    size_t k = 0;
+    while (k < t->n_rows && row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k)
+        k++;
+    return t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a) && k == t->n_rows;
+}
+
 Status columns_read(Record *r, Lines *l, Err *err)
 {
     enum { COMPONENTS_MAX = 4 };
@@ -558,11 +568,7 @@ Status columns_read(Record *r, Lines *l, Err *err)
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
         return bad_data(err, "%s: announces %g samples, but has %zu rows", l->path, t->count, t->n_rows);
-
-    /* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
-    t->is_counted = t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a);
-    for (size_t k = 0; k < t->n_rows && t->is_counted; k++)
-        t->is_counted = row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k;
+    t->is_counted = counts_samples(t);
     if (!t->is_timed && t->is_counted && !(t->dt > 0))
         return fail_at(err, &first,
                        "the first column counts %g, %g, ...: are these samples? Give their step (--set "

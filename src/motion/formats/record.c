@@ -183,11 +183,12 @@ int line_has_letters(const Lines *l)
     return 0;
 }
 
-Status record_block(Record *r, Lines *l, double count, double dt, int width, size_t lines_behind, Err *err)
+Status record_block(Record *r, Lines *l, double count, int width, size_t lines_behind, Err *err)
 {
     enum { PER_LINE_MAX = 64 };
     double x[PER_LINE_MAX];
     Channel *c = &r->channel[r->n_channels - 1];
+    const double dt = c->dt;
     const int is_pair = c->digitized || c->is_timed;
     const size_t each = is_pair ? 2 : 1;
     if (!(count >= 2 && count <= 1e8 && count == floor(count)))

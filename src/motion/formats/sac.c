@@ -72,14 +72,15 @@ static void check_range(Channel *c, const Record *r, double low, double high)
         c->warning = "its largest sample is not the one that its header states (DEPMIN, DEPMAX)";
 }
 
-static Status check_header(const char *path, double delta, double npts, double type, double even, double quantity,
-                           Err *err)
+/* Refuses a header that is none of an acceleration in equal steps. */
+static Status check_header(const char *path, const double reals[], const double integers[], Err *err)
 {
+    const double quantity = integers[IDEP], delta = reals[DELTA], npts = integers[NPTS];
     if (quantity == 6 || quantity == 7)
         return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: IDEP in its SAC header says %s",
                         path, quantity == 6 ? "displacement" : "velocity");
-    if (type != 1 || even != 1)
-        return bad_data(err, "%s: a SAC file of type %g that is no time series in equal steps", path, type);
+    if (integers[IFTYPE] != 1 || integers[LEVEN] != 1)
+        return bad_data(err, "%s: a SAC file of type %g that is no time series in equal steps", path, integers[IFTYPE]);
     if (!(delta > 0 && delta <= MOTION_STEP_MAX_S))
         return bad_data(err, "%s: no usable step in its SAC header: DELTA is %g", path, delta);
     if (!(npts >= 2 && npts <= 1e8))
@@ -87,30 +88,36 @@ static Status check_header(const char *path, double delta, double npts, double t
     return STATUS_OK;
 }
 
+/* One channel: the header in the byte order of its version, then its samples. */
 static Status read_binary(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const Lines l = {.path = path, .number = 1};
     const int swapped = !is_version(integer_at(bytes, NVHDR, 0));
-    const int32_t npts = integer_at(bytes, NPTS, swapped);
-    const double delta = real_at(bytes, DELTA, swapped);
+    const char *component = bytes + COMPONENT_AT;
+    double reals[N_REALS], integers[N_INTEGERS];
     Channel *c;
-    TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped),
-                     integer_at(bytes, IDEP, swapped), err));
-    if ((n - HEADER) / 4 != (size_t)npts && n != HEADER + 4 * (size_t)npts + FOOTER)
-        return bad_data(err, "%s: holds %zu samples, not the %d that its header announces", path, (n - HEADER) / 4,
+    for (int i = 0; i < N_REALS; i++)
+        reals[i] = real_at(bytes, i, swapped);
+    for (int i = 0; i < N_INTEGERS; i++)
+        integers[i] = integer_at(bytes, i, swapped);
+    TRY(check_header(path, reals, integers, err));
+    const size_t npts = (size_t)integers[NPTS];
+    if ((n - HEADER) / 4 != npts && n != HEADER + 4 * npts + FOOTER)
+        return bad_data(err, "%s: holds %zu samples, not the %zu that its header announces", path, (n - HEADER) / 4,
                         npts);
     TRY(record_channel(r, &l, &c, err));
-    *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = npts};
-    c->dt = round(delta * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
-    if (strnlen(bytes + COMPONENT_AT, 8) > 0 && strncmp(bytes + COMPONENT_AT, "-12345", 6) != 0)
-        channel_name(c, bytes + COMPONENT_AT, bytes + COMPONENT_AT + strnlen(bytes + COMPONENT_AT, 8));
+    c->counts = 1;
+    c->n = npts;
+    c->dt = round(reals[DELTA] * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
+    if (strnlen(component, 8) > 0 && strncmp(component, "-12345", 6) != 0)
+        channel_name(c, component, component + strnlen(component, 8));
     for (size_t i = 0; i < c->n; i++) {
         const double x = real_at(bytes + HEADER, i, swapped);
         if (!isfinite(x))
             return bad_data(err, "%s: sample %zu is %g; only finite numbers are accepted", path, i, x);
         TRY(record_add(r, (Row){.a = x, .line = 1}, err));
     }
-    check_range(c, r, real_at(bytes, DEPMIN, swapped), real_at(bytes, DEPMAX, swapped));
+    check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
     return STATUS_OK;
 }
 
@@ -135,7 +142,7 @@ Status sac_text_read(Record *r, Lines *l, Err *err)
     Channel *c;
     TRY(header_numbers(l, 15, N_REALS, reals, err));
     TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
-    TRY(check_header(l->path, reals[DELTA], integers[NPTS], integers[IFTYPE], integers[LEVEN], integers[IDEP], err));
+    TRY(check_header(l->path, reals, integers, err));
     TRY(record_channel(r, l, &c, err));
     c->counts = 1;
     for (int i = 0; i < WORD_LINES; i++) {
@@ -144,7 +151,8 @@ Status sac_text_read(Record *r, Lines *l, Err *err)
         if (i == 6 && l->to - l->raw > 16 && strncmp(l->raw + 16, "-12345", 6) != 0) /* words 18 to 20 */
             channel_name(c, l->raw + 16, l->to);
     }
-    TRY(record_block(r, l, integers[NPTS], reals[DELTA], 15, 0, err));
+    c->dt = reals[DELTA];
+    TRY(record_block(r, l, integers[NPTS], 15, 0, err));
     check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
     return STATUS_OK;
 }

@@ -30,7 +30,8 @@ static int recognise(const unsigned char bytes[], size_t n)
     return i < n && bytes[i] == '{';
 }
 
-static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
+/* Makes a channel of a list of samples. */
+static Status add_channel(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
 {
     Channel *c;
     const size_t n = json_array_size(list);
@@ -57,36 +58,26 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     return STATUS_OK;
 }
 
-static void take_unit(const json_t *o, Channel *c)
+/* Takes unit and factor that an object states beside its samples, and refuses what is no acceleration: wind and waves
+ * come as forces. Which of the factors of event and pattern multiply the samples differs from program to program. */
+static Status read_shape(const Lines *l, const json_t *o, Channel *c, Err *err)
 {
-    const json_t *units = json_object_get(o, "units");
-    const char *text = json_string_value(json_object_get(o, "unit"));
+    static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
+    const json_t *units = json_object_get(o, "units"), *factor = json_object_get(o, "factor");
+    const char *text = json_string_value(json_object_get(o, "unit")),
+               *type = json_string_value(json_object_get(o, "type"));
     text = text ? text : json_string_value(units);
     text = text ? text : json_string_value(json_object_get(units, "acceleration"));
     if (text && *text)
         channel_unit(c, text, text + strlen(text));
-}
-
-/* Wind and waves come as forces. */
-static Status check_type(const Lines *l, const json_t *o, Err *err)
-{
-    const char *type = json_string_value(json_object_get(o, "type"));
-    if (!type || !text_is(BEGINS, type, type + strlen(type), "wind|water|wave|hydro|tsunami|surge|force"))
-        return STATUS_OK;
-    return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: \"type\" is \"%.40s\"", l->path,
-                    type);
-}
-
-/* Which of the factors of event and pattern multiply the samples differs from program to program. */
-static Status check_factor(const Lines *l, const json_t *o, Channel *c, Err *err)
-{
-    const json_t *factor = json_object_get(o, "factor");
+    if (type && text_is(BEGINS, type, type + strlen(type), "wind|water|wave|hydro|tsunami|surge|force"))
+        return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: \"type\" is \"%.40s\"", l->path,
+                        type);
     if (json_is_number(factor) && json_is_number(json_object_get(o, "dT")) && json_number_value(factor) != 1 &&
         isfinite(json_number_value(factor))) {
         c->scale *= json_number_value(factor);
         c->warning = "its samples are multiplied by the factor that stands beside them";
     }
-    static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
     for (size_t k = 0; k < N_OF(FACTORS); k++) {
         const json_t *x = json_object_get(o, FACTORS[k]);
         if (x && !(json_is_number(x) && json_number_value(x) == 1) && c->scale == 1)
@@ -98,6 +89,7 @@ static Status check_factor(const Lines *l, const json_t *o, Channel *c, Err *err
     return STATUS_OK;
 }
 
+/* Looks for lists of samples in a node and in all that it holds; what an object states holds for those inside it. */
 static Status search(Place place, const json_t *node, int depth, Err *err)
 {
     static const char *const LISTS[] = {"data", "data_x", "data_y", "data_z"};
@@ -115,17 +107,16 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
         return STATUS_OK;
     const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
     place.name = json_is_string(name) ? json_string_value(name) : place.name;
-    take_unit(node, &place.shape);
     place.count = json_number_value(json_object_get(node, "numSteps"));
-    TRY(check_type(place.l, node, err));
-    TRY(check_factor(place.l, node, &place.shape, err));
+    TRY(read_shape(place.l, node, &place.shape, err));
     for (size_t k = 0; k < N_OF(LISTS) && json_is_number(dt); k++)
         if (json_is_array(json_object_get(node, LISTS[k])))
-            TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
+            TRY(add_channel(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
     json_object_foreach((json_t *)node, key, value) TRY(search(place, value, depth + 1, err));
     return STATUS_OK;
 }
 
+/* Parses the file, without what old programs put behind it. */
 static Status read(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     json_error_t why;

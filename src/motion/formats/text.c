@@ -176,24 +176,21 @@ int quantity_behind(const char *from, const char *to, const char *word, int is_r
     return 1;
 }
 
-static Status parted_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
-{
-    *n = 0;
-    for (const char *p = l->from; p < l->to && *n < max; ++*n) {
-        const Cell c = cell_next(&p, l->to, " ,;");
-        const long length = c.to - c.from;
-        if (width && length > width && !memchr(c.from, '.', length))
-            return fail_at(err, l, "'%.*s' is wider than %d characters", (int)MIN_OF(length, 40), c.from, width);
-        TRY(line_number(l, c, 0, &x[*n], err));
-    }
-    return STATUS_OK;
-}
-
 Status line_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
 {
-    const Status parted = parted_numbers(l, width, max, x, n, err);
+    Status parted = STATUS_OK;
+    *n = 0;
+    for (const char *p = l->from; p < l->to && *n < max && parted == STATUS_OK; ++*n) {
+        const Cell c = cell_next(&p, l->to, " ,;");
+        const long length = c.to - c.from;
+        parted = width && length > width && !memchr(c.from, '.', length)
+                     ? fail_at(err, l, "'%.*s' is wider than %d characters", (int)MIN_OF(length, 40), c.from, width)
+                     : line_number(l, c, 0, &x[*n], err);
+    }
     if (parted == STATUS_OK || width <= 0)
         return parted;
+
+    /* Else they run together, in columns of that width. */
     *n = 0;
     for (const char *p = l->raw; p < l->to && *n < max; p += width, ++*n) {
         const char *from = p, *to = l->to - p < width ? l->to : p + width;
@@ -225,11 +222,19 @@ int format_width(const Lines *l)
 
 /* ---- units ---------------------------------------------------------------------------------------------------- */
 
-/* In small letters, _ as /, sec and seg as s, without blanks, ^, * and the square sign's two bytes: cm/sec**2 is
- * cm/s2. */
-static void tidy_unit(const char *from, const char *to, char tidy[16])
+MotionUnit unit_of(const char *from, const char *to)
 {
+    static const struct {
+        const char *word;
+        MotionUnit unit;
+    } UNITS[] = {{"m/s2", UNIT_M_S2},   {"m/s/s", UNIT_M_S2},   {"m/ss", UNIT_M_S2},   {"ms-2", UNIT_M_S2},
+                 {"cm/s2", UNIT_CM_S2}, {"cm/s/s", UNIT_CM_S2}, {"cm/ss", UNIT_CM_S2}, {"cms-2", UNIT_CM_S2},
+                 {"gal", UNIT_CM_S2},   {"gals", UNIT_CM_S2},   {"g", UNIT_G}};
+    char tidy[16];
     size_t n = 0;
+
+    /* In small letters, _ as /, sec and seg as s, without blanks, ^, * and the square sign's two bytes: cm/sec**2 is
+     * cm/s2. */
     for (const char *p = from; p < to && n < 15; p++) {
         const char c = *p == '_' ? '/' : (char)tolower((unsigned char)*p);
         const int is_second = n && tidy[n - 1] == 's' && to - p >= 2 && c == 'e' && strchr("cCgG", p[1]);
@@ -239,19 +244,10 @@ static void tidy_unit(const char *from, const char *to, char tidy[16])
             tidy[n++] = c == '\xb2' ? '2' : c;
     }
     tidy[n] = 0;
-}
-
-MotionUnit unit_of(const char *from, const char *to)
-{
-    static const char *const PER_SECOND[] = {"m/s2", "m/s/s", "m/ss", "ms-2"};
-    char text[16];
-    tidy_unit(from, to, text);
-    for (size_t i = 0; i < N_OF(PER_SECOND); i++)
-        if (strcmp(text + (text[0] == 'c'), PER_SECOND[i]) == 0)
-            return text[0] == 'c' ? UNIT_CM_S2 : UNIT_M_S2;
-    if (strcmp(text, "gal") == 0 || strcmp(text, "gals") == 0)
-        return UNIT_CM_S2;
-    return strcmp(text, "g") == 0 ? UNIT_G : UNIT_FROM_FILE;
+    for (size_t i = 0; i < N_OF(UNITS); i++)
+        if (strcmp(tidy, UNITS[i].word) == 0)
+            return UNITS[i].unit;
+    return UNIT_FROM_FILE;
 }
 
 int is_quantity(const char *from, const char *to)
