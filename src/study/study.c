@@ -309,7 +309,7 @@ static Status resume(Study *study, Err *err)
         n_failed += later->row[i].outcome != OUTCOME_OK;
     sum_up(sum, run, later->n, n_failed);
     study->evaluations_before = sum->n_before;
-    if (run_is_screened(run)) { /* designs are shares of an evaluation */
+    if (settings_screens(run->settings)) { /* designs are shares of an evaluation */
         Run all;
         TRY(store_read(study->store, &all, err));
         study->evaluations_before = run_evaluations(&all, 0);
