@@ -13,6 +13,7 @@ the call returns (milliseconds; choosing designs takes some 10 ms to seconds).
     F, X = search.front()
 """
 import concurrent.futures
+import configparser
 import ctypes
 import ctypes.util
 import difflib
@@ -548,19 +549,14 @@ class Run(_Copied):
             accuracy = self.settings["sim.accuracy"]
             if level and accuracy != "fine":  # times that the steps are doubled, which go with the error^(-2/3)
                 accuracy = (_ERRORS.get(accuracy) or float(accuracy)) * 2 ** (-1.5 * level)
-            self._scenes[level] = Scene(None, [f"{k}={v}" for k, v in {**self.settings, "sim.accuracy": accuracy}.items()])
+            self._scenes[level] = Scene(None, **{**self.settings, "sim.accuracy": accuracy})
         return self._scenes[level].simulate(np.array([row[n] for n in self.variables]))
 
 
 def _read_settings(text):
-    found, section = {}, ""
-    for line in text.splitlines():
-        if line.startswith("["):
-            section = line[1:line.index("]")]
-        elif "=" in line and not line.startswith(";"):
-            key, value = line.split("=", 1)
-            found[f"{section}.{key.strip()}"] = value.strip()
-    return found
+    parser = configparser.RawConfigParser(delimiters="=", comment_prefixes=";")
+    parser.read_string(text)
+    return {f"{section}.{key}": value for section in parser.sections() for key, value in parser[section].items()}
 
 
 def open_run(path):

@@ -86,7 +86,7 @@ TEST(the_page_writes_the_same_figures)
     const int fd = mkstemp(path);
     FILE *f = fdopen(fd, "w");
     assert_non_null(f);
-    fputs("const ALL = [", f);
+    fputs("const finite = Number.isFinite, ALL = [", f);
     for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
         for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++)
             if (isnan(SHARES[k]))

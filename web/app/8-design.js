@@ -209,8 +209,8 @@ function ladderPart(host, d) {
   host.append(
     note("Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ", keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", "), " %, which is 2 % or the scatter as built. imtet check --ladder repeats it with the steps, and says what each costs.",
       l.with_all.hardening > 0 ? ` With all, storeys that yield keep ${show(100 * l.with_all.hardening)} % of their stiffness, which P-delta may raise.` : ""),
-    table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "in this run"],
-      l.effects.map((e) => line([e.without, ...changes(e), e.verdict === "needed" && e.most_in !== "with_core" ? `needed: ${SCENES[e.most_in].words}` : e.verdict, e.is_set], { class: e.verdict === "needed" && "knee" }))),
+    table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "most in", "in this run"],
+      l.effects.map((e) => line([e.without, ...changes(e), e.verdict, SCENES[e.most_in].words, e.is_set], { class: e.verdict === "needed" && "knee" }))),
     element("p", `These settings are enough (J1 ${changes(l.enough)[0]}, drift ratio ${changes(l.enough)[1]}, J3 ${changes(l.enough)[2]} % off the model with all):`),
     element("pre", { tabindex: "0" }, Object.entries(l.settings).map(([key, value]) => `${key} = ${value}`).join("\n")),
     table("enough", ["with these settings", ...keys.map(([, title, unit]) => `${title} [${unit}]`)], ["with_core", "rigid", "no_core"].map(scene)));

@@ -112,8 +112,8 @@ void channel_unit(Channel *c, const char *from, const char *to);
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
 
 /* `count` samples into the last channel, at equal steps of its dt, or, digitized, pairs of time and acceleration, from
- * the line after l's; width: of columns of numbers that run together, 0: none. A line of words ends them early; a further
- * number is an error, behind `lines_behind` lines that are skipped. */
+ * the line after l's; width: of columns of numbers that run together, 0: none. A line of words ends them early; a
+ * further number is an error, behind `lines_behind` lines that are skipped. */
 Status record_block(Record *r, Lines *l, double count, int width, size_t lines_behind, Err *err);
 
 int line_has_letters(const Lines *l); /* beside those of exponents */
