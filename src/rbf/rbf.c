@@ -32,7 +32,7 @@ static void layout(void *interpolant, Carve *c)
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
         CARVE(c, w->C, 3 * spread);
         CARVE(c, w->S, with_squares);
-        CARVE(c, w->Z, spread);
+        CARVE(c, w->Z, with_squares);
         CARVE(c, w->by_a, n);
         CARVE(c, w->by_b, n);
         CARVE(c, w->A, n * n);

@@ -50,42 +50,41 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
     return l;
 }
 
-/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
- * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
+/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal;
+ * returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
 static double weigh_pairs(Worker *k, size_t n, double s2)
 {
     double trace = 0.0;
-    memset(k->q, 0, n * sizeof *k->q);
     for (size_t j = 0; j < n; j++) {
         double *v = k->A + j * n;
         trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
         kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
         v[j] = 0.0;
-        for (size_t i = j + 1; i < n; i++) {
-            k->q[j] += v[i];
-            k->q[i] += v[i];
-        }
     }
     return trace;
 }
 
-/* Subtracts from the gradient, with v symmetric and s the warped and scaled centres,
+/* Subtracts from the gradient, with v symmetric, q its row sums and s the warped and scaled centres,
  *     1/2 sum_ij v_ij d (s_i - s_j)^2 / dp = 2 sum_i (q_i s_i - z_i) ds_i/dp,    z = v s
- * variable by variable: ds/d log theta = s / 2. */
+ * variable by variable: ds/d log theta = s / 2. q is what v makes of a last column of ones. */
 static void pull_back(const Rbf *m, Worker *k, size_t n, const Shape *shape, double gradient[])
 {
     const size_t stride = m->stride, plane = m->n_dim * stride;
-    cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, (int)n, (int)m->n_dim, 1.0, k->A, (int)n, k->S, (int)stride, 0.0,
+    const int ni = (int)n;
+    const double *q = k->Z + plane;
+    for (size_t i = 0; i < n; i++)
+        k->S[plane + i] = 1.0;
+    cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, ni, (int)m->n_dim + 1, 1.0, k->A, ni, k->S, (int)stride, 0.0,
                 k->Z, (int)stride);
     for (size_t d = 0; d < m->n_dim; d++) {
-        const double *s = k->S + d * stride, *z = k->Z + d * stride, *log_u = k->C + plane + d * stride;
+        const double *s = k->S + d * stride, *log_u = k->C + plane + d * stride;
+        double *pull = k->Z + d * stride;
         kernel_warp_slopes(n, log_u, log_u + plane, shape->theta[d], shape->warp, k->by_a, k->by_b);
-        for (size_t i = 0; i < n; i++) {
-            const double pull = 2.0 * (k->q[i] * s[i] - z[i]);
-            gradient[d] -= 0.5 * pull * s[i];
-            gradient[m->n_dim] -= pull * k->by_a[i];
-            gradient[m->n_dim + 1] -= pull * k->by_b[i];
-        }
+        for (size_t i = 0; i < n; i++)
+            pull[i] = 2.0 * (q[i] * s[i] - pull[i]);
+        gradient[d] -= 0.5 * cblas_ddot(ni, pull, 1, s, 1);
+        gradient[m->n_dim] -= cblas_ddot(ni, pull, 1, k->by_a, 1);
+        gradient[m->n_dim + 1] -= cblas_ddot(ni, pull, 1, k->by_b, 1);
     }
 }
 
