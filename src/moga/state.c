@@ -20,9 +20,7 @@ static void layout(void *search, Carve *c)
     Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
     CARVE(c, b->X, b->size_max * n_var);
-    CARVE(c, b->kind, b->size_max);
-    CARVE(c, b->criterion, b->size_max);
-    CARVE(c, b->repeat, b->size_max);
+    CARVE(c, b->q, b->size_max);
     CARVE(c, o->allowed, n_members);
     CARVE(c, o->survivors, n_pool);
     CARVE(c, o->bound, n_members * p->n_obj);
