@@ -175,9 +175,7 @@ static void add_descended(Offspring *o, const Breeding *w)
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
     deal_vectors(o, c, n_vectors, n);
-    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_HYPERVOLUME], first, vector, X);
-    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_PBI], n - first, vector + first,
-                      X + first * p->n_var);
+    surrogate_descend(w->surrogate, &c->archive, w->criteria->select, first, n, vector, X);
     for (size_t i = 0; i < n; i++) {
         problem_repair(p, X + i * p->n_var);
         population_add(&o->members, X + i * p->n_var);

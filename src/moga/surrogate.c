@@ -401,7 +401,7 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
 }
 
 /* n <= RBF_BLOCK descents side by side, starting at U; the best point of each goes there. */
-static void descend(const Surrogate *s, const Infill *near, size_t n, const size_t vectors[], double *store)
+static void descend(const Surrogate *s, size_t n, const Infill *const near[], const size_t vectors[], double *store)
 {
     const size_t n_dim = s->n_dim, own = 4 * n_dim + s->problem->n_obj;
     double *U = store, *F = U + RBF_BLOCK * n_dim, *J = F + RBF_BLOCK * s->n_out,
@@ -420,26 +420,29 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
         if (s->knows_failures)
             rbf_slope(s->success, n, U, success, J_success);
         for (size_t p = 0; p < n; p++)
-            descent_step(s, near, vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
+            descent_step(s, near[p], vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
                          s->knows_failures ? success[p] : 1.0, J_success + p * n_dim);
     }
     for (size_t p = 0; p < n; p++)
         memcpy(U + p * n_dim, w[p].best, n_dim * sizeof *U);
 }
 
-void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[], double X[])
+void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], size_t n_first, size_t n,
+                       const size_t vectors[], double X[])
 {
     const Problem *p = s->problem;
     const size_t length = descent_length(s);
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = MIN_OF(n - i, RBF_BLOCK);
+        const Infill *near[RBF_BLOCK];
         double *U = s->descent + i * length, *x = X + i * p->n_var;
         for (size_t j = 0; j < count; j++) {
-            memcpy(x + j * p->n_var, a->X + infill_best(near, vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
+            near[j] = select[i + j < n_first ? INFILL_HYPERVOLUME : INFILL_PBI];
+            memcpy(x + j * p->n_var, a->X + infill_best(near[j], vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
             surrogate_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
         }
-        descend(s, near, count, vectors + i, U);
+        descend(s, count, near, vectors + i, U);
         for (size_t j = 0; j < count; j++)
             move_to(p, U + j * s->n_dim, x + j * p->n_var);
     }
