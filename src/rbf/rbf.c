@@ -23,6 +23,7 @@ static void layout(void *interpolant, Carve *c)
     for (size_t k = 0; k < m->n_out; k++) {
         Output counted, *o = c->base ? &m->output[k] : &counted;
         CARVE(c, o->shape.theta, d);
+        CARVE(c, o->step, d + 3);
         CARVE(c, o->S, with_squares);
         CARVE(c, o->tail, t);
         CARVE(c, o->weight, n);
@@ -49,6 +50,7 @@ static void layout(void *interpolant, Carve *c)
         CARVE(c, w->gradient, d + 3);
         CARVE(c, w->last_gradient, d + 3);
         CARVE(c, w->step, d + 3);
+        CARVE(c, w->best_step, d + 3);
         CARVE(c, w->theta, d);
         CARVE(c, w->shape.theta, d);
         CARVE(c, w->best_shape.theta, d);
@@ -75,6 +77,8 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
         for (size_t d = 0; d < n_dim; d++)
             m->output[k].shape.theta[d] = 1.0 / (double)n_dim;
         m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
+        for (size_t i = 0; i < n_dim + 3; i++)
+            m->output[k].step[i] = TUNE_STEP;
     }
     return STATUS_OK;
 }
@@ -505,6 +509,7 @@ void rbf_pack(Rbf *m, Pack *p)
         pack_numbers(p, &form.nugget, 1, 0.0, DBL_MAX);
         pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
+        pack_numbers(p, o->step, m->n_dim + 3, DBL_MIN, DBL_MAX);
         p->faulty = p->faulty || !form_is_known(form);
         if (!p->faulty)
             o->form = form;

@@ -121,7 +121,7 @@ static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, co
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
  * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns
  * whether the last point was the best one: then its factor and weights are at hand. */
-static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
+static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *form, Shape *shape, int steps)
 {
     const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
     double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY, s2;
@@ -130,7 +130,7 @@ static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape,
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
-        k->step[i] = TUNE_STEP;
+        k->step[i] = fmin(fmax(2.0 * o->step[i], TUNE_STEP_MIN), TUNE_STEP);
         last[i] = 0.0;
     }
     for (int step = 1; step <= steps; step++) {
@@ -180,39 +180,53 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
     return n;
 }
 
-/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. An
- * additive part must be worth it where there is none yet, and is not tried where the others leave nothing. */
-static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
+/* Climbs with one form from these scales; the better of this and the best so far stays in the worker. An additive part
+ * must be worth it where there is none yet, and is not tried where the others leave nothing. */
+static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, const Shape *from, int steps)
 {
     const int is_new = form.kernel >= RBF_ADDITIVE && o->form.kernel < RBF_ADDITIVE;
     if (is_new && k->min_error < ADDITIVE_ERROR)
         return;
-    model_copy_shape(m, &k->shape, &o->shape);
-    const int is_at_hand = climb(m, k, n, &form, &k->shape, steps);
+    model_copy_shape(m, &k->shape, from);
+    const int is_at_hand = climb(m, k, n, o, &form, &k->shape, steps);
     const double e = trial_error(m, k, n, &form, &k->shape, is_at_hand);
     if (e < k->min_error * (is_new ? ADDITIVE_GAIN : 1.0)) {
         k->min_error = e;
         k->best_form = form;
         model_copy_shape(m, &k->best_shape, &k->shape);
+        memcpy(k->best_step, k->step, n_parameters(m) * sizeof *k->step);
     }
 }
 
-/* The first time every form is tried; later the present one and, in turn, one challenger. */
+/* The first time every form is tried; later the present one and, in turn, a challenger, which is tuned where it is
+ * nearly as good with the scales of the present one. */
+static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
+{
+    const size_t n_forms = RBF_N_KERNELS * RBF_N_TAILS;
+    const double nugget = fmax(o->form.nugget, NUGGET_START);
+    const int is_first = m->n_tuned == 0;
+    if (!is_first)
+        try_form(m, k, n, o, (RbfForm){o->form.kernel, o->form.tail, nugget}, &o->shape, TUNE_STEPS);
+    for (size_t i = 0; i < n_forms; i++) {
+        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS), nugget};
+        RbfForm trial = form;
+        if (is_first)
+            try_form(m, k, n, o, form, &o->shape, TUNE_STEPS_FIRST);
+        else if (i == m->n_tuned % n_forms && (form.kernel != o->form.kernel || form.tail != o->form.tail) &&
+                 trial_error(m, k, n, &trial, &k->best_shape, 0) < CHALLENGE_MAX * k->min_error)
+            try_form(m, k, n, o, form, &k->best_shape, TUNE_STEPS);
+    }
+}
+
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
-    const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
-    const size_t challenger = m->n_tuned % n_forms;
-    const int is_first = m->n_tuned == 0, steps = is_first ? TUNE_STEPS_FIRST : TUNE_STEPS;
+    const size_t n = choose_tuning_set(m, k, o, f, noise);
     k->min_error = INFINITY;
-    for (size_t i = 0; i < n_forms; i++) {
-        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
-                              fmax(o->form.nugget, NUGGET_START)};
-        if (is_first || i == challenger || (form.kernel == o->form.kernel && form.tail == o->form.tail))
-            try_form(m, k, n, o, form, steps);
-    }
+    try_forms(m, k, n, o);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
+        memcpy(o->step, k->best_step, n_parameters(m) * sizeof *o->step);
     }
 }
 
