@@ -114,13 +114,11 @@ int search_state_is_current(const void *state, size_t n_state)
 /* Where it stands; why it stops is decided anew behind a step. */
 static void pack_moment(Search *s, Pack *p)
 {
-    size_t phase = s->phase, behind_step = s->shows_results, reason = behind_step ? STOP_NONE : s->reason;
-    pack_size(p, &phase, PHASE_OVER);
+    size_t behind_step = s->is_behind_step, reason = behind_step ? STOP_NONE : s->reason;
     pack_size(p, &behind_step, 1);
     pack_size(p, &reason, STOP_FAILURES);
     pack_size(p, &s->allowed, UINT32_MAX);
-    s->phase = (Phase)phase;
-    s->shows_results = behind_step != 0;
+    s->is_behind_step = behind_step != 0;
     s->reason = p->reading ? (StopReason)reason : s->reason;
 }
 
