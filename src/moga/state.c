@@ -55,6 +55,10 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
     return selection_create(&s->selection, n_pool, &s->directions, s->common.problem->aspire, err);
 }
 
+/* Rows of the archive that there is room for from the beginning, where so many are to come: what is not used yet is no
+ * memory of the system's, and growing would need room for what was there as well. */
+enum { ROWS_AT_ONCE = 1 << 20 };
+
 Status state_create(Search *s, Err *err)
 {
     const Problem *p = s->common.problem;
@@ -65,12 +69,13 @@ Status state_create(Search *s, Err *err)
     const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
-    const size_t centres = MIN_OF(c->surrogate_max, evals);
+    const size_t centres = MIN_OF(c->surrogate_max, evals), known = MIN_OF(evals, ROWS_AT_ONCE);
     s->batch.size_max = MAX_OF(initial, population);
     s->offspring.pending_max = pending;
     TRY(create_selection(s, n_pool, err));
     TRY(create_criteria(s, n_members, err));
-    TRY(pareto_archive_init(&s->common.archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(pareto_archive_init(&s->common.archive, p->is_noisy ? 2 * initial : MAX_OF(known, 2 * initial), p->n_var,
+                            p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_members, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_members, p->n_var, p->n_obj, err));
