@@ -73,7 +73,7 @@ static Status enter_first(Search *s, CreditResults *results, Err *err)
     const Place *place = pending_at(&c->pending, 0);
     const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
     credit(s, place, f, results);
-    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->ok, place->parts}, err));
+    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->parts}, err));
     TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok,
                               (unsigned char)place->q.kind, place->q.generation, err));
     pending_enter(&c->pending);

@@ -12,7 +12,6 @@
 typedef struct {
     const double *x, *f, *g;
     EvaluationKind kind;
-    unsigned char ok;
     const void *parts; /* of the cheap level; NULL: not known */
 } Answer;
 

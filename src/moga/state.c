@@ -164,7 +164,7 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
-    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, ok, NULL}, err));
+    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, NULL}, err));
     if (r->start->on_front && !p->is_noisy)
         return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, e->generation, r->start->on_front[i],
                                       err);

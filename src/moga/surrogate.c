@@ -326,13 +326,12 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
 {
     const size_t n_dim = s->n_dim, n = s->fitted ? gather(s, population, first) : 0;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
-        rbf_eval(s->rbf, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->f + i * s->n_out,
-                 with_uncertainty ? s->e + i * s->n_out : NULL);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
+    for (size_t i = 0; i < n; i += RBF_BLOCK) {
+        const size_t count = MIN_OF(n - i, RBF_BLOCK);
+        rbf_eval(s->rbf, count, s->u + i * n_dim, s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
         if (s->knows_failures)
-            rbf_eval(s->success, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->chance + i, NULL);
+            rbf_eval(s->success, count, s->u + i * n_dim, s->chance + i, NULL);
+    }
     for (size_t i = 0; i < n; i++)
         fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
                     s->knows_failures ? s->chance[i] : 1.0);
