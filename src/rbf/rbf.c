@@ -187,12 +187,12 @@ size_t model_weights(const Rbf *m, Worker *k, size_t n, const double C[], size_t
  *     inv([A 0; B C]) = [inv(A) 0; -inv(C) B inv(A)  inv(C)] */
 void model_invert(int n, double L[], int ld)
 {
-    enum { WHOLE_MAX = 48 }; /* as fast as by halves */
+    enum { WHOLE_MAX = 16 }; /* as fast as by halves */
     if (n <= WHOLE_MAX) {
         LAPACKE_dtrtri_work(LAPACK_COL_MAJOR, 'L', 'N', n, L, ld);
         return;
     }
-    const int a = n / 2, c = n - a;
+    const int a = (n / 2 + 7) / 8 * 8, c = n - a;
     double *B = L + a, *C = L + a + a * (size_t)ld;
     model_invert(a, L, ld);
     model_invert(c, C, ld);
