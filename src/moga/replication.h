@@ -5,5 +5,5 @@
 
 #include "moga/batch.h"
 
-/* Replicates of designs that the search builds on, beside what is in the batch. The criteria have measured the front. */
+/* Replicates of designs that the search builds on, beside the batch. The criteria have measured the front. */
 void replication_add(const Common *c, const Criteria *q, Batch *b);

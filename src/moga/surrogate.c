@@ -385,7 +385,7 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
         for (size_t k = 0; k < s->problem->n_obj; k++)
             w->g[d] += w->slope[k] * J[k * n_dim + d];
     }
-    const double violation = penalise(s, w, f, J, success, J_success);
+    const double violation = penalise(s, w, f, J, success, J_success), longest = 10.0 * DESCENT_STEP_FIRST;
     if (violation < w->violation || (violation == w->violation && value < w->min)) {
         w->violation = violation;
         w->min = value;
@@ -395,7 +395,7 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
         if (s->is_held[d])
             continue;
         const double move = rprop_move(w->g[d], &w->g_last[d], &w->step[d]);
-        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -DESCENT_STEP_MAX), DESCENT_STEP_MAX), 0.0), 1.0);
+        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -longest), longest), 0.0), 1.0);
     }
 }
 

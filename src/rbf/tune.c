@@ -130,7 +130,7 @@ static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *fo
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
-        k->step[i] = fmin(fmax(2.0 * o->step[i], TUNE_STEP_MIN), TUNE_STEP);
+        k->step[i] = fmin(fmax(2.0 * o->step[i], 0.1 * TUNE_STEP), TUNE_STEP);
         last[i] = 0.0;
     }
     for (int step = 1; step <= steps; step++) {
