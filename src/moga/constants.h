@@ -32,7 +32,7 @@ static const double PROBE_SHARE = 0.3; /* of a batch, for probes, times the shar
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 
-enum { DESCENT_STEPS = 25 };                   /* steps of a descent */
+enum { DESCENT_STEPS = 20 };                   /* steps of a descent */
 static const double DESCENT_STEP_FIRST = 0.02; /* first step in each variable; the longest is ten times as long */
 static const double SUCCESS_POWER = 2.0;       /* of the predicted success in the weight of a gain */
 static const double SUCCESS_MIN = 0.5;         /* predicted success below which a failure is predicted */
