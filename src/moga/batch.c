@@ -12,30 +12,30 @@ size_t batch_size(const Common *c)
     return c->config->ahead < 0 ? size : MIN_OF(size, (size_t)c->config->ahead + 1);
 }
 
-static int is_there(const Batch *b, size_t n_var, size_t n, const double x[])
+static int is_there(const Batch *b, size_t n_var, const double x[])
 {
-    for (size_t i = 0; i < n; i++)
-        if (memcmp(b->X + i * n_var, x, n_var * sizeof *x) == 0)
+    for (size_t i = 0; i < b->n; i++)
+        if (memcmp(b->q[i].x, x, n_var * sizeof *x) == 0)
             return 1;
     return 0;
 }
 
-size_t batch_add(Batch *b, const Common *c, size_t n, const double x[], EvaluationKind kind)
+static void append(Batch *b, size_t n_var, const double x[], Question q)
 {
-    const size_t n_var = c->problem->n_var;
-    if (n >= b->size_max || n >= b->room || is_there(b, n_var, n, x) ||
-        pareto_archive_find(&c->archive, x) < c->archive.n || pending_has(&c->pending, x))
-        return n;
-    memcpy(b->X + n * n_var, x, n_var * sizeof *x);
-    b->repeat[n] = 0;
-    b->kind[n] = kind;
-    b->criterion[n] = INFILL_KINDS;
-    return n + 1;
+    q.x = memcpy(b->X + b->n * n_var, x, n_var * sizeof *x);
+    b->q[b->n++] = q;
 }
 
-size_t batch_repeat(Batch *b, const Archive *a, size_t n, size_t row, size_t replicates)
+void batch_add(Batch *b, const Common *c, const double x[], EvaluationKind kind, InfillKind criterion)
 {
-    memcpy(b->X + n * a->n_var, a->X + row * a->n_var, a->n_var * sizeof *a->X);
-    b->repeat[n] = replicates;
-    return n + 1;
+    const size_t n_var = c->problem->n_var;
+    if (b->n < b->size_max && b->n < b->room && !is_there(b, n_var, x) &&
+        pareto_archive_find(&c->archive, x) == c->archive.n && !pending_has(&c->pending, x))
+        append(b, n_var, x, (Question){.kind = kind, .criterion = (unsigned char)criterion});
+}
+
+void batch_repeat(Batch *b, const Archive *a, size_t row, EvaluationKind kind, size_t replicates)
+{
+    append(b, a->n_var, a->X + row * a->n_var,
+           (Question){.kind = kind, .criterion = INFILL_KINDS, .repeat = replicates});
 }

@@ -32,9 +32,8 @@ static const double PROBE_SHARE = 0.3; /* of a batch, for probes, times the shar
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 
-enum { DESCENT_STEPS = 30 };                   /* steps of a descent */
-static const double DESCENT_STEP_FIRST = 0.05; /* first step in each variable */
-static const double DESCENT_STEP_MAX = 0.2;    /* longest step */
+enum { DESCENT_STEPS = 20 };                   /* steps of a descent */
+static const double DESCENT_STEP_FIRST = 0.02; /* first step in each variable; the longest is ten times as long */
 static const double SUCCESS_POWER = 2.0;       /* of the predicted success in the weight of a gain */
 static const double SUCCESS_MIN = 0.5;         /* predicted success below which a failure is predicted */
 static const double PENALTY = 10.0;            /* weight of violated limits, in their ranges, and of failures */

@@ -142,7 +142,7 @@ Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err)
     return fail_memory(err, n, "directions");
 }
 
-void directions_unit(const Directions *d, double unit[])
+void directions_across(const Directions *d, double across[])
 {
     for (size_t r = 0; r < d->n; r++) {
         const double *w = d->W + r * d->n_obj;
@@ -150,7 +150,7 @@ void directions_unit(const Directions *d, double unit[])
         for (size_t k = 0; k < d->n_obj; k++)
             square += w[k] * w[k];
         for (size_t k = 0; k < d->n_obj; k++)
-            unit[r * d->n_obj + k] = w[k] / sqrt(square);
+            across[k * d->n + r] = w[k] / sqrt(square);
     }
 }
 

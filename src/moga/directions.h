@@ -24,5 +24,5 @@ Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner
 /* n >= n_obj directions as far from each other as can be on the sphere, the axes among them: as dense in the middle as
  * on the border, for any n. Outer and inner are 0. */
 Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err);
-void directions_unit(const Directions *d, double unit[]); /* (n, n_obj) the same at length 1 */
+void directions_across(const Directions *d, double across[]); /* (n_obj, n) the same at length 1 */
 void directions_free(Directions *d);

@@ -39,18 +39,13 @@ static size_t allowed_now(const Search *s)
     return waits_for_all ? 0 : MIN_OF(ahead, most);
 }
 
-/* A group of n questions; designs from n_new on are in the archive already. */
-static Status ask(Search *s, size_t n_new, size_t n, Err *err)
+/* The batch is asked for. */
+static Status ask(Search *s, Err *err)
 {
     Common *c = &s->common;
-    const Batch *b = &s->batch;
-    const EvaluationKind again = s->screening.cost.whole > 1 ? KIND_FINISHED : KIND_REPEAT;
-    for (size_t i = 0; i < n; i++) {
-        Question q = {.x = b->X + i * c->problem->n_var,
-                      .repeat = b->repeat[i],
-                      .kind = i < n_new ? (EvaluationKind)b->kind[i] : again,
-                      .generation = c->generation,
-                      .criterion = i < n_new ? b->criterion[i] : INFILL_KINDS};
+    for (size_t i = 0; i < s->batch.n; i++) {
+        Question q = s->batch.q[i];
+        q.generation = c->generation;
         if (s->screening.is_on && q.kind != KIND_FINISHED) {
             q.n_parts = c->problem->n_cheap;
             q.kind = KIND_SCREENED;
@@ -78,7 +73,7 @@ static Status enter_first(Search *s, CreditResults *results, Err *err)
     const Place *place = pending_at(&c->pending, 0);
     const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
     credit(s, place, f, results);
-    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->ok, place->parts}, err));
+    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->parts}, err));
     TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok,
                               (unsigned char)place->q.kind, place->q.generation, err));
     pending_enter(&c->pending);
@@ -138,50 +133,40 @@ static void renew_population(Search *s, size_t first_new)
 
 /* -- step 1: initial sample ---------------------------------------------------------------------------------------- */
 
-static size_t add_samples(Search *s, size_t n, size_t n_samples)
+static void add_samples(Search *s, size_t n)
 {
     const Problem *p = s->common.problem;
     double *X = s->scratch.samples;
-    latin_hypercube(s->common.config->seed, (uint32_t)s->common.generation, n_samples, p->n_var, X, s->scratch.slices);
-    for (size_t i = 0; i < n_samples; i++) {
+    latin_hypercube(s->common.config->seed, (uint32_t)s->common.generation, n, p->n_var, X, s->scratch.slices);
+    for (size_t i = 0; i < n; i++) {
         double *x = X + i * p->n_var;
         for (size_t d = 0; d < p->n_var; d++)
             x[d] = problem_spread(p, d, x[d]);
         problem_repair(p, x);
-        n = batch_add(&s->batch, &s->common, n, x, KIND_SAMPLED);
+        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
     }
-    return n;
 }
 
-static size_t add_given(Search *s)
+static void add_given(Search *s)
 {
     const Problem *p = s->common.problem;
     double *x = s->scratch.given;
-    size_t n = 0;
     for (size_t i = 0; i < s->common.config->n_given; i++) {
         for (size_t d = 0; d < p->n_var; d++)
             x[d] = fmin(fmax(s->common.config->given[i * p->n_var + d], p->lower[d]), p->upper[d]);
         problem_repair(p, x);
-        n = batch_add(&s->batch, &s->common, n, x, KIND_SAMPLED);
+        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
     }
-    return n;
 }
 
-static Status ask_first(Search *s, Err *err)
+/* No parents (every evaluation failed so far) or no new design: where nothing is under way, another Latin hypercube. */
+static void sample_again(Search *s)
 {
-    s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
-    const size_t n = add_samples(s, add_given(s), generation_samples(s));
-    return ask(s, n, n, err);
-}
-
-/* No parents (every evaluation failed so far) or no new design: another Latin hypercube. */
-static Status sample_again(Search *s, Err *err)
-{
-    s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
-    const size_t n = add_samples(s, 0, s->common.config->population);
-    s->n_vain = n > 0 ? 0 : s->n_vain + 1;
+    if (s->common.pending.n > 0)
+        return;
+    add_samples(s, s->common.config->population);
+    s->n_vain = s->batch.n > 0 ? 0 : s->n_vain + 1;
     surrogate_drop(s->surrogate); /* a resumed search has none here either */
-    return ask(s, n, n, err);
 }
 
 /* -- step 2: surrogate --------------------------------------------------------------------------------------------- */
@@ -217,49 +202,50 @@ static Status fit_surrogate(Search *s, Err *err)
 /* -- a generation: the steps of search.h --------------------------------------------------------------------------- */
 
 /* Steps 3 and 4: a batch of offspring; where the surrogate proposes no new design, of children of variation. */
-static size_t choose_batch(Search *s)
+static void choose_batch(Search *s)
 {
     Breeding w = breeding(s);
     offspring_make(&s->offspring, &w);
-    const size_t n = offspring_select(&s->offspring, &w, &s->batch);
-    if (n > 0 || !w.with_surrogate)
-        return n;
+    offspring_select(&s->offspring, &w, &s->batch);
+    if (s->batch.n > 0 || !w.with_surrogate)
+        return;
     w.with_surrogate = 0;
     offspring_make(&s->offspring, &w);
-    return offspring_select(&s->offspring, &w, &s->batch);
+    offspring_select(&s->offspring, &w, &s->batch);
 }
 
 /* Where no evaluation is left, designs that were screened may still be finished. */
-static Status ask_next(Search *s, Err *err)
+static Status choose(Search *s, Err *err)
 {
     Common *c = &s->common;
-    size_t n_new = 0, n = 0;
+    Batch *b = &s->batch;
     measure_front(s);
-    TRY(screening_last(&s->screening, c, &s->batch, &n, err));
-    s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
-    if (n > 0 || s->batch.room == 0) {
+    TRY(screening_last(&s->screening, c, b, err));
+    if (b->n > 0 || b->room == 0) {
         surrogate_drop(s->surrogate);
-    } else {
-        TRY(fit_surrogate(s, err));  /* 2 */
-        n = n_new = choose_batch(s); /* 3, 4 */
-        if (n == 0 && c->pending.n == 0)
-            return sample_again(s, err);
-        n = replication_add(c, &s->criteria, &s->batch, n);
-        TRY(screening_finish(&s->screening, c, &s->batch, &n, err));
+        return STATUS_OK;
     }
-    return ask(s, n_new, n, err); /* 5 */
+    TRY(fit_surrogate(s, err)); /* 2 */
+    choose_batch(s);            /* 3, 4 */
+    if (b->n == 0)
+        sample_again(s);
+    replication_add(c, &s->criteria, b);
+    return screening_finish(&s->screening, c, b, err);
 }
 
 Status generation_ask(Search *s, Err *err)
 {
-    const Common *c = &s->common;
-    if (s->reason != STOP_NONE)
-        return ask(s, 0, 0, err);
-    if (c->generation == 0)
-        return ask_first(s, err);
-    if (s->population.n < 2)
-        return c->pending.n > 0 ? ask(s, 0, 0, err) : sample_again(s, err);
-    return ask_next(s, err);
+    s->batch.n = 0;
+    s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
+    if (s->reason == STOP_NONE && s->common.generation == 0) {
+        add_given(s);
+        add_samples(s, generation_samples(s));
+    } else if (s->reason == STOP_NONE && s->population.n < 2) {
+        sample_again(s);
+    } else if (s->reason == STOP_NONE) {
+        TRY(choose(s, err));
+    }
+    return ask(s, err); /* 5 */
 }
 
 Status generation_enter(Search *s, Err *err)

@@ -50,13 +50,13 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     Infill *q = *out = carve_object(layout, &plain, sizeof plain);
     if (!q)
         return fail_memory(err, candidates_max, "candidates of infill");
-    directions_unit(vectors, q->unit);
+    directions_across(vectors, q->across);
     for (size_t i = 0; aspire && i < q->n_dir * n_obj; i++)
-        q->unit[i] = exp2(2.0 * (q->unit[i] - 0.5));
+        q->across[i] = exp2(2.0 * (q->across[i] - 0.5));
     for (size_t r = 0; r < q->n_dir; r++)
         for (size_t k = 0; k < q->n_obj; k++) {
-            q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k];
-            q->over[k * q->n_dir + r] = 1.0 / fmax(q->unit[r * q->n_obj + k], LEAST);
+            q->unit[r * q->n_obj + k] = q->across[k * q->n_dir + r];
+            q->over[k * q->n_dir + r] = 1.0 / fmax(q->across[k * q->n_dir + r], LEAST);
         }
     return STATUS_OK;
 }

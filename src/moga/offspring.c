@@ -175,9 +175,7 @@ static void add_descended(Offspring *o, const Breeding *w)
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
     deal_vectors(o, c, n_vectors, n);
-    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_HYPERVOLUME], first, vector, X);
-    surrogate_descend(w->surrogate, &c->archive, w->criteria->select[INFILL_PBI], n - first, vector + first,
-                      X + first * p->n_var);
+    surrogate_descend(w->surrogate, &c->archive, w->criteria->select, first, n, vector, X);
     for (size_t i = 0; i < n; i++) {
         problem_repair(p, X + i * p->n_var);
         population_add(&o->members, X + i * p->n_var);
@@ -249,36 +247,29 @@ static void offer(Offspring *o, const Breeding *w)
 
 /* Of the first `count` members those with the greatest gain beside what is picked already, by both criteria as they
  * share the group, up to `limit` in it. */
-static size_t pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size_t count)
+static void pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size_t count)
 {
     const double part = part_of_hypervolume(w), turn = (double)common_asked(w->common) + 0.5;
-    size_t n = 0;
     memset(o->allowed, 0, o->members.n);
     memset(o->allowed, 1, count);
-    while (n < limit) {
-        const double before = floor(part * (turn + (double)n)), now = floor(part * (turn + (double)n + 1.0));
-        const InfillKind criterion = now > before ? INFILL_HYPERVOLUME : INFILL_PBI;
+    while (b->n < limit) {
+        const double at = turn + (double)b->n;
+        const InfillKind criterion = floor(part * (at + 1.0)) > floor(part * at) ? INFILL_HYPERVOLUME : INFILL_PBI;
         const size_t i = infill_pick(w->criteria->select[criterion], o->allowed);
         if (i == SIZE_MAX)
             break;
         infill_take(w->criteria->select[criterion == INFILL_PBI ? INFILL_HYPERVOLUME : INFILL_PBI], i);
-        const size_t added = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_INFILL);
-        if (added > n)
-            b->criterion[n] = criterion;
-        n = added;
+        batch_add(b, w->common, o->members.X + i * o->members.n_var, KIND_INFILL, criterion);
     }
-    return n;
 }
 
-size_t offspring_select(Offspring *o, const Breeding *w, Batch *b)
+void offspring_select(Offspring *o, const Breeding *w, Batch *b)
 {
     const size_t size = batch_size(w->common), end = o->members.n - o->n_pending, first = end - o->n_unpicked;
-    size_t n = 0;
     if (w->with_surrogate) {
         offer(o, w);
-        n = pick(o, w, b, size > o->n_unpicked ? size - o->n_unpicked : 0, first);
+        pick(o, w, b, size > o->n_unpicked ? size - o->n_unpicked : 0, first);
     }
-    for (size_t i = first; i < end && n < size; i++)
-        n = batch_add(b, w->common, n, o->members.X + i * o->members.n_var, KIND_OFFSPRING);
-    return n;
+    for (size_t i = first; i < end && b->n < size; i++)
+        batch_add(b, w->common, o->members.X + i * o->members.n_var, KIND_OFFSPRING, INFILL_KINDS);
 }

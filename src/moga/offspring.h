@@ -38,8 +38,8 @@ typedef struct {
 
 void offspring_make(Offspring *o, const Breeding *w);
 
-/* Which of them are evaluated: returns how many designs of the batch. */
-size_t offspring_select(Offspring *o, const Breeding *w, Batch *b);
+/* Those that are evaluated go to the batch. */
+void offspring_select(Offspring *o, const Breeding *w, Batch *b);
 
 /* Environmental selection; step: of the random stream. */
 void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step);

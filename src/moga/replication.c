@@ -97,28 +97,22 @@ static size_t pick(const Common *c, const size_t importance[])
 
 /* The front has been measured, as it is now. Extremes with a single replicate go alone: where they prove wrong there
  * are others next time, which are then replicated before anything else. */
-static size_t append(const Common *c, const Criteria *q, Batch *b, size_t n, size_t limit)
+void replication_add(const Common *c, const Criteria *q, Batch *b)
 {
     const Archive *a = &c->archive;
+    const size_t due = replicates_due(c, common_asked(c) + b->n), room = MIN_OF(b->size_max, common_left(c)),
+                 limit = MIN_OF(room, b->n + due);
     size_t *importance = a->scratch.row;
     int extremes_alone = 0;
-    if (a->n_front == 0 || n >= limit)
-        return n;
+    if (a->n_front == 0 || b->n >= limit)
+        return;
     weigh_designs(a, q, importance);
-    for (size_t row; n < limit && (row = pick(c, importance)) < a->n;) {
+    for (size_t row; b->n < limit && (row = pick(c, importance)) < a->n;) {
         const int is_new_extreme = importance[row] >= importance_of_extremes(q) && a->replicates[row] == 1;
         if (extremes_alone && !is_new_extreme)
             break;
         extremes_alone = is_new_extreme;
-        n = batch_repeat(b, a, n, row, a->replicates[row]);
+        batch_repeat(b, a, row, KIND_REPEAT, a->replicates[row]);
         importance[row] = 0;
     }
-    return n;
-}
-
-size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t n)
-{
-    const size_t left = common_left(c), asked = common_asked(c) + n, due = replicates_due(c, asked);
-    const size_t room = MIN_OF(b->size_max, left);
-    return append(c, q, b, n, MIN_OF(room, n + due));
 }

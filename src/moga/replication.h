@@ -5,6 +5,5 @@
 
 #include "moga/batch.h"
 
-/* Replicates of designs that the search builds on, after n designs of a batch; returns the new n. The criteria have
- * measured the front. */
-size_t replication_add(const Common *c, const Criteria *q, Batch *b, size_t n);
+/* Replicates of designs that the search builds on, beside the batch. The criteria have measured the front. */
+void replication_add(const Common *c, const Criteria *q, Batch *b);

@@ -359,10 +359,10 @@ Status screening_update(Screening *q, Common *c, Err *err)
 
 /* -- finishing ----------------------------------------------------------------------------------------------------- */
 
-static size_t append(const Archive *a, Batch *b, size_t n, size_t row)
+static void append(const Archive *a, Batch *b, size_t row)
 {
     a->is_chosen[row] = 1;
-    return batch_repeat(b, a, n, row, 0);
+    batch_repeat(b, a, row, KIND_FINISHED, 0);
 }
 
 /* Of the box about the front of results and predictions, what the front of the whole evaluations dominates. */
@@ -390,12 +390,12 @@ static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hyper
 }
 
 /* Of the open designs of the front those that add most, one after the other. */
-static Status append_best(Screening *q, Common *c, Batch *b, size_t *n, size_t limit, Err *err)
+static Status append_best(Screening *q, Common *c, Batch *b, size_t limit, Err *err)
 {
     Archive *a = &c->archive;
     Hypervolume *h;
     TRY(measure_front(q, a, c->config->seed, &h, err));
-    while (*n < limit) {
+    while (b->n < limit) {
         size_t best = SIZE_MAX;
         double most = -1.0;
         for (size_t j = 0; j < q->n_front; j++) {
@@ -410,18 +410,18 @@ static Status append_best(Screening *q, Common *c, Batch *b, size_t *n, size_t l
         if (best == SIZE_MAX)
             break;
         hypervolume_add(h, a->Y + best * a->n_obj);
-        *n = append(a, b, *n, best);
+        append(a, b, best);
     }
     hypervolume_free(h);
     return STATUS_OK;
 }
 
-/* Size of a batch of n new designs and `wanted` to be finished, as far as there is room. */
-static size_t size_with(const Screening *q, const Common *c, const Batch *b, size_t n, size_t wanted)
+/* Size of the batch with `wanted` to be finished, as far as there is room. */
+static size_t size_with(const Screening *q, const Common *c, const Batch *b, size_t wanted)
 {
-    const size_t asked = n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(q, c),
+    const size_t asked = b->n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(q, c),
                  room = all > asked ? all - asked : 0;
-    return MIN_OF(b->size_max, n + MIN_OF(wanted, room / q->cost.rest));
+    return MIN_OF(b->size_max, b->n + MIN_OF(wanted, room / q->cost.rest));
 }
 
 /* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial
@@ -434,25 +434,24 @@ static size_t wanted_now(const Screening *q, const Common *c, size_t n)
     return done < LEVEL_PAIRS ? LEVEL_PAIRS - done : q->is_biased ? finish_due(q, c, n) : 0;
 }
 
-Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
+Status screening_finish(Screening *q, Common *c, Batch *b, Err *err)
 {
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(q, c, b, *n, wanted_now(q, c, *n));
-    if (size <= *n)
+    const size_t size = size_with(q, c, b, wanted_now(q, c, b->n));
+    if (size <= b->n)
         return STATUS_OK;
     if (q->is_on)
-        TRY(append_best(q, c, b, n, size, err));
-    for (size_t i = 0; i < q->n && *n < size; i++) /* further ones in their order */
+        TRY(append_best(q, c, b, size, err));
+    for (size_t i = 0; i < q->n && b->n < size; i++) /* further ones in their order */
         if (is_open(q, &c->archive, i) && !c->archive.is_chosen[q->design[i].row])
-            *n = append(&c->archive, b, *n, q->design[i].row);
+            append(&c->archive, b, q->design[i].row);
     return STATUS_OK;
 }
 
-Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err)
+Status screening_last(Screening *q, Common *c, Batch *b, Err *err)
 {
-    const int is_last = screening_room(q, c, 1) == 0;
-    if (*n > 0 || q->n == 0 || !q->is_on || !is_last)
+    if (q->n == 0 || !q->is_on || b->room > 0)
         return STATUS_OK;
-    return append_best(q, c, b, n, size_with(q, c, b, 0, batch_size(c)), err);
+    return append_best(q, c, b, size_with(q, c, b, batch_size(c)), err);
 }

@@ -12,7 +12,6 @@
 typedef struct {
     const double *x, *f, *g;
     EvaluationKind kind;
-    unsigned char ok;
     const void *parts; /* of the cheap level; NULL: not known */
 } Answer;
 
@@ -53,6 +52,6 @@ Status screening_update(Screening *q, Common *c, Err *err); /* after results: pr
 void screening_exchange(Screening *q, Archive *a); /* predictions in the archive for what was evaluated, and back */
 const void *screening_parts(const Screening *q, const Common *c, const double x[]); /* of the cheap level; NULL: none */
 
-/* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
-Status screening_finish(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
-Status screening_last(Screening *q, Common *c, Batch *b, size_t *n, Err *err);
+/* Screened designs to be finished, beside what is in the batch; where there is room for them alone, a batch of them. */
+Status screening_finish(Screening *q, Common *c, Batch *b, Err *err);
+Status screening_last(Screening *q, Common *c, Batch *b, Err *err);

@@ -73,24 +73,26 @@ static void reconsider_convergence(Search *s)
 
 /* -- what is known ------------------------------------------------------------------------------------------------- */
 
-/* For who looks: the results of screened designs in the archive, else predictions. */
-static void show_results(Search *s, int wanted)
+/* For who looks the archive has the results of screened designs, for the search what is expected of them. */
+static void exchange(Search *s)
 {
-    if (s->shows_results != wanted)
-        screening_exchange(&s->screening, &s->common.archive);
-    s->shows_results = wanted;
+    screening_exchange(&s->screening, &s->common.archive);
 }
 
 static void save_state(Search *s)
 {
-    const int shown = s->shows_results;
     s->state.n = 0;
     s->state.faulty = 0;
-    if (shown)
-        screening_exchange(&s->screening, &s->common.archive);
+    if (s->is_behind_step)
+        exchange(s);
     state_pack(s, &s->state);
-    if (shown)
-        screening_exchange(&s->screening, &s->common.archive);
+    if (s->is_behind_step)
+        exchange(s);
+}
+
+static int is_over(const Search *s)
+{
+    return s->reason != STOP_NONE && s->common.pending.n == 0;
 }
 
 SearchView search_look(Search *s)
@@ -104,50 +106,47 @@ SearchView search_look(Search *s)
                         .generation = s->common.generation,
                         .n_left_out = surrogate_left_out(s->surrogate),
                         .surrogate_error = surrogate_error(s->surrogate),
-                        .reason = s->common.pending.n == 0 ? s->reason : STOP_NONE,
+                        .reason = is_over(s) ? s->reason : STOP_NONE,
                         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
                         .n_state = s->state.n};
 }
 
 /* -- asked and told ------------------------------------------------------------------------------------------------ */
 
-static void decide(Search *s, StopReason reason)
-{
-    search_stop(s, reason);
-    s->phase = s->reason != STOP_NONE && s->common.pending.n == 0 ? PHASE_OVER : PHASE_GROUP;
-}
-
 /* What is due has entered, and what follows from it is decided. */
 static Status end_step(Search *s, Err *err)
 {
     TRY(generation_enter(s, err));
     TRY(look_for_convergence(s, err));
-    decide(s, reason_to_stop(s));
-    show_results(s, 1);
+    search_stop(s, reason_to_stop(s));
+    exchange(s);
+    s->is_behind_step = 1;
     return STATUS_OK;
+}
+
+static Status make_group(Search *s, Err *err)
+{
+    exchange(s);
+    s->is_behind_step = 0;
+    s->common.generation += s->common.archive.n > 0;
+    return generation_ask(s, err);
 }
 
 Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
 {
     Pending *p = &s->common.pending;
-    if (s->phase == PHASE_GROUP) {
-        s->common.generation += s->shows_results;
-        show_results(s, 0);
-        TRY(generation_ask(s, err));
-        s->phase = PHASE_ANSWERS;
-    }
+    *move = SEARCH_ENDS;
+    if (is_over(s))
+        return STATUS_OK;
+    if (s->is_behind_step)
+        TRY(make_group(s, err));
     if (pending_hand(p, q)) {
         *move = SEARCH_ASKS;
         q->cheap_parts = q->kind == KIND_FINISHED ? screening_parts(&s->screening, &s->common, q->x) : NULL;
-    } else if (s->phase == PHASE_OVER) {
-        *move = SEARCH_ENDS;
-    } else if (p->n_known + s->allowed < p->n) {
-        *move = SEARCH_WAITS;
-    } else {
-        *move = SEARCH_STEPS;
-        return end_step(s, err);
+        return STATUS_OK;
     }
-    return STATUS_OK;
+    *move = p->n_known + s->allowed < p->n ? SEARCH_WAITS : SEARCH_STEPS;
+    return *move == SEARCH_STEPS ? end_step(s, err) : STATUS_OK;
 }
 
 size_t search_at_once(const SearchConfig *c)
@@ -186,15 +185,15 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
 static Status begin(Search *s, const SearchStart *start, Err *err)
 {
     TRY(state_create(s, err));
+    s->is_behind_step = 1;
     if (!start)
         return STATUS_OK;
     TRY(state_restore(s, start, err));
-    if (!s->shows_results)
+    if (!s->is_behind_step || s->common.archive.n == 0)
         return STATUS_OK;
-    s->shows_results = 0;
-    s->common.generation++;
+    exchange(s);
     reconsider_convergence(s);
-    decide(s, reason_to_stop(s));
+    search_stop(s, reason_to_stop(s));
     return STATUS_OK;
 }
 

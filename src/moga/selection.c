@@ -1,19 +1,20 @@
 #include "moga/selection.h"
 
 #include "base/carve.h"
+#include "base/clones.h"
 #include "base/dominance.h"
 #include "moga/normalisation.h"
 
 struct Selection {
     size_t n_max, n_obj, n_dir;
-    double *unit; /* (n_dir, n_obj) directions of length 1 */
+    double *across; /* (n_obj, n_dir) directions of length 1 */
+    double *along;  /* (n_dir) of a design */
     Normalisation normalisation;
     size_t *rank;       /* (n_max) */
     size_t *scratch;    /* (3 n_max) */
     size_t *list;       /* (n_max) rows of one layer */
     size_t *niche;      /* (n_max) direction of each row */
     double *distance;   /* (n_max) from it */
-    double *z;          /* (n_obj) normalised objectives of a design */
     size_t *members;    /* (n_dir) taken so far */
     size_t *candidates; /* (n_dir) that are left in the layer which does not fit */
     size_t *ties;       /* (n_dir or n_max) */
@@ -25,7 +26,8 @@ static void layout(void *selection, Carve *c)
 {
     Selection *s = selection;
     const size_t n = s->n_max, m = s->n_obj, r = s->n_dir;
-    CARVE(c, s->unit, r * m);
+    CARVE(c, s->across, r * m);
+    CARVE(c, s->along, r);
     CARVE(c, s->normalisation.ideal, m);
     CARVE(c, s->normalisation.width, m);
     CARVE(c, s->normalisation.plane, m * (m + 1));
@@ -35,7 +37,6 @@ static void layout(void *selection, Carve *c)
     CARVE(c, s->list, n);
     CARVE(c, s->niche, n);
     CARVE(c, s->distance, n);
-    CARVE(c, s->z, m);
     CARVE(c, s->members, r);
     CARVE(c, s->candidates, r);
     CARVE(c, s->ties, MAX_OF(n, r));
@@ -49,28 +50,28 @@ Status selection_create(Selection **out, size_t n_max, const Directions *directi
     Selection *s = *out = carve_object(layout, &plain, sizeof plain);
     if (!s)
         return fail_memory(err, n_max, "designs to select from");
-    directions_unit(directions, s->unit);
+    directions_across(directions, s->across);
     return STATUS_OK;
 }
 
 /* Nearest direction and the distance of the normalised objectives from its line. */
-static void associate(Selection *s, size_t i, const double f[])
+CLONED_V3 static void associate(Selection *s, size_t i, const double f[])
 {
-    const size_t m = s->n_obj;
     double square = 0.0, longest = -INFINITY;
-    for (size_t k = 0; k < m; k++) {
-        s->z[k] = normalised(&s->normalisation, k, f[k]);
-        square += s->z[k] * s->z[k];
+    for (size_t r = 0; r < s->n_dir; r++)
+        s->along[r] = 0.0;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        const double z = normalised(&s->normalisation, k, f[k]), *w = s->across + k * s->n_dir;
+        square += z * z;
+#pragma omp simd
+        for (size_t r = 0; r < s->n_dir; r++)
+            s->along[r] += z * w[r];
     }
-    for (size_t r = 0; r < s->n_dir; r++) {
-        double along = 0.0;
-        for (size_t k = 0; k < m; k++)
-            along += s->z[k] * s->unit[r * m + k];
-        if (along > longest) {
-            longest = along;
+    for (size_t r = 0; r < s->n_dir; r++)
+        if (s->along[r] > longest) {
+            longest = s->along[r];
             s->niche[i] = r;
         }
-    }
     s->distance[i] = sqrt(fmax(square - longest * longest, 0.0));
 }
 

@@ -20,9 +20,7 @@ static void layout(void *search, Carve *c)
     Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
     CARVE(c, b->X, b->size_max * n_var);
-    CARVE(c, b->kind, b->size_max);
-    CARVE(c, b->criterion, b->size_max);
-    CARVE(c, b->repeat, b->size_max);
+    CARVE(c, b->q, b->size_max);
     CARVE(c, o->allowed, n_members);
     CARVE(c, o->survivors, n_pool);
     CARVE(c, o->bound, n_members * p->n_obj);
@@ -57,6 +55,10 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
     return selection_create(&s->selection, n_pool, &s->directions, s->common.problem->aspire, err);
 }
 
+/* Rows of the archive that there is room for from the beginning, where so many are to come: what is not used yet is no
+ * memory of the system's, and growing would need room for what was there as well. */
+enum { ROWS_AT_ONCE = 1 << 20 };
+
 Status state_create(Search *s, Err *err)
 {
     const Problem *p = s->common.problem;
@@ -67,12 +69,13 @@ Status state_create(Search *s, Err *err)
     const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
-    const size_t centres = MIN_OF(c->surrogate_max, evals);
+    const size_t centres = MIN_OF(c->surrogate_max, evals), known = MIN_OF(evals, ROWS_AT_ONCE);
     s->batch.size_max = MAX_OF(initial, population);
     s->offspring.pending_max = pending;
     TRY(create_selection(s, n_pool, err));
     TRY(create_criteria(s, n_members, err));
-    TRY(pareto_archive_init(&s->common.archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(pareto_archive_init(&s->common.archive, p->is_noisy ? 2 * initial : MAX_OF(known, 2 * initial), p->n_var,
+                            p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_members, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_members, p->n_var, p->n_obj, err));
@@ -102,7 +105,7 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 17 };
+enum { STATE_VERSION = 18 };
 
 int search_state_is_current(const void *state, size_t n_state)
 {
@@ -116,13 +119,11 @@ int search_state_is_current(const void *state, size_t n_state)
 /* Where it stands; why it stops is decided anew behind a step. */
 static void pack_moment(Search *s, Pack *p)
 {
-    size_t phase = s->phase, behind_step = s->shows_results, reason = behind_step ? STOP_NONE : s->reason;
-    pack_size(p, &phase, PHASE_OVER);
+    size_t behind_step = s->is_behind_step, reason = behind_step ? STOP_NONE : s->reason;
     pack_size(p, &behind_step, 1);
     pack_size(p, &reason, STOP_FAILURES);
     pack_size(p, &s->allowed, UINT32_MAX);
-    s->phase = (Phase)phase;
-    s->shows_results = behind_step != 0;
+    s->is_behind_step = behind_step != 0;
     s->reason = p->reading ? (StopReason)reason : s->reason;
 }
 
@@ -163,7 +164,7 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
-    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, ok, NULL}, err));
+    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, NULL}, err));
     if (r->start->on_front && !p->is_noisy)
         return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, e->generation, r->start->on_front[i],
                                       err);

@@ -20,9 +20,6 @@ typedef struct {
 
 typedef struct Search Search; /* moga/search.h */
 
-/* The next thing that search_ask does. */
-typedef enum { PHASE_GROUP, PHASE_ANSWERS, PHASE_OVER } Phase;
-
 struct Search {
     Common common;
     Surrogate *surrogate;
@@ -34,12 +31,12 @@ struct Search {
     Batch batch;
     Screening screening;
     Scratch scratch;
-    Phase phase;
-    size_t n_before;   /* rows before the last step */
-    size_t n_vain;     /* samples one after the other in which every design was known */
-    size_t allowed;    /* questions that may be under way when the next answers enter */
-    StopReason reason; /* STOP_NONE: it goes on; else what is under way enters, and it is over */
-    int shows_results; /* between a step and what follows: of what is screened the archive has the results */
+    size_t n_before;    /* rows before the last step */
+    size_t n_vain;      /* samples one after the other in which every design was known */
+    size_t allowed;     /* questions that may be under way when the next answers enter */
+    StopReason reason;  /* STOP_NONE: it goes on; else what is under way enters, and it is over */
+    int is_behind_step; /* a group is to be made, where the search is not over; until then the archive has the results
+                           of what is screened */
     Pack state;
     void *store;
 };

@@ -326,13 +326,12 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
 {
     const size_t n_dim = s->n_dim, n = s->fitted ? gather(s, population, first) : 0;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
-        rbf_eval(s->rbf, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->f + i * s->n_out,
-                 with_uncertainty ? s->e + i * s->n_out : NULL);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
+    for (size_t i = 0; i < n; i += RBF_BLOCK) {
+        const size_t count = MIN_OF(n - i, RBF_BLOCK);
+        rbf_eval(s->rbf, count, s->u + i * n_dim, s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
         if (s->knows_failures)
-            rbf_eval(s->success, MIN_OF(n - i, RBF_BLOCK), s->u + i * n_dim, s->chance + i, NULL);
+            rbf_eval(s->success, count, s->u + i * n_dim, s->chance + i, NULL);
+    }
     for (size_t i = 0; i < n; i++)
         fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
                     s->knows_failures ? s->chance[i] : 1.0);
@@ -386,7 +385,7 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
         for (size_t k = 0; k < s->problem->n_obj; k++)
             w->g[d] += w->slope[k] * J[k * n_dim + d];
     }
-    const double violation = penalise(s, w, f, J, success, J_success);
+    const double violation = penalise(s, w, f, J, success, J_success), longest = 10.0 * DESCENT_STEP_FIRST;
     if (violation < w->violation || (violation == w->violation && value < w->min)) {
         w->violation = violation;
         w->min = value;
@@ -396,12 +395,12 @@ static void descent_step(const Surrogate *s, const Infill *near, size_t vector, 
         if (s->is_held[d])
             continue;
         const double move = rprop_move(w->g[d], &w->g_last[d], &w->step[d]);
-        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -DESCENT_STEP_MAX), DESCENT_STEP_MAX), 0.0), 1.0);
+        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -longest), longest), 0.0), 1.0);
     }
 }
 
 /* n <= RBF_BLOCK descents side by side, starting at U; the best point of each goes there. */
-static void descend(const Surrogate *s, const Infill *near, size_t n, const size_t vectors[], double *store)
+static void descend(const Surrogate *s, size_t n, const Infill *const near[], const size_t vectors[], double *store)
 {
     const size_t n_dim = s->n_dim, own = 4 * n_dim + s->problem->n_obj;
     double *U = store, *F = U + RBF_BLOCK * n_dim, *J = F + RBF_BLOCK * s->n_out,
@@ -420,26 +419,29 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
         if (s->knows_failures)
             rbf_slope(s->success, n, U, success, J_success);
         for (size_t p = 0; p < n; p++)
-            descent_step(s, near, vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
+            descent_step(s, near[p], vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
                          s->knows_failures ? success[p] : 1.0, J_success + p * n_dim);
     }
     for (size_t p = 0; p < n; p++)
         memcpy(U + p * n_dim, w[p].best, n_dim * sizeof *U);
 }
 
-void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[], double X[])
+void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], size_t n_first, size_t n,
+                       const size_t vectors[], double X[])
 {
     const Problem *p = s->problem;
     const size_t length = descent_length(s);
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = MIN_OF(n - i, RBF_BLOCK);
+        const Infill *near[RBF_BLOCK];
         double *U = s->descent + i * length, *x = X + i * p->n_var;
         for (size_t j = 0; j < count; j++) {
-            memcpy(x + j * p->n_var, a->X + infill_best(near, vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
+            near[j] = select[i + j < n_first ? INFILL_HYPERVOLUME : INFILL_PBI];
+            memcpy(x + j * p->n_var, a->X + infill_best(near[j], vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
             surrogate_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
         }
-        descend(s, near, count, vectors + i, U);
+        descend(s, count, near, vectors + i, U);
         for (size_t j = 0; j < count; j++)
             move_to(p, U + j * s->n_dim, x + j * p->n_var);
     }

@@ -55,12 +55,12 @@ size_t surrogate_left_out(const Surrogate *s);
  * more; without it a limit is kept or not. A predicted failure is a violation. */
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);
 
-/* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate,
- * each from the design of the archive that is best for its vector; a point that violates no limit is better than one
- * that does. Choices stay, whole numbers are moved as if they were real and not rounded here.
+/* Designs X (n, n_var) that lower a criterion along its reference vectors by descents on the surrogate, the first
+ * n_first that of hypervolume, each from the design of the archive that is best for its vector; a point that violates
+ * no limit is better than one that does. Choices stay, whole numbers are moved as if they were real and not rounded.
  * Resilient back-propagation: Riedmiller and Braun, ICNN 1993, 586-591. */
-void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
-                       double X[]);
+void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], size_t n_first, size_t n,
+                       const size_t vectors[], double X[]);
 
 /* State that outlives a generation; surrogate_fit makes the rest. */
 void surrogate_pack(Surrogate *s, Pack *p);

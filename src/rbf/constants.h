@@ -5,8 +5,9 @@
 
 enum { TUNE_CENTRES_MAX = 250 };            /* centres that the likelihood is computed on, at n^3 each */
 enum { TUNE_STEPS_FIRST = 16 };             /* steps for every form, at the first tuning */
-enum { TUNE_STEPS = 8 };                    /* steps for the present form and one other, later */
-static const double TUNE_STEP = 0.5;        /* first step of each logarithm */
+enum { TUNE_STEPS = 5 };                    /* steps for the present form, and for one other, later */
+static const double TUNE_STEP = 0.5;        /* first step of each logarithm, later twice its last, a tenth at least */
+static const double CHALLENGE_MAX = 1.5;    /* error of another form, in the present one's, up to which it is tuned */
 static const double THETA_MIN = 1e-4;       /* bounds of theta */
 static const double THETA_MAX = 50.0;       /* ... */
 static const double THETA_PRIOR_SD = 1.4;   /* of log theta about its mean over the variables */

@@ -138,13 +138,13 @@ CLONED void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2
     }
 }
 
-CLONED_V3 double kernel_dot(size_t n, const double a[], const double b[])
+CLONED_V3 double kernel_times(size_t n, const double w[], double v[])
 {
-    double dot = 0.0;
-#pragma omp simd reduction(+ : dot)
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
     for (size_t i = 0; i < n; i++)
-        dot += a[i] * b[i];
-    return dot;
+        sum += v[i] *= w[i];
+    return sum;
 }
 
 CLONED_V3 void kernel_errors(size_t n, const double r2[], const double e[], double *square, double *weights)
@@ -160,43 +160,16 @@ CLONED_V3 void kernel_errors(size_t n, const double r2[], const double e[], doub
     *weights += sum;
 }
 
-CLONED_V3 double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[], double *sum)
-{
-    double value = 0.0, slopes = 0.0;
-    if (kernel == RBF_GAUSS) {
-#pragma omp simd reduction(+ : value, slopes)
-        for (size_t i = 0; i < n; i++) {
-            const double e = exp_down(-r2[i]);
-            value += w[i] * e;
-            q[i] = -w[i] * e;
-            slopes += q[i];
-        }
-    } else {
-#pragma omp simd reduction(+ : value, slopes)
-        for (size_t i = 0; i < n; i++) {
-            const double a = sqrt(5.0 * r2[i]), e = exp_down(-a);
-            value += w[i] * (1.0 + a + 5.0 / 3.0 * r2[i]) * e;
-            q[i] = w[i] * (-5.0 / 6.0) * (1.0 + a) * e;
-            slopes += q[i];
-        }
-    }
-    *sum += slopes;
-    return value;
-}
-
-static inline double sum_of(Four v)
-{
-    return (v[0] + v[1]) + (v[2] + v[3]);
-}
-
-/* Two variables at a time. */
+/* Two variables at a time, the last one alone twice. */
 CLONED_V3 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
-                              double q[RBF_BLOCK][KERNEL_CHUNK], double *G)
+                              double q[RBF_BLOCK][KERNEL_CHUNK], double G[])
 {
     for (size_t d = 0; d < n_dim; d += 2) {
         const size_t next = d + 1 < n_dim ? d + 1 : d;
         const double *s = S + d * stride + first, *t = S + next * stride + first;
-        Four a[RBF_BLOCK] = {0}, b[RBF_BLOCK] = {0};
+        Four *g = (Four *)G + d * RBF_BLOCK, *h = (Four *)G + next * RBF_BLOCK, a[RBF_BLOCK], b[RBF_BLOCK];
+        memcpy(a, g, sizeof a);
+        memcpy(b, h, sizeof b);
         for (size_t i = 0; i < count; i += 4) {
             const Four u = *(const Four *)(s + i), v = *(const Four *)(t + i);
 #pragma GCC unroll 4
@@ -205,11 +178,8 @@ CLONED_V3 void kernel_project(size_t n_dim, size_t stride, const double S[], siz
                 b[p] += *(const Four *)(q[p] + i) * v;
             }
         }
-        for (size_t p = 0; p < RBF_BLOCK; p++) {
-            G[p * n_dim + d] += sum_of(a[p]);
-            if (next > d)
-                G[p * n_dim + next] += sum_of(b[p]);
-        }
+        memcpy(g, a, sizeof a);
+        memcpy(h, b, sizeof b);
     }
 }
 

@@ -38,18 +38,16 @@ void kernel_distances(size_t n_dim, size_t stride, const double S[], const doubl
 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[]);
 void kernel_values_and_slopes(RbfKernel kernel, size_t n, const double r2[], double phi[], double slope[]);
 
-double kernel_dot(size_t n, const double a[], const double b[]);
+/* Multiplies v by w; returns its sum. */
+double kernel_times(size_t n, const double w[], double v[]);
 
 /* Adds to the local average of squared errors e: near_i = 1 / r^4, *square += sum near e^2, *weights += sum near. */
 void kernel_errors(size_t n, const double r2[], const double e[], double *square, double *weights);
 
-/* q[i] = w[i] d phi / d (r^2) at r2[i], whose sum is added to *sum; returns the sum of w phi. */
-double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[], double *sum);
-
-/* G[p][d] += sum_i q[p][i] S[d][first + i], count <= KERNEL_CHUNK; q is 0 behind count up to a multiple of
+/* G[d][p][i % 4] += sum_i q[p][i] S[d][first + i], count <= KERNEL_CHUNK; q is 0 behind count up to a multiple of
  * KERNEL_LANES. */
 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
-                    double q[RBF_BLOCK][KERNEL_CHUNK], double *G);
+                    double q[RBF_BLOCK][KERNEL_CHUNK], double G[]);
 
 /* Multiplies a and, where it is not NULL, b by 1/2 + 1/2 mean_d psi(|x_d - u_d| / reach), with psi(t) =
  * (1 - t)^3 (1 + 3 t), 0 beyond t = 1, of `count` <= KERNEL_CHUNK centres U (n_dim, stride) and the first point of a

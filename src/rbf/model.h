@@ -29,9 +29,10 @@ typedef struct {
     double explained;
     int is_left_out; /* it cannot be fitted: its mean stands for it */
     Shape shape;
-    double *S;             /* (n_dim + 1, stride) centres, warped and scaled, and their squares (rbf/kernel.h) */
-    double *tail;          /* (1 + 2 n_dim) coefficients b */
-    double *weight;        /* (n_max) w */
+    double *step;   /* (n_dim + 3) of the logarithms of theta, warp and nugget, with which the last tuning ended */
+    double *S;      /* (n_dim + 1, stride) centres, warped and scaled, and their squares (rbf/kernel.h) */
+    double *tail;   /* (1 + 2 n_dim) coefficients b */
+    double *weight; /* (n_max) w */
     double *leave_one_out; /* (n_max) [unit of f] */
 } Output;
 
@@ -47,8 +48,8 @@ typedef struct {
     double *y, *w;       /* (n) data, weights */
     double *noise;       /* (n) variance of each value, in nuggets */
     double *q;           /* (n) diagonal of the projected inverse */
-    double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 3) log of theta, warp, nugget */
-    double *theta;                                            /* (n_dim) of the step under way */
+    double *log_p, *best_p, *gradient, *last_gradient, *step, *best_step; /* (n_dim + 3) log of theta, warp, nugget */
+    double *theta;                                                        /* (n_dim) of the step under way */
     Shape shape, best_shape;
     RbfForm best_form;
     double min_error;

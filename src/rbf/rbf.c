@@ -23,6 +23,7 @@ static void layout(void *interpolant, Carve *c)
     for (size_t k = 0; k < m->n_out; k++) {
         Output counted, *o = c->base ? &m->output[k] : &counted;
         CARVE(c, o->shape.theta, d);
+        CARVE(c, o->step, d + 3);
         CARVE(c, o->S, with_squares);
         CARVE(c, o->tail, t);
         CARVE(c, o->weight, n);
@@ -32,7 +33,7 @@ static void layout(void *interpolant, Carve *c)
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
         CARVE(c, w->C, 3 * spread);
         CARVE(c, w->S, with_squares);
-        CARVE(c, w->Z, spread);
+        CARVE(c, w->Z, with_squares);
         CARVE(c, w->by_a, n);
         CARVE(c, w->by_b, n);
         CARVE(c, w->A, n * n);
@@ -49,6 +50,7 @@ static void layout(void *interpolant, Carve *c)
         CARVE(c, w->gradient, d + 3);
         CARVE(c, w->last_gradient, d + 3);
         CARVE(c, w->step, d + 3);
+        CARVE(c, w->best_step, d + 3);
         CARVE(c, w->theta, d);
         CARVE(c, w->shape.theta, d);
         CARVE(c, w->best_shape.theta, d);
@@ -75,6 +77,8 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
         for (size_t d = 0; d < n_dim; d++)
             m->output[k].shape.theta[d] = 1.0 / (double)n_dim;
         m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
+        for (size_t i = 0; i < n_dim + 3; i++)
+            m->output[k].step[i] = TUNE_STEP;
     }
     return STATUS_OK;
 }
@@ -183,12 +187,12 @@ size_t model_weights(const Rbf *m, Worker *k, size_t n, const double C[], size_t
  *     inv([A 0; B C]) = [inv(A) 0; -inv(C) B inv(A)  inv(C)] */
 void model_invert(int n, double L[], int ld)
 {
-    enum { WHOLE_MAX = 48 }; /* as fast as by halves */
+    enum { WHOLE_MAX = 16 }; /* as fast as by halves */
     if (n <= WHOLE_MAX) {
         LAPACKE_dtrtri_work(LAPACK_COL_MAJOR, 'L', 'N', n, L, ld);
         return;
     }
-    const int a = n / 2, c = n - a;
+    const int a = (n / 2 + 7) / 8 * 8, c = n - a;
     double *B = L + a, *C = L + a + a * (size_t)ld;
     model_invert(a, L, ld);
     model_invert(c, C, ld);
@@ -368,7 +372,7 @@ static double tail_sum(const Rbf *m, const Output *o, const double x[])
 static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], const double P[], double f[],
                         double error[])
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
+    _Alignas(64) double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, square[RBF_BLOCK] = {0}, weights[RBF_BLOCK] = {0};
     scale_points(m, o, P, x);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
@@ -378,7 +382,7 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
             kernel_values(o->form.kernel, count, r2[p], phi);
             if (o->form.kernel >= RBF_ADDITIVE)
                 kernel_additive(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, phi, NULL);
-            value[p] += kernel_dot(count, o->weight + first, phi);
+            value[p] += kernel_times(count, o->weight + first, phi);
             if (error)
                 kernel_errors(count, r2[p], o->leave_one_out + first, &square[p], &weights[p]);
         }
@@ -410,29 +414,30 @@ static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
 
 /* Sums over the centres; of variables first. */
 typedef struct {
-    double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX];     /* (n_dim, RBF_BLOCK) */
-    double G[RBF_BLOCK * RBF_DIM_MAX], additive[RBF_BLOCK * RBF_DIM_MAX]; /* (RBF_BLOCK, n_dim) */
+    double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX]; /* (n_dim, RBF_BLOCK) */
+    double G[RBF_BLOCK * RBF_DIM_MAX * 4];                            /* (n_dim, RBF_BLOCK, 4) */
+    double additive[RBF_BLOCK * RBF_DIM_MAX];                         /* (RBF_BLOCK, n_dim) */
     double value[RBF_BLOCK], sum[RBF_BLOCK];
 } Slopes;
 
 static void slope_chunk(const Rbf *m, const Output *o, size_t n, const double P[], size_t first, size_t count,
                         Slopes *s)
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], w[KERNEL_CHUNK], phi[KERNEL_CHUNK];
+    _Alignas(64) double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], w[KERNEL_CHUNK];
     if (n < RBF_BLOCK || count < KERNEL_CHUNK)
         memset(q, 0, sizeof q);
     kernel_distances(m->n_dim, m->stride, o->S, s->x, first, count, r2);
     for (size_t p = 0; p < n; p++) {
-        memcpy(w, o->weight + first, count * sizeof *w);
+        kernel_values_and_slopes(o->form.kernel, count, r2[p], phi, q[p]);
         if (o->form.kernel >= RBF_ADDITIVE) {
-            kernel_values(o->form.kernel, count, r2[p], phi);
-            for (size_t i = 0; i < count; i++)
-                phi[i] *= w[i];
-            kernel_additive_slopes(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, phi,
+            memcpy(w, o->weight + first, count * sizeof *w);
+            kernel_times(count, phi, w);
+            kernel_additive_slopes(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, w,
                                    s->additive + p * m->n_dim);
-            kernel_additive(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, w, NULL);
+            kernel_additive(o->form.kernel, m->n_dim, m->stride, m->C + first, P + p, count, phi, q[p]);
         }
-        s->value[p] += kernel_slopes(o->form.kernel, count, r2[p], w, q[p], &s->sum[p]);
+        s->value[p] += kernel_times(count, o->weight + first, phi);
+        s->sum[p] += kernel_times(count, o->weight + first, q[p]);
     }
     kernel_project(m->n_dim, m->stride, o->S, first, count, q, s->G);
 }
@@ -444,7 +449,7 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
 {
     const size_t n_dim = m->n_dim;
     Slopes s;
-    memset(s.G, 0, RBF_BLOCK * n_dim * sizeof *s.G);
+    memset(s.G, 0, RBF_BLOCK * n_dim * 4 * sizeof *s.G);
     memset(s.additive, 0, RBF_BLOCK * n_dim * sizeof *s.additive);
     memset(s.value, 0, sizeof s.value);
     memset(s.sum, 0, sizeof s.sum);
@@ -456,10 +461,13 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
         slope_chunk(m, o, n, P, first, MIN_OF(m->n - first, KERNEL_CHUNK), &s);
     for (size_t p = 0; p < n; p++) {
         f[p * m->n_out] = o->mean + o->scale * (s.value[p] + tail_sum(m, o, X + p * n_dim));
-        for (size_t d = 0; d < n_dim; d++)
+        for (size_t d = 0; d < n_dim; d++) {
+            const size_t at = d * RBF_BLOCK + p;
+            const double *G = s.G + at * 4, along = (G[0] + G[1]) + (G[2] + G[3]);
             J[p * m->n_out * n_dim + d] =
-                o->scale * (2.0 * (s.x[d * RBF_BLOCK + p] * s.sum[p] - s.G[p * n_dim + d]) * s.by_u[d * RBF_BLOCK + p] +
-                            s.additive[p * n_dim + d] + tail_slope(n_dim, o, d, X[p * n_dim + d]));
+                o->scale * (2.0 * (s.x[at] * s.sum[p] - along) * s.by_u[at] + s.additive[p * n_dim + d] +
+                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
+        }
     }
 }
 
@@ -501,6 +509,7 @@ void rbf_pack(Rbf *m, Pack *p)
         pack_numbers(p, &form.nugget, 1, 0.0, DBL_MAX);
         pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
+        pack_numbers(p, o->step, m->n_dim + 3, DBL_MIN, DBL_MAX);
         p->faulty = p->faulty || !form_is_known(form);
         if (!p->faulty)
             o->form = form;

@@ -50,42 +50,41 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
     return l;
 }
 
-/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
- * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
+/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal;
+ * returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
 static double weigh_pairs(Worker *k, size_t n, double s2)
 {
     double trace = 0.0;
-    memset(k->q, 0, n * sizeof *k->q);
     for (size_t j = 0; j < n; j++) {
         double *v = k->A + j * n;
         trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
         kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
         v[j] = 0.0;
-        for (size_t i = j + 1; i < n; i++) {
-            k->q[j] += v[i];
-            k->q[i] += v[i];
-        }
     }
     return trace;
 }
 
-/* Subtracts from the gradient, with v symmetric and s the warped and scaled centres,
+/* Subtracts from the gradient, with v symmetric, q its row sums and s the warped and scaled centres,
  *     1/2 sum_ij v_ij d (s_i - s_j)^2 / dp = 2 sum_i (q_i s_i - z_i) ds_i/dp,    z = v s
- * variable by variable: ds/d log theta = s / 2. */
+ * variable by variable: ds/d log theta = s / 2. q is what v makes of a last column of ones. */
 static void pull_back(const Rbf *m, Worker *k, size_t n, const Shape *shape, double gradient[])
 {
     const size_t stride = m->stride, plane = m->n_dim * stride;
-    cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, (int)n, (int)m->n_dim, 1.0, k->A, (int)n, k->S, (int)stride, 0.0,
+    const int ni = (int)n;
+    const double *q = k->Z + plane;
+    for (size_t i = 0; i < n; i++)
+        k->S[plane + i] = 1.0;
+    cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, ni, (int)m->n_dim + 1, 1.0, k->A, ni, k->S, (int)stride, 0.0,
                 k->Z, (int)stride);
     for (size_t d = 0; d < m->n_dim; d++) {
-        const double *s = k->S + d * stride, *z = k->Z + d * stride, *log_u = k->C + plane + d * stride;
+        const double *s = k->S + d * stride, *log_u = k->C + plane + d * stride;
+        double *pull = k->Z + d * stride;
         kernel_warp_slopes(n, log_u, log_u + plane, shape->theta[d], shape->warp, k->by_a, k->by_b);
-        for (size_t i = 0; i < n; i++) {
-            const double pull = 2.0 * (k->q[i] * s[i] - z[i]);
-            gradient[d] -= 0.5 * pull * s[i];
-            gradient[m->n_dim] -= pull * k->by_a[i];
-            gradient[m->n_dim + 1] -= pull * k->by_b[i];
-        }
+        for (size_t i = 0; i < n; i++)
+            pull[i] = 2.0 * (q[i] * s[i] - pull[i]);
+        gradient[d] -= 0.5 * cblas_ddot(ni, pull, 1, s, 1);
+        gradient[m->n_dim] -= cblas_ddot(ni, pull, 1, k->by_a, 1);
+        gradient[m->n_dim + 1] -= cblas_ddot(ni, pull, 1, k->by_b, 1);
     }
 }
 
@@ -122,7 +121,7 @@ static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, co
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
  * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns
  * whether the last point was the best one: then its factor and weights are at hand. */
-static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
+static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *form, Shape *shape, int steps)
 {
     const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
     double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY, s2;
@@ -131,7 +130,7 @@ static int climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape,
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
-        k->step[i] = TUNE_STEP;
+        k->step[i] = fmin(fmax(2.0 * o->step[i], 0.1 * TUNE_STEP), TUNE_STEP);
         last[i] = 0.0;
     }
     for (int step = 1; step <= steps; step++) {
@@ -181,39 +180,53 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
     return n;
 }
 
-/* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. An
- * additive part must be worth it where there is none yet, and is not tried where the others leave nothing. */
-static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
+/* Climbs with one form from these scales; the better of this and the best so far stays in the worker. An additive part
+ * must be worth it where there is none yet, and is not tried where the others leave nothing. */
+static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, const Shape *from, int steps)
 {
     const int is_new = form.kernel >= RBF_ADDITIVE && o->form.kernel < RBF_ADDITIVE;
     if (is_new && k->min_error < ADDITIVE_ERROR)
         return;
-    model_copy_shape(m, &k->shape, &o->shape);
-    const int is_at_hand = climb(m, k, n, &form, &k->shape, steps);
+    model_copy_shape(m, &k->shape, from);
+    const int is_at_hand = climb(m, k, n, o, &form, &k->shape, steps);
     const double e = trial_error(m, k, n, &form, &k->shape, is_at_hand);
     if (e < k->min_error * (is_new ? ADDITIVE_GAIN : 1.0)) {
         k->min_error = e;
         k->best_form = form;
         model_copy_shape(m, &k->best_shape, &k->shape);
+        memcpy(k->best_step, k->step, n_parameters(m) * sizeof *k->step);
     }
 }
 
-/* The first time every form is tried; later the present one and, in turn, one challenger. */
+/* The first time every form is tried; later the present one and, in turn, a challenger, which is tuned where it is
+ * nearly as good with the scales of the present one. */
+static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
+{
+    const size_t n_forms = RBF_N_KERNELS * RBF_N_TAILS;
+    const double nugget = fmax(o->form.nugget, NUGGET_START);
+    const int is_first = m->n_tuned == 0;
+    if (!is_first)
+        try_form(m, k, n, o, (RbfForm){o->form.kernel, o->form.tail, nugget}, &o->shape, TUNE_STEPS);
+    for (size_t i = 0; i < n_forms; i++) {
+        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS), nugget};
+        RbfForm trial = form;
+        if (is_first)
+            try_form(m, k, n, o, form, &o->shape, TUNE_STEPS_FIRST);
+        else if (i == m->n_tuned % n_forms && (form.kernel != o->form.kernel || form.tail != o->form.tail) &&
+                 trial_error(m, k, n, &trial, &k->best_shape, 0) < CHALLENGE_MAX * k->min_error)
+            try_form(m, k, n, o, form, &k->best_shape, TUNE_STEPS);
+    }
+}
+
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
-    const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
-    const size_t challenger = m->n_tuned % n_forms;
-    const int is_first = m->n_tuned == 0, steps = is_first ? TUNE_STEPS_FIRST : TUNE_STEPS;
+    const size_t n = choose_tuning_set(m, k, o, f, noise);
     k->min_error = INFINITY;
-    for (size_t i = 0; i < n_forms; i++) {
-        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
-                              fmax(o->form.nugget, NUGGET_START)};
-        if (is_first || i == challenger || (form.kernel == o->form.kernel && form.tail == o->form.tail))
-            try_form(m, k, n, o, form, steps);
-    }
+    try_forms(m, k, n, o);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
+        memcpy(o->step, k->best_step, n_parameters(m) * sizeof *o->step);
     }
 }
 
