@@ -271,10 +271,10 @@ TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
     Queue *q = open_queue(1);
     ask(q, 3);
     for (int k = 0; k < 3 * PARTS; k++) {
-        assert_int_equal(queue_take(q, 0, &task[k]), 1);
+        assert_int_equal(queue_take(q, 0, 0, 1, &task[k]), 1);
         assert_true(task[k].x[0] == k / PARTS && task[k].part == (size_t)k % PARTS && task[k].id == 101 + k / PARTS);
     }
-    assert_int_equal(queue_take(q, 0, &task[0]), 0);
+    assert_int_equal(queue_take(q, 0, 0, 1, &task[0]), 0);
     for (int k = 3 * PARTS; k-- > 0;) { /* the last part first */
         CHECK_OK(simulate(&bench, 0, &task[k], &err), &err);
         queue_give(q, &task[k], STATUS_OK, &err);

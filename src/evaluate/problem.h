@@ -54,7 +54,7 @@ typedef struct {
     size_t size;                  /* so many */
     int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
     void *user;                   /* of may_go_on */
-    size_t slot;                  /* the queue's, as are those below */
+    void *slot;                   /* the queue's */
 } Task;
 
 typedef struct {
@@ -71,13 +71,12 @@ typedef struct {
 
 enum { TASKS_MAX = 64 };
 
-/* Who does the tasks in the place of this process (evaluate/tasks.h), which has a thread for each of several workers;
- * where there is one, the client does them itself while it waits. */
+/* Who does the tasks in the place of this process, which has a thread for each of several workers; where there is one,
+ * the client does them itself while it waits. */
 typedef struct {
     Status (*start)(void **self, Queue *queue, size_t *n_workers, Err *err);
-    void (*help)(void *self);   /* called while the client waits: does something; NULL: needs no help */
     void (*stop)(void *self);   /* none is under way any more */
-    const Simulator *simulator; /* asked by two threads for each of n_workers; NULL: it takes tasks by itself */
+    const Simulator *simulator; /* asked by two threads for each of n_workers, by one where that is 1 */
 } Executor;
 
 typedef struct {
