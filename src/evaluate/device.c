@@ -212,7 +212,7 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
 {
     Tuning *tuning;
     Status status = STATUS_OK;
-    size_t n_held = 0;
+    size_t n_acquired = 0;
     TRY_ROOM(tuning, n, "devices", err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
         Tuning *t = &tuning[i];
@@ -221,15 +221,15 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
         t->n = 1;
         count_all(t);
         t->kind = SCENE_NO_CORE;
-        status = tower_hold(p, search[i].scene, &t->scenario, err);
-        n_held += status == STATUS_OK;
+        status = tower_acquire(p, search[i].scene, &t->scenario, err);
+        n_acquired += status == STATUS_OK;
     }
     if (status == STATUS_OK)
         status = tune(p, n, tuning, err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         search[i].device = device_at(&tuning[i], tuning[i].best);
-    for (size_t i = 0; i < n_held; i++)
-        tower_let_go(p, search[i].scene);
+    for (size_t i = 0; i < n_acquired; i++)
+        tower_release(p, search[i].scene);
     free(tuning);
     return status;
 }

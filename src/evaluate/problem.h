@@ -39,7 +39,8 @@ typedef struct {
 
 /* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
 typedef struct {
-    int kind;
+    int kind, is_brief;
+    int is_full; /* more of the result is wanted than combine needs: a larger part */
     size_t scene;
     double device[3];
 } Variant;

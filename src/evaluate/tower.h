@@ -54,9 +54,9 @@ void tower_standard_errors(const Tower *t, const SimResult by_record[], double e
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* of a search; 0: motion.record */
 
-/* A scene, open until it is let go. */
-Status tower_hold(const Problem *p, size_t scene, const Scenario **out, Err *err);
-void tower_let_go(const Problem *p, size_t scene);
+/* A scene, open until it is released. */
+Status tower_acquire(const Problem *p, size_t scene, const Scenario **out, Err *err);
+void tower_release(const Problem *p, size_t scene);
 
 /* The ground motion of a scene, for motion_free. */
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);
