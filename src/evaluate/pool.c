@@ -108,7 +108,8 @@ void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format, ..
     w->asked = clock_seconds();
 }
 
-/* Of a worker that has ended, or is silent. */
+/* What becomes of a worker that has ended, or is silent, and of its task: of an end that was not its fault a fresh
+ * worker is asked, once. */
 static Status lose(Worker *w, int has_gone, Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -190,13 +191,16 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-void pool_batch(Worker *w, size_t n)
+int pool_batch(Worker *w, size_t n)
 {
+    if (n < 1 || n > TASKS_MAX)
+        return 0;
     char *room = n > w->batch ? realloc(w->request, n * w->pool->protocol.request_bytes) : w->request;
     if (room) {
         w->request = room;
         w->batch = n;
     }
+    return 1;
 }
 
 Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)

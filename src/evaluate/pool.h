@@ -74,8 +74,8 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
 Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err);
 Status pool_wait(Worker *w, Err *err);
 
-/* So many designs at once from now on, where there is memory. */
-void pool_batch(Worker *w, size_t n);
+/* So many designs at once from now on, where there is memory. 0: it is no number from 1 to TASKS_MAX. */
+int pool_batch(Worker *w, size_t n);
 
 /* What became of the worker's next task; kill_it: the worker is not to be trusted any more. */
 __attribute__((format(printf, 4, 5))) void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format,
