@@ -2,27 +2,18 @@
 
 #include <ctype.h>
 
-/* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
-static const char *take_name(const char *text, char name[])
+/* Read NAME<=NUMBER or NAME>=NUMBER, where NAME may be a chance p(NAME>NUMBER). */
+static Status read_limit(Limit *l, const Schema *schema, const char *text, Err *err)
 {
     const size_t inside = strncmp(text, "p(", 2) == 0 ? strcspn(text, ")") : 0;
     const char *relation = strpbrk(text + inside, "<>");
+    char name[TABLE_NAME_MAX], *end;
     if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
-        return NULL;
-    snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);
+        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
+    snprintf(name, sizeof name, "%.*s", (int)(relation - text), text);
     for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
         *--last = 0;
-    return relation;
-}
-
-static Status read_limit(Limits *limits, const Schema *schema, const char *text, Err *err)
-{
-    char name[TABLE_NAME_MAX], *end;
-    const char *relation = take_name(text, name);
-    if (!relation)
-        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
-    Limit *l = &limits->limit[limits->n++];
-    TRY(schema_pick_result(schema, "search.limits", name, STATUS_BAD_DATA, &l->result, err));
+    TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "search.limits", name, &l->result, err));
     l->sign = *relation == '<' ? 1.0 : -1.0;
     l->bound = strtod(relation + 2, &end);
     if (end == relation + 2 || *end || !isfinite(l->bound))
@@ -78,7 +69,7 @@ Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *
     for (size_t i = 0; i < list_count(list); i++) {
         if (!list_item(list, i, text, sizeof text))
             return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
-        TRY(read_limit(limits, schema, text, err));
+        TRY(read_limit(&limits->limit[limits->n++], schema, text, err));
     }
     return check(limits, schema, err);
 }
@@ -105,7 +96,7 @@ Status aspirations_read(const double **aspire, double level[], const Schema *sch
         if (!blank || *end || !isfinite(value))
             return bad_data(err, "search.aspire: item %zu of '%.60s' is not NAME NUMBER", i + 1, list);
         *blank = 0;
-        TRY(schema_pick_objective(schema, "search.aspire", text, STATUS_BAD_DATA, &k, err));
+        TRY(schema_pick(schema, schema->n_obj, "search.aspire", text, &k, err));
         if (!isnan(level[k]))
             return bad_data(err, "search.aspire: %s is given twice", text);
         level[k] = schema_objective(schema, k)->sense * value;
