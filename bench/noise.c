@@ -31,7 +31,7 @@ static Status spread_of(SimWorker *worker, int n, uint32_t design, double *sprea
         TRY(sim_run(worker, SCENE_IMPACT, x, &result, err));
         parts[k] = measured(&result);
     }
-    replicates_summarise(&plan, parts, sizeof *parts, &e);
+    replicates_summarise(&plan, parts, sizeof *parts, 0, &e);
     *spread = largest_spread(&e);
     return STATUS_OK;
 }

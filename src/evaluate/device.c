@@ -44,7 +44,7 @@ static double combine(const Tuning *t, size_t n, const Measured of[], double J[3
     ReplicateSummary sum;
     plan.n_records = n;
     plan.n_replicates = 1;
-    replicates_summarise(&plan, of, sizeof *of, &sum);
+    replicates_summarise(&plan, of, sizeof *of, 0, &sum);
     J[0] = sum.mean[MEASURE_J1];
     J[1] = sum.mean[MEASURE_J2];
     J[2] = sum.mean[MEASURE_J3];

@@ -149,38 +149,34 @@ static void take_design(const External *e, Worker *w, const json_t *o, const cha
         pool_settle(w, OUTCOME_OK, 0, "%s", "");
 }
 
-/* Take a line: the answer of one design, or of a list of them the list of their answers. */
-static void take_answer(const External *e, Worker *w, char *line, size_t length)
-{
-    json_error_t error;
-    const char first = line[strspn(line, " \t\r")];
-    if (first == '{' || (first == '[' && w->n > 1))
-        blank_words(line);
-    json_t *o = json_loadb(line, length, 0, &error);
-    w->n_answered++;
-    if (!o && json_error_code(&error) == json_error_numeric_overflow)
-        pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
-                    e->n_obj);
-    else if (json_is_array(o) && w->n > 1)
-        for (size_t i = 0; i < json_array_size(o) && w->n_done < w->n; i++)
-            take_design(e, w, json_array_get(o, i), line);
-    else
-        take_design(e, w, o, line);
-    json_decref(o);
-}
-
-/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request,
- * which it spoils. */
+/* Take the first whole line in the buffer that is not blank: the answer of one design, or of a list of them the list of
+ * their answers. What follows it waits for the next request, which it spoils. */
 static void look_for_answer(void *self, Worker *w)
 {
+    const External *e = self;
     size_t used = 0;
     for (char *end; w->n_done < w->n && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
         char *line = w->line + used;
         const size_t length = end - line;
+        json_error_t error;
         *end = 0;
         used += length + 1;
-        if (strspn(line, " \t\r") < length)
-            take_answer(self, w, line, length);
+        const size_t blanks = strspn(line, " \t\r");
+        if (blanks >= length)
+            continue;
+        if (line[blanks] == '{' || (line[blanks] == '[' && w->n > 1))
+            blank_words(line);
+        json_t *o = json_loadb(line, length, 0, &error);
+        w->n_answered++;
+        if (!o && json_error_code(&error) == json_error_numeric_overflow)
+            pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
+                        e->n_obj);
+        else if (json_is_array(o) && w->n > 1)
+            for (size_t i = 0; i < json_array_size(o) && w->n_done < w->n; i++)
+                take_design(e, w, json_array_get(o, i), line);
+        else
+            take_design(e, w, o, line);
+        json_decref(o);
     }
     memmove(w->line, w->line + used, w->n_line - used);
     w->n_line -= used;
@@ -190,16 +186,9 @@ static void look_for_answer(void *self, Worker *w)
 
 /* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
-static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+static Pool *pool(void *self)
 {
-    External *e = self;
-    return pool_do(&e->pool, worker, n, tasks, n_done, err);
-}
-
-static size_t batch(void *self, size_t worker)
-{
-    const External *e = self;
-    return e->pool.worker[worker].batch;
+    return &((External *)self)->pool;
 }
 
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
@@ -231,8 +220,7 @@ static void external_close(void *self)
     free(e);
 }
 
-static const Simulator EXTERNAL = {
-    .combine = combine, .close = external_close, .batch = batch, .simulate_batch = simulate};
+static const Simulator EXTERNAL = {.combine = combine, .close = external_close, .pool = pool};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 

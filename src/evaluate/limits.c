@@ -30,10 +30,22 @@ static const Limit *find(const Limits *limits, size_t n, size_t result, double s
     return NULL;
 }
 
-/* One limit on a side, that of what is better only beside the other, and some number between both. */
-static Status check(const Limits *limits, const Schema *schema, Err *err)
+/* Read the list, then check that there is one limit on a side, that of what is better only beside the other, and some
+ * number between both. */
+Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
 {
     const int is_tower = schema->order.n_obj > 0;
+    char text[128];
+    limits->n = 0;
+    if (strcmp(list, "none") == 0)
+        return STATUS_OK;
+    if (list_count(list) > LIMITS_MAX)
+        return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, text, sizeof text))
+            return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
+        TRY(read_limit(&limits->limit[limits->n++], schema, text, err));
+    }
     for (size_t i = 0; i < limits->n; i++) {
         const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
         const Column *c = schema_objective(schema, l->result);
@@ -56,22 +68,6 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
                 c->name, relation, l->bound, c->name, c->sense > 0 ? "less" : "more", opposite);
     }
     return STATUS_OK;
-}
-
-Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
-{
-    char text[128];
-    limits->n = 0;
-    if (strcmp(list, "none") == 0)
-        return STATUS_OK;
-    if (list_count(list) > LIMITS_MAX)
-        return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
-    for (size_t i = 0; i < list_count(list); i++) {
-        if (!list_item(list, i, text, sizeof text))
-            return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
-        TRY(read_limit(&limits->limit[limits->n++], schema, text, err));
-    }
-    return check(limits, schema, err);
 }
 
 void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, double g[])

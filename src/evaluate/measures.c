@@ -72,17 +72,6 @@ unsigned measures_need(MeasureSet set)
     return needs;
 }
 
-/* What a scene has of NEEDS_. */
-static unsigned has_of(const CoreOptions *core, const Building *b)
-{
-    Foundation f = {0};
-    const CoreSection section = core_section(core);
-    foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
-    return NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) | (f.rotation > 0 ? NEEDS_TURNING : 0u) |
-           (f.radius_m > 0 ? NEEDS_RADIUS : 0u) | (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) |
-           (section == CORE_BOX ? NEEDS_WALLS : 0u);
-}
-
 Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err)
 {
     static const struct {
@@ -95,7 +84,12 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
         {NEEDS_SHAPE, "the core has no section: set core.section = box or plate, and core.model = none"},
         {NEEDS_WALLS, "the core has no walls: set core.section = box, and core.model = none"},
     };
-    const unsigned has = has_of(core, b);
+    Foundation f = {0};
+    const CoreSection section = core_section(core);
+    foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
+    const unsigned has = NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) |
+                         (f.rotation > 0 ? NEEDS_TURNING : 0u) | (f.radius_m > 0 ? NEEDS_RADIUS : 0u) |
+                         (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) | (section == CORE_BOX ? NEEDS_WALLS : 0u);
     for (int k = 0; k < N_MEASURES; k++)
         for (size_t i = 0; set >> k & 1 && i < N_OF(LACKS); i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)
@@ -168,25 +162,9 @@ static Status no_result(const char *key, const char *name, Err *err)
     return fail_no_word(err, STATUS_BAD_DATA, key, name, "result", names, MEASURES_LISTED);
 }
 
-/* Of a chance that was read, which is minimised. */
-static Status check_chance(const Chance *c, const char *key, Err *err)
-{
-    const Measure *of = &MEASURES[c->of];
-    if (c->of == MEASURE_ANNUAL_LOSS)
-        return bad_data(err, "%s: %s: annual_loss is a sum over records, no result of one simulation", key, c->name);
-    const char exceeds = of->sense > 0 ? '>' : '<';
-    if (c->bound < 0 || (c->bound == 0 && c->sign < 0))
-        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c->name);
-    if (c->bound >= 1 && measure_is_share(c->of))
-        return bad_data(err, "%s: %s: this is a share of 1, no per cent; write %g for %g %%", key, c->name,
-                        0.01 * c->bound, c->bound);
-    if (c->sign * of->sense < 0)
-        return bad_data(err, "%s: %s prefers what is worse: of %s %s is better; write p(%s%c%g)", key, c->name,
-                        of->name, of->sense > 0 ? "less" : "more", of->name, exceeds, c->bound);
-    return STATUS_OK;
-}
-
-/* "p(NAME>NUMBER)" to *k, a measure of the order; another text says so. */
+/* Read "p(NAME>NUMBER)", a share of simulations that is minimised, into *k, a measure of the order; another text says so.
+ * Refused is what is the same for all designs, a per cent where the number is a share, and a preference of what is
+ * worse. */
 static Status take_chance(MeasureOrder *o, const char *key, const char *text, int *k, Err *err)
 {
     Chance c = {0};
@@ -202,10 +180,20 @@ static Status take_chance(MeasureOrder *o, const char *key, const char *text, in
         return bad_data(err, "%s: '%.60s' is no p(NAME>NUMBER) with a column as NAME", key, text);
     snprintf(name, sizeof name, "%.*s", n, c.name + 2);
     c.of = find(name, (size_t)n);
+    c.sign = *relation == '>' ? 1 : -1;
     if (c.of == MEASURES_LISTED)
         return no_result(key, name, err);
-    c.sign = *relation == '>' ? 1 : -1;
-    TRY(check_chance(&c, key, err));
+    const int is_less = MEASURES[c.of].sense > 0;
+    if (c.of == MEASURE_ANNUAL_LOSS)
+        return bad_data(err, "%s: %s: annual_loss is a sum over records, no result of one simulation", key, c.name);
+    if (c.bound < 0 || (c.bound == 0 && c.sign < 0))
+        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c.name);
+    if (c.bound >= 1 && measure_is_share(c.of))
+        return bad_data(err, "%s: %s: this is a share of 1, no per cent; write %g for %g %%", key, c.name,
+                        0.01 * c.bound, c.bound);
+    if (is_less != (c.sign > 0))
+        return bad_data(err, "%s: %s prefers what is worse: of %s %s is better; write p(%s%c%g)", key, c.name, name,
+                        is_less ? "less" : "more", name, is_less ? '>' : '<', c.bound);
     for (*k = 0; *k < CHANCES_MAX && o->chance[*k].name[0] && strcmp(o->chance[*k].name, c.name) != 0;)
         ++*k;
     if (*k == CHANCES_MAX)
@@ -227,16 +215,22 @@ static void add_objective(MeasureOrder *o, int k)
     o->objectives |= (MeasureSet)1 << k;
 }
 
-static Status take_objective(MeasureOrder *o, const char *name, Err *err)
+static Status take_objectives(MeasureOrder *o, const char *list, Err *err)
 {
-    int k = find(name, strlen(name));
-    if (is_chance(name))
-        TRY(take_chance(o, "search.objectives", name, &k, err));
-    else if (k == MEASURES_LISTED)
-        return no_result("search.objectives", name, err);
-    if (o->objectives >> k & 1)
-        return bad_data(err, "search.objectives: %s stands there twice", name);
-    add_objective(o, k);
+    static const char KEY[] = "search.objectives";
+    char name[64];
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, name, sizeof name))
+            return bad_data(err, "%s: name %zu is empty or too long", KEY, i + 1);
+        int k = find(name, strlen(name));
+        if (is_chance(name))
+            TRY(take_chance(o, KEY, name, &k, err));
+        else if (k == MEASURES_LISTED)
+            return no_result(KEY, name, err);
+        if (o->objectives >> k & 1)
+            return bad_data(err, "%s: %s stands there twice", KEY, name);
+        add_objective(o, k);
+    }
     return STATUS_OK;
 }
 
@@ -259,17 +253,6 @@ static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
     return STATUS_OK;
 }
 
-static Status take_list(MeasureOrder *o, const char *list, Err *err)
-{
-    char name[64];
-    for (size_t i = 0; i < list_count(list); i++) {
-        if (!list_item(list, i, name, sizeof name))
-            return bad_data(err, "search.objectives: name %zu is empty or too long", i + 1);
-        TRY(take_objective(o, name, err));
-    }
-    return STATUS_OK;
-}
-
 Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
 {
     const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
@@ -278,7 +261,7 @@ Status measures_order(MeasureOrder *out, const char *objectives, const char *lim
         if (is_paper || measure_exists(k, n_floors))
             add_objective(out, k);
     if (!is_auto && !is_paper)
-        TRY(take_list(out, objectives, err));
+        TRY(take_objectives(out, objectives, err));
     TRY(take_limits(out, limits, err));
     out->judged |= out->objectives | out->limited;
     if (out->judged >> MEASURE_ANNUAL_LOSS & 1) /* one record alone need not have a rate */

@@ -21,11 +21,6 @@ static const double FAREWELL_S = 1.0;
 
 /* -- one process --------------------------------------------------------------------------------------------------- */
 
-static int has_ended(const Worker *w)
-{
-    return poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, 0) > 0;
-}
-
 static void close_pipes(const Worker *w)
 {
     close(w->in);
@@ -108,25 +103,6 @@ void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format, ..
     w->asked = clock_seconds();
 }
 
-/* What becomes of a worker that has ended, or is silent, and of its task: of an end that was not its fault a fresh
- * worker is asked, once. */
-static Status lose(Worker *w, int has_gone, Err *err)
-{
-    const Protocol *how = &w->pool->protocol;
-    const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
-                            clock_seconds() < w->asked + LEFT_BEFORE_S;
-    worker_end(w);
-    if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
-        w->is_second = 1;
-        return worker_start(w, err);
-    }
-    if (has_gone)
-        pool_settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
-    else
-        pool_settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", how->timeout_s);
-    return STATUS_OK;
-}
-
 Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -136,7 +112,7 @@ Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
     w->silent_s = 0.0;
     w->why = (Err){0};
     w->is_second = 0;
-    if (w->helper.pid && has_ended(w))
+    if (w->helper.pid && poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, 0) > 0)
         worker_end(w); /* it ended after its last answer: no fault of any design */
     if (w->helper.pid == 0 && !how->send)
         TRY(worker_start(w, err));
@@ -149,6 +125,7 @@ Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
     return STATUS_OK;
 }
 
+/* Wait until the tasks of a worker are settled, or no more is wanted and the worker has had its time to end. */
 Status pool_wait(Worker *w, Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -159,8 +136,24 @@ Status pool_wait(Worker *w, Err *err)
         const double now = clock_seconds();
         w->silent_s += fmin(now - before, 2.0 * LOOK_S);
         before = now;
-        if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s))
-            TRY(lose(w, has_gone, err));
+
+        /* 1. A worker that has ended, or is silent, is lost, and so is its task; of an end that was not the fault of
+         * that a fresh worker is asked, once. */
+        if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s)) {
+            const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
+                                    clock_seconds() < w->asked + LEFT_BEFORE_S;
+            worker_end(w);
+            if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
+                w->is_second = 1;
+                TRY(worker_start(w, err));
+            } else if (has_gone) {
+                pool_settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+            } else {
+                pool_settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", how->timeout_s);
+            }
+        }
+
+        /* 2. No more may be wanted. */
         if (w->n_done < w->n && ending > 0.0 && now > ending + how->grace_s) {
             worker_end(w);
             return fail(err, STATUS_STOPPED, "stopped");

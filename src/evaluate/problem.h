@@ -23,6 +23,7 @@
 
 #include "evaluate/evaluation.h"
 
+typedef struct Pool Pool;
 typedef struct Queue Queue;
 typedef struct Problem Problem;
 
@@ -64,10 +65,9 @@ typedef struct {
      * there. */
     void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
-    /* In the place of simulate: several tasks at once, so many as the worker wants now, TASKS_MAX at most; *n_done of
-     * them, the first ones, are done where a status ends it. NULL: one */
-    size_t (*batch)(void *self, size_t worker);
-    Status (*simulate_batch)(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
+    /* In the place of simulate: workers that are elsewhere (evaluate/pool.h), one for each of ours; NULL, or none is
+     * returned: there are none */
+    Pool *(*pool)(void *self);
 } Simulator;
 
 enum { TASKS_MAX = 64 };
@@ -208,17 +208,6 @@ static inline double problem_spread(const Problem *p, size_t d, double u)
         return steps_at(&p->steps[d], (size_t)fmin(u * (double)p->steps[d].n, (double)(p->steps[d].n - 1)));
     return problem_is_discrete(p, d) ? fmin(floor(lower + u * (upper - lower + 1.0)), upper)
                                      : problem_from_unit(p, d, u);
-}
-
-/* The first *n_done are done; where they are not n a status ends it. */
-static inline Status simulate_tasks(const Simulator *s, void *self, size_t worker, size_t n, const Task tasks[],
-                                    size_t *n_done, Err *err)
-{
-    if (s->simulate_batch)
-        return s->simulate_batch(self, worker, n, tasks, n_done, err);
-    for (*n_done = 0; *n_done < n; ++*n_done)
-        TRY(s->simulate(self, worker, &tasks[*n_done], err));
-    return STATUS_OK;
 }
 
 static inline void problem_close(Problem *p)

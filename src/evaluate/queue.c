@@ -5,6 +5,7 @@
 
 #include "base/carve.h"
 #include "evaluate/cluster.h"
+#include "evaluate/pool.h"
 
 /* A design that is pending, or room for one. */
 typedef struct Slot {
@@ -23,8 +24,8 @@ typedef struct Slot {
 typedef struct {
     Queue *queue;
     size_t number;
-    pthread_t thread;
-} Worker;
+    pthread_t id;
+} Thread;
 
 struct Queue {
     const Problem *problem;
@@ -42,7 +43,7 @@ struct Queue {
     size_t rank; /* of the task that ended it */
     Err why;
     void *executing;  /* the problem's executor; without one: */
-    Worker *worker;   /* (n_threads) */
+    Thread *thread;   /* (n_threads) */
     size_t n_threads; /* 0: the client itself is the worker, while it waits */
     size_t n_first;   /* of these; the others take ahead, where there is enough for all */
     pthread_mutex_t lock, finishing;
@@ -196,11 +197,12 @@ static int do_tasks(Queue *q, size_t worker, int wait)
     void *self = executor ? q->executing : q->problem->self;
     Task task[TASKS_MAX];
     Err why = {0};
-    const size_t n = queue_take(q, worker, wait, s->batch ? s->batch(self, worker) : 1, task);
+    Pool *pool = pool_of(s, self);
+    const size_t n = queue_take(q, worker, wait, pool ? pool->worker[worker].batch : 1, task);
     if (n == 0)
         return 0;
     size_t n_done = 0;
-    const Status status = simulate_tasks(s, self, worker, n, task, &n_done, &why);
+    const Status status = pool ? pool_do(pool, worker, n, task, &n_done, &why) : s->simulate(self, worker, task, &why);
     for (size_t i = 0; i < n; i++)
         queue_give(q, &task[i], i < n_done ? STATUS_OK : status, &why);
     return 1;
@@ -332,8 +334,8 @@ void executor_choose(Problem *p)
 
 static void *work(void *user)
 {
-    const Worker *w = user;
-    while (do_tasks(w->queue, w->number, 1))
+    const Thread *t = user;
+    while (do_tasks(t->queue, t->number, 1))
         ;
     return NULL;
 }
@@ -349,11 +351,11 @@ static Status start(Queue *q, Err *err)
     if (!e && q->n_first == 1)
         return STATUS_OK;
     const size_t n = e && q->n_first > 1 ? 2 * q->n_first : q->n_first;
-    TRY_ROOM(q->worker, n, "threads", err);
+    TRY_ROOM(q->thread, n, "threads", err);
     for (; q->n_threads < n; q->n_threads++) {
-        Worker *w = &q->worker[q->n_threads];
-        *w = (Worker){.queue = q, .number = q->n_threads};
-        if (pthread_create(&w->thread, NULL, work, w) != 0)
+        Thread *t = &q->thread[q->n_threads];
+        *t = (Thread){.queue = q, .number = q->n_threads};
+        if (pthread_create(&t->id, NULL, work, t) != 0)
             return fail(err, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", q->n_threads + 1, n);
     }
     return STATUS_OK;
@@ -390,10 +392,10 @@ void queue_close(Queue *q)
     pthread_cond_broadcast(&q->plenty);
     pthread_mutex_unlock(&q->lock);
     for (size_t i = 0; i < q->n_threads; i++)
-        pthread_join(q->worker[i].thread, NULL);
+        pthread_join(q->thread[i].id, NULL);
     if (q->executing)
         q->problem->executor->stop(q->executing);
-    free(q->worker);
+    free(q->thread);
     pthread_mutex_destroy(&q->lock);
     pthread_mutex_destroy(&q->finishing);
     pthread_cond_destroy(&q->some);

@@ -8,8 +8,9 @@ enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that th
 /* Streams of the random numbers. */
 enum { OF_GAPS, OF_STRUCTURE, OF_LEFT_GAPS, OF_BOOTSTRAP };
 
-static void change_gaps(Random random, size_t k, double tolerance_m, size_t n_gaps, double x[])
+static void change_gaps(uint32_t seed, uint32_t stream, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
+    Random random = random_stream(seed, RANDOM_REPLICATE, stream, (uint32_t)k);
     for (size_t j = 0; k > 0 && j < n_gaps; j++) {
         const double tiny = random_normal(&random), error = random_normal(&random);
         x[j] = fmax(x[j] * (1.0 + REPLICATE_CHANGE * tiny) + tolerance_m * error, 0.0);
@@ -18,7 +19,7 @@ static void change_gaps(Random random, size_t k, double tolerance_m, size_t n_ga
 
 void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
-    change_gaps(random_stream(seed, RANDOM_REPLICATE, OF_GAPS, (uint32_t)k), k, tolerance_m, n_gaps, x);
+    change_gaps(seed, OF_GAPS, k, tolerance_m, n_gaps, x);
 }
 
 void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d)
@@ -28,7 +29,7 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
     if (s->gap_sides == GAPS_BOTH)
         memcpy(d->gap[1], d->gap[0], n * sizeof *d->gap[0]);
     else
-        change_gaps(random_stream(seed, RANDOM_REPLICATE, OF_LEFT_GAPS, (uint32_t)k), k, tolerance_m, n, d->gap[1]);
+        change_gaps(seed, OF_LEFT_GAPS, k, tolerance_m, n, d->gap[1]);
 }
 
 const char *spread_word(double tolerance_m, const UncertainOptions *u)
@@ -127,45 +128,22 @@ static void combine_measure(const ReplicatePlan *plan, int k, const double value
     *sd = sqrt(*sd);
 }
 
-/* Measure k of every simulation. */
-static void gather(const ReplicatePlan *plan, const void *parts, size_t size, int k, double values[])
-{
-    for (size_t i = 0; i < plan->n_records * plan->n_replicates; i++)
-        values[i] = simulation(plan, parts, size, i)->value[k];
-}
-
-void replicates_errors(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
-{
-    size_t drawn[BOOTSTRAP][TOWER_RECORDS_MAX];
-    double values[PARTS_MAX];
-    for (size_t b = 0; b < BOOTSTRAP; b++) {
-        Random random = random_stream(0, RANDOM_REPLICATE, OF_BOOTSTRAP, (uint32_t)b);
-        for (size_t r = 0; r < plan->n_records; r++)
-            drawn[b][r] = random_below(&random, plan->n_records);
-    }
-    for (int k = 0; k < N_MEASURES; k++) {
-        double sum = 0, squares = 0, value, sd;
-        gather(plan, parts, size, k, values);
-        for (size_t b = 0; b < BOOTSTRAP && plan->n_records > 1; b++) {
-            combine_measure(plan, k, values, drawn[b], &value, &sd);
-            sum += value - out->mean[k];
-            squares += (value - out->mean[k]) * (value - out->mean[k]);
-        }
-        const double square = (squares - sum * sum / BOOTSTRAP) / (BOOTSTRAP - 1);
-        out->error[k] = plan->n_records > 1 ? sqrt(square < 0 ? 0 : square) : NAN;
-    }
-}
-
-void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
+void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, int wants_errors,
+                          ReplicateSummary *out)
 {
     static const char *const RULES[] = {"worst", "mean", "mean + sd", "cvar", "quantile"};
     const int is_mean = plan->rule == ROBUST_WORST && plan->n_records == 1;
+    const size_t n = plan->n_records * plan->n_replicates;
+    const size_t n_suites = wants_errors && plan->n_records > 1 ? BOOTSTRAP : 0;
+    size_t drawn[BOOTSTRAP][TOWER_RECORDS_MAX];
     double values[PARTS_MAX];
     *out = (ReplicateSummary){.rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
                               .spread = plan->n_records > 1 && plan->rule > ROBUST_MEAN ? "over records" : plan->spread,
                               .n_records = plan->n_records,
                               .n_replicates = plan->n_replicates};
-    for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {
+
+    /* 1. What failed first. */
+    for (size_t i = n; i-- > 0;) {
         const Measured *m = simulation(plan, parts, size, i);
         out->seconds += m->seconds;
         if (m->outcome != RUN_OK) {
@@ -174,9 +152,26 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
             out->n_failed++;
         }
     }
+
+    /* 2. Suites of records for the bootstrap. */
+    for (size_t b = 0; b < n_suites; b++) {
+        Random random = random_stream(0, RANDOM_REPLICATE, OF_BOOTSTRAP, (uint32_t)b);
+        for (size_t r = 0; r < plan->n_records; r++)
+            drawn[b][r] = random_below(&random, plan->n_records);
+    }
+
+    /* 3. Every measure, and its deviation over the suites. */
     for (int k = 0; k < N_MEASURES; k++) {
-        gather(plan, parts, size, k, values);
+        double sum = 0, squares = 0, value, sd;
+        for (size_t i = 0; i < n; i++)
+            values[i] = simulation(plan, parts, size, i)->value[k];
         combine_measure(plan, k, values, NULL, &out->mean[k], &out->sd[k]);
-        out->error[k] = NAN;
+        for (size_t b = 0; b < n_suites; b++) {
+            combine_measure(plan, k, values, drawn[b], &value, &sd);
+            sum += value - out->mean[k];
+            squares += (value - out->mean[k]) * (value - out->mean[k]);
+        }
+        const double square = (squares - sum * sum / BOOTSTRAP) / (BOOTSTRAP - 1);
+        out->error[k] = n_suites > 0 ? sqrt(square < 0 ? 0 : square) : NAN;
     }
 }

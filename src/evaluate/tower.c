@@ -104,27 +104,6 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
     return status;
 }
 
-/* Open the scenario of a place and check that it has what every measure that is judged needs. */
-static Status open_scenario(const Tower *t, size_t place, Scenario *w, Err *err)
-{
-    Settings *s;
-    Status status = read_scene(t, place, &s, err);
-    if (status == STATUS_OK) {
-        const SceneOptions options = settings_scene(s);
-        status = scenario_open(w, &options, &s->motion, &record_of(t, place)->motion, err);
-    }
-    if (status == STATUS_OK) {
-        const Building *b = scene_building(w->scene);
-        status = measures_check(t->judged, &w->options.core, b, err);
-        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
-            status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
-        if (status != STATUS_OK)
-            scenario_close(w);
-    }
-    free(s);
-    return status;
-}
-
 static void release(Tower *t, size_t place)
 {
     Place *p = &t->place[place];
@@ -137,14 +116,29 @@ static void release(Tower *t, size_t place)
     pthread_mutex_unlock(&p->lock);
 }
 
+/* Keep the scene of a place open. The first who comes opens it and checks that it has what every measure that is judged
+ * needs. */
 static Status acquire(Tower *t, size_t place, Err *err)
 {
     Place *p = &t->place[place];
+    Settings *s = NULL;
     Status status = STATUS_OK;
     pthread_mutex_lock(&p->lock);
     if (!p->scenario) {
-        p->scenario = calloc(1, sizeof *p->scenario);
-        status = p->scenario ? open_scenario(t, place, p->scenario, err) : fail_memory(err, 1, "a scene");
+        Scenario *w = p->scenario = calloc(1, sizeof *w);
+        status = w ? read_scene(t, place, &s, err) : fail_memory(err, 1, "a scene");
+        if (status == STATUS_OK) {
+            const SceneOptions options = settings_scene(s);
+            status = scenario_open(w, &options, &s->motion, &record_of(t, place)->motion, err);
+        }
+        const Building *b = status == STATUS_OK ? scene_building(w->scene) : NULL;
+        if (b)
+            status = measures_check(t->judged, &w->options.core, b, err);
+        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
+            status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
+        if (b && status != STATUS_OK)
+            scenario_close(w);
+        free(s);
     }
     p->n_users += status == STATUS_OK;
     if (status != STATUS_OK) {
@@ -201,7 +195,7 @@ static Status attach(Tower *t, size_t place, size_t worker, SimWorker **out, Err
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
 /* Simulate one part of a design: a replicate of it under one record. */
-static Status simulate_here(void *self, size_t worker, const Task *task, Err *err)
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
     Tower *t = self;
     const Settings *s = &t->recipe->settings;
@@ -241,7 +235,7 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     return STATUS_OK;
 }
 
-static const Simulator HERE = {.simulate = simulate_here};
+static const Simulator HERE = {.simulate = simulate};
 
 static void write_lost(const Task *task, const char *reason)
 {
@@ -252,12 +246,10 @@ static void write_lost(const Task *task, const char *reason)
         ((FullResult *)task->result)->result = lost;
 }
 
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+static Pool *processes(void *self)
 {
     Tower *t = self;
-    size_t n_done;
-    return t->isolated.pool.n_workers > 0 ? pool_do(&t->isolated.pool, worker, 1, task, &n_done, err)
-                                          : simulate_here(self, worker, task, err);
+    return t->isolated.pool.n_workers > 0 ? &t->isolated.pool : NULL;
 }
 
 /* Of a design that has n parts: all, the first replicate of every record, or one alone. */
@@ -274,7 +266,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     const Tower *t = p->self;
     const ReplicatePlan plan = plan_of(t, n);
     ReplicateSummary sum;
-    replicates_summarise(&plan, parts, p->part_size, &sum);
+    replicates_summarise(&plan, parts, p->part_size, 0, &sum);
     const Measured *shown = (const void *)((const char *)parts + sum.shown * p->part_size);
     evaluation_set_outcome(e, sum.outcome, shown->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
@@ -307,7 +299,7 @@ static void tower_close(void *self)
     free(t);
 }
 
-static const Simulator TOWER = {.simulate = simulate, .combine = combine, .close = tower_close};
+static const Simulator TOWER = {.simulate = simulate, .pool = processes, .combine = combine, .close = tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
@@ -626,8 +618,7 @@ void tower_standard_errors(const Tower *t, const SimResult by_record[], double e
     ReplicateSummary sum;
     for (size_t i = 0; i < plan.n_records; i++)
         parts[i] = measured(&by_record[i]);
-    replicates_summarise(&plan, parts, sizeof *parts, &sum);
-    replicates_errors(&plan, parts, sizeof *parts, &sum);
+    replicates_summarise(&plan, parts, sizeof *parts, 1, &sum);
     memcpy(error, sum.error, sizeof sum.error);
 }
 
@@ -637,11 +628,9 @@ static void store_task(const Problem *p, const SimTask *task, const char *parts)
     const size_t n = MAX_OF(task->n_parts, 1);
     const ReplicatePlan plan = plan_of(p->self, n);
     ReplicateSummary sum;
-    replicates_summarise(&plan, parts, p->part_size, &sum);
-    if (task->summary) {
-        replicates_errors(&plan, parts, p->part_size, &sum);
+    replicates_summarise(&plan, parts, p->part_size, task->summary != NULL, &sum);
+    if (task->summary)
         *task->summary = sum;
-    }
     if (task->result)
         *task->result = ((const FullResult *)(const void *)(parts + sum.shown * p->part_size))->result;
     for (size_t i = 0; task->parts && i < n; i++)

@@ -53,9 +53,9 @@ static Seat seat_of(const Ranks *r, size_t worker)
 
 /* -- messages ------------------------------------------------------------------------------------------------------ */
 
-/* An answer is for the worker that waits for it, whatever else a sign of life for all of the rank, as is an answer that
- * is none: that is no good one. r->lock is held. */
-static void hear(Ranks *r, Message *m)
+/* Give a message to whom it concerns: an answer to the worker that waits for it, whatever else, as a sign of life, to all
+ * of the rank. What should be an answer and is none goes to them all the same: it is no good one. r->lock is held. */
+static void deliver(Ranks *r, Message *m)
 {
     const Pool *p = &r->pool[r->is_open];
     const Answer *a = m->bytes;
@@ -80,7 +80,7 @@ static void *receive(void *user)
         pthread_mutex_lock(&r->lock);
         const int there = message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m);
         if (there)
-            hear(r, &m);
+            deliver(r, &m);
         pthread_mutex_unlock(&r->lock);
         pause = there ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
         if (!there)
@@ -146,14 +146,9 @@ static void look(void *self, Worker *w)
     w->n_line = 0;
 }
 
-static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+static Pool *pool(void *self)
 {
-    return pool_do(&((Ranks *)self)->pool[1], worker, n, tasks, n_done, err);
-}
-
-static size_t batch(void *self, size_t worker)
-{
-    return ((const Ranks *)self)->pool[1].worker[worker].batch;
+    return &((Ranks *)self)->pool[1];
 }
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
@@ -250,6 +245,6 @@ static Status start(void **self, Queue *q, size_t *n_workers, Err *err)
     return STATUS_OK;
 }
 
-static const Simulator ON_RANKS = {.batch = batch, .simulate_batch = simulate};
+static const Simulator ON_RANKS = {.pool = pool};
 
 const Executor EXECUTOR_RANKS = {.start = start, .stop = stop, .simulator = &ON_RANKS};
