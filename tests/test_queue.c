@@ -320,12 +320,6 @@ static Status double_or_die(void *self, size_t worker, const Task *t, Err *err)
     return STATUS_OK;
 }
 
-static int go_on(void *user)
-{
-    (void)user;
-    return 1;
-}
-
 static void note_lost(const Task *t, const char *reason)
 {
     *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
@@ -339,7 +333,7 @@ TEST(a_simulation_that_crashes_ends_its_own_task_alone)
     for (int i = 0; i < DESIGNS; i++) {
         const double x = (double)((i * 7) % 11 - 3);
         double result = 0.5;
-        const Task task = {.x = &x, .result = &result, .size = sizeof result, .may_go_on = go_on};
+        const Task task = {.x = &x, .result = &result, .size = sizeof result};
         size_t n_done;
         CHECK_OK(pool_do(&q.pool, (size_t)i % WORKERS, 1, &task, &n_done, &err), &err);
         assert_same_number(result, x < 0.0 ? SIGKILL : x == 0.0 ? -1.0 : 2.0 * x);

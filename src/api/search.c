@@ -384,31 +384,31 @@ imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[],
 
 /* -- what is known so far ------------------------------------------------------------------------------------------ */
 
-static Status look(imtet_search *s, imtet_search_state *out, Err *err)
-{
-    if (!out || out->size != sizeof *out)
-        return misused(err, "imtet_search_look: state.size is no sizeof state, %zu", sizeof *out);
-    TRY(advance(s, err));
-    *out = (imtet_search_state){.size = sizeof *out,
-                                .variables = s->schema.n_var,
-                                .objectives = s->schema.n_obj,
-                                .constraints = s->schema.n_extra,
-                                .told = s->n_told,
-                                .done = s->is_over,
-                                .why = s->is_over ? stop_reason_words(s->reason) : ""};
-    for (size_t i = 0; i < s->table.n; i++) {
-        out->under_way += s->design[i].place == DESIGN_OUT;
-        out->failed += s->design[i].place == DESIGN_TOLD && s->table.row[i].outcome != OUTCOME_OK;
-    }
-    const size_t most = (size_t)s->settings.search.max_evals, spent = out->told + out->under_way;
-    out->left = most > spent && !s->is_over ? most - spent : 0;
-    return STATUS_OK;
-}
-
 imtet_status imtet_search_look(imtet_search *search, imtet_search_state *state, imtet_error *error)
 {
     Err err = {0};
-    return enter(search, &err, error) ? leave(search, look(search, state, &err), &err, error) : (imtet_status)err.code;
+    if (!enter(search, &err, error))
+        return (imtet_status)err.code;
+    const imtet_search *s = search;
+    const Status status = state && state->size == sizeof *state
+                              ? advance(search, &err)
+                              : misused(&err, "imtet_search_look: state.size is no sizeof state, %zu", sizeof *state);
+    if (status == STATUS_OK) {
+        *state = (imtet_search_state){.size = sizeof *state,
+                                      .variables = s->schema.n_var,
+                                      .objectives = s->schema.n_obj,
+                                      .constraints = s->schema.n_extra,
+                                      .told = s->n_told,
+                                      .done = s->is_over,
+                                      .why = s->is_over ? stop_reason_words(s->reason) : ""};
+        for (size_t i = 0; i < s->table.n; i++) {
+            state->under_way += s->design[i].place == DESIGN_OUT;
+            state->failed += s->design[i].place == DESIGN_TOLD && s->table.row[i].outcome != OUTCOME_OK;
+        }
+        const size_t most = (size_t)s->settings.search.max_evals, spent = state->told + state->under_way;
+        state->left = most > spent && !s->is_over ? most - spent : 0;
+    }
+    return leave(search, status, &err, error);
 }
 
 /* An archive of every row that is told, whose on_front are those that are there. */

@@ -40,10 +40,8 @@ static LinearDevice device_at(const Tuning *t, const double u[2])
 /* J1, J2, J3 over n records by the rule; returns their goal. */
 static double combine(const Tuning *t, size_t n, const Measured of[], double J[3])
 {
-    ReplicatePlan plan = *tower_plan(t->tower);
+    const ReplicatePlan plan = tower_plan(t->tower, n);
     ReplicateSummary sum;
-    plan.n_records = n;
-    plan.n_replicates = 1;
     replicates_summarise(&plan, of, sizeof *of, 0, &sum);
     J[0] = sum.mean[MEASURE_J1];
     J[1] = sum.mean[MEASURE_J2];
@@ -190,7 +188,7 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
         Tuning *t = &tuning[i];
         *t = (Tuning){.tower = tower_of(p), .search = &search[i], .n = 1, .kind = SCENE_NO_CORE};
         use_all_records(t);
-        status = tower_acquire(p, search[i].scene, &t->scenario, err);
+        status = tower_acquire(p->self, search[i].scene, &t->scenario, err);
         n_acquired += status == STATUS_OK;
     }
 
@@ -209,7 +207,7 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         search[i].device = device_at(&tuning[i], tuning[i].best);
     for (size_t i = 0; i < n_acquired; i++)
-        tower_release(p, search[i].scene);
+        tower_release(p->self, search[i].scene);
     free(tuning);
     return status;
 }

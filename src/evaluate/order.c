@@ -32,8 +32,7 @@ Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
     for (size_t i = 0; i < order->n; i++) {
         task[i].x = numbers_of(order) + i * doer->n_var;
         task[i].result = a->parts + i * size;
-        task[i].may_go_on = doer->may_go_on;
-        task[i].user = doer->user;
+        task[i].observer = doer->observer;
     }
     if (pool)
         pool_do(pool, worker, order->n, task, &n_done, &a->why);

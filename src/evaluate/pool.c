@@ -158,7 +158,7 @@ Status pool_wait(Worker *w, Err *err)
             worker_end(w);
             return fail(err, STATUS_STOPPED, "stopped");
         }
-        if (ending == 0.0 && !w->task->may_go_on(w->task->user))
+        if (ending == 0.0 && !goes_on(w->task->observer))
             ending = now;
     }
     if (w->why.code != STATUS_OK)

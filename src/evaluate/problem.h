@@ -38,6 +38,21 @@ typedef struct {
     double first, step; /* first: a whole number; step: 1e-4 at least */
 } Steps;
 
+typedef struct {
+    /* Asked from any thread before each task, and during those that take seconds; 0: nothing more is begun. NULL: 1 */
+    int (*go_on)(void *user);
+    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL:
+     * nothing */
+    Status (*done)(const Evaluation *e, void *user, Err *err);
+    void *user;
+} Observer;
+
+/* Whether simulations may go on. NULL: they may. */
+static inline int goes_on(const Observer *o)
+{
+    return !o || !o->go_on || o->go_on(o->user);
+}
+
 /* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
 typedef struct {
     int kind, is_brief;
@@ -51,12 +66,11 @@ typedef struct {
     size_t part;   /* 0 .. n_parts-1 */
     size_t repeat; /* evaluations of the same design that there are already: its replicates go on behind theirs */
     Variant variant;
-    const double *x;              /* (n_var) */
-    void *result;                 /* where the part goes, Problem.part_size bytes */
-    size_t size;                  /* so many */
-    int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
-    void *user;                   /* of may_go_on */
-    void *slot;                   /* the queue's */
+    const double *x;          /* (n_var) */
+    void *result;             /* where the part goes, Problem.part_size bytes */
+    size_t size;              /* so many */
+    const Observer *observer; /* where it does not go on they end soon, with STATUS_STOPPED */
+    void *slot;               /* the queue's */
 } Task;
 
 typedef struct {
@@ -79,14 +93,6 @@ typedef struct {
     void (*stop)(void *self);   /* none is under way any more */
     const Simulator *simulator; /* asked by two threads for each of n_workers, by one where that is 1 */
 } Executor;
-
-typedef struct {
-    int (*go_on)(void *user); /* asked from any thread before each task; 0: nothing more is begun. NULL: 1 */
-    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL:
-     * nothing */
-    Status (*done)(const Evaluation *e, void *user, Err *err);
-    void *user;
-} Observer;
 
 /* Minimised f (n_obj) and g (n_con) of an evaluation. */
 typedef void (*JudgeFn)(const Evaluation *e, double f[], double g[], const void *user);

@@ -55,13 +55,6 @@ const Problem *queue_problem(const Queue *q)
     return q->problem;
 }
 
-/* The one place that asks whether simulations may go on. */
-static int may_go_on(void *user)
-{
-    const Observer *o = &((const Queue *)user)->problem->observer;
-    return !o->go_on || o->go_on(o->user);
-}
-
 static void layout(void *slot, Carve *c)
 {
     Slot *s = slot;
@@ -109,7 +102,7 @@ size_t queue_take(Queue *q, size_t worker, int wait, size_t n_max, Task tasks[])
             pthread_cond_wait(least > 1 ? &q->plenty : &q->some, &q->lock);
             continue;
         }
-        if (!may_go_on(q)) {
+        if (!goes_on(&p->observer)) {
             end(q, SIZE_MAX, STATUS_STOPPED, "stopped");
             break;
         }
@@ -121,8 +114,7 @@ size_t queue_take(Queue *q, size_t worker, int wait, size_t n_max, Task tasks[])
                             .x = s->e.x,
                             .result = s->parts + i * p->part_size,
                             .size = p->part_size,
-                            .may_go_on = may_go_on,
-                            .user = q,
+                            .observer = &p->observer,
                             .slot = s};
         q->n_under_way++;
         q->n_waiting--;

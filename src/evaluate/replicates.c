@@ -67,16 +67,6 @@ static const Measured *simulation(const ReplicatePlan *plan, const void *parts, 
     return (const void *)((const char *)parts + part * size);
 }
 
-/* v (n) sorted by sense: the first are the worst. */
-static double mean_of_worst(double share, double sense, size_t n, const double v[])
-{
-    const double wanted = fmax(share * (double)n, 1.0);
-    double sum = 0.0;
-    for (size_t i = 0; i < n && (double)i < wanted; i++)
-        sum += fmin(wanted - (double)i, 1.0) * v[sense > 0 ? n - 1 - i : i];
-    return sum / wanted;
-}
-
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd)
 {
     double mean;
@@ -84,8 +74,13 @@ double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v
     if (plan->rule == ROBUST_MEAN_PLUS_SD || !isfinite(mean))
         return isfinite(*sd) ? mean + sense * *sd : mean;
     sort_values(n, v);
-    if (plan->rule == ROBUST_CVAR)
-        return mean_of_worst(1.0 - plan->quantile, sense, n, v);
+    if (plan->rule == ROBUST_CVAR) { /* the mean of the worst share, the last of them counted in part */
+        const double wanted = fmax((1.0 - plan->quantile) * (double)n, 1.0);
+        double sum = 0.0;
+        for (size_t i = 0; i < n && (double)i < wanted; i++)
+            sum += fmin(wanted - (double)i, 1.0) * v[sense > 0 ? n - 1 - i : i];
+        return sum / wanted;
+    }
     const double place = (sense > 0 ? plan->quantile : 1 - plan->quantile) * (double)(n - 1);
     const size_t below = (size_t)place, above = below + 1 < n ? below + 1 : below;
     return v[below] + (place - (double)below) * (v[above] - v[below]);

@@ -25,41 +25,11 @@ static Status take_names(const char *key, const char *list, const char *letter, 
     return STATUS_OK;
 }
 
-static Status take_senses(const char *list, size_t n, Column columns[], Err *err)
-{
-    const size_t count = list_count(list);
-    char word[16];
-    if (count != 1 && count != n)
-        return bad_data(err, "problem.senses: %zu words for %zu objectives", count, n);
-    for (size_t k = 0; k < n; k++) {
-        const int fits = list_item(list, count == 1 ? 0 : k, word, sizeof word);
-        if (!fits || (strcmp(word, "min") != 0 && strcmp(word, "max") != 0))
-            return bad_data(err, "problem.senses: item %zu is neither min nor max", k + 1);
-        columns[k].sense = word[1] == 'i' ? 1.0 : -1.0;
-    }
-    return STATUS_OK;
-}
-
 int schema_is_noisy(const Settings *s)
 {
     const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
     const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
     return is_noisy && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
-}
-
-/* Columns of a tower: its design variables and measures. */
-static void name_measures(Schema *schema)
-{
-    const MeasureOrder *order = &schema->order;
-    for (int j = 0; j < schema->design.n_var; j++)
-        design_variable_name(&schema->design, j, schema->column[j].name);
-    for (int k = 0; k < order->n; k++) {
-        Column *c = &schema->column[schema->n_var + k];
-        snprintf(c->name, sizeof c->name, "%s", measures_name(order, order->of[k]));
-        c->sense = measure(order->of[k])->sense;
-        if (k >= order->n_obj && order->limited >> order->of[k] & 1)
-            schema->limited[schema->n_limited++] = k - order->n_obj;
-    }
 }
 
 /* Columns of another problem, by the settings; those of constraints are g_1 ... */
@@ -74,7 +44,18 @@ static Status name_columns(Schema *schema, const ProblemOptions *o, Err *err)
         constraint->sense = 1.0;
         schema->limited[schema->n_limited++] = c;
     }
-    return take_senses(o->kind == PROBLEM_EXTERNAL ? o->senses : "min", schema->n_obj, objectives, err);
+    const char *senses = o->kind == PROBLEM_EXTERNAL ? o->senses : "min";
+    const size_t count = list_count(senses);
+    char word[16];
+    if (count != 1 && count != schema->n_obj)
+        return bad_data(err, "problem.senses: %zu words for %zu objectives", count, schema->n_obj);
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        const int fits = list_item(senses, count == 1 ? 0 : k, word, sizeof word);
+        if (!fits || (strcmp(word, "min") != 0 && strcmp(word, "max") != 0))
+            return bad_data(err, "problem.senses: item %zu is neither min nor max", k + 1);
+        objectives[k].sense = word[1] == 'i' ? 1.0 : -1.0;
+    }
+    return STATUS_OK;
 }
 
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
@@ -97,12 +78,23 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
         memcpy(schema->kinds, o->kinds, sizeof schema->kinds);
     }
     TRY_ROOM(schema->column, schema->n_var + schema->n_obj + schema->n_extra, "columns", err);
-    if (is_tower)
-        name_measures(schema);
-    const Status status = is_tower ? STATUS_OK : name_columns(schema, o, err);
-    if (status != STATUS_OK)
-        schema_free(schema);
-    return status;
+    if (!is_tower) {
+        const Status status = name_columns(schema, o, err);
+        if (status != STATUS_OK)
+            schema_free(schema);
+        return status;
+    }
+    for (int j = 0; j < schema->design.n_var; j++)
+        design_variable_name(&schema->design, j, schema->column[j].name);
+    for (int k = 0; k < schema->order.n; k++) {
+        Column *c = &schema->column[schema->n_var + k];
+        const int m = schema->order.of[k];
+        snprintf(c->name, sizeof c->name, "%s", measures_name(&schema->order, m));
+        c->sense = measure(m)->sense;
+        if (k >= schema->order.n_obj && schema->order.limited >> m & 1)
+            schema->limited[schema->n_limited++] = k - schema->order.n_obj;
+    }
+    return STATUS_OK;
 }
 
 const Column *schema_variable(const Schema *schema, size_t j)

@@ -104,7 +104,7 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
     return status;
 }
 
-static void release(Tower *t, size_t place)
+void tower_release(Tower *t, size_t place)
 {
     Place *p = &t->place[place];
     pthread_mutex_lock(&p->lock);
@@ -118,7 +118,7 @@ static void release(Tower *t, size_t place)
 
 /* Keep the scene of a place open. The first who comes opens it and checks that it has what every measure that is judged
  * needs. */
-static Status acquire(Tower *t, size_t place, Err *err)
+Status tower_acquire(Tower *t, size_t place, const Scenario **out, Err *err)
 {
     Place *p = &t->place[place];
     Settings *s = NULL;
@@ -145,21 +145,9 @@ static Status acquire(Tower *t, size_t place, Err *err)
         free(p->scenario);
         p->scenario = NULL;
     }
+    *out = p->scenario;
     pthread_mutex_unlock(&p->lock);
     return status;
-}
-
-Status tower_acquire(const Problem *p, size_t scene, const Scenario **out, Err *err)
-{
-    Tower *t = p->self;
-    TRY(acquire(t, scene, err));
-    *out = t->place[scene].scenario;
-    return STATUS_OK;
-}
-
-void tower_release(const Problem *p, size_t scene)
-{
-    release(p->self, scene);
 }
 
 static void detach(Tower *t, size_t place, size_t worker)
@@ -168,7 +156,7 @@ static void detach(Tower *t, size_t place, size_t worker)
     if (*w) {
         sim_worker_free(*w);
         *w = NULL;
-        release(t, place);
+        tower_release(t, place);
     }
 }
 
@@ -180,11 +168,12 @@ static Status attach(Tower *t, size_t place, size_t worker, SimWorker **out, Err
         if (t->recipe->is_sweep && t->at[worker] > 0)
             detach(t, t->at[worker] - 1, worker);
         t->at[worker] = place + 1;
-        TRY(acquire(t, place, err));
-        const Status status = sim_worker_create(w, t->place[place].scenario->scene, err);
+        const Scenario *scenario;
+        TRY(tower_acquire(t, place, &scenario, err));
+        const Status status = sim_worker_create(w, scenario->scene, err);
         if (status != STATUS_OK) {
             *w = NULL;
-            release(t, place);
+            tower_release(t, place);
             return status;
         }
     }
@@ -252,19 +241,10 @@ static Pool *processes(void *self)
     return t->isolated.pool.n_workers > 0 ? &t->isolated.pool : NULL;
 }
 
-/* Of a design that has n parts: all, the first replicate of every record, or one alone. */
-static ReplicatePlan plan_of(const Tower *t, size_t n)
-{
-    ReplicatePlan plan = t->plan;
-    plan.n_records = MIN_OF(n, plan.n_records);
-    plan.n_replicates = n / plan.n_records;
-    return plan;
-}
-
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
     const Tower *t = p->self;
-    const ReplicatePlan plan = plan_of(t, n);
+    const ReplicatePlan plan = tower_plan(t, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, parts, p->part_size, 0, &sum);
     const Measured *shown = (const void *)((const char *)parts + sum.shown * p->part_size);
@@ -585,9 +565,12 @@ size_t tower_n_records(const Tower *t)
     return t->plan.n_records;
 }
 
-const ReplicatePlan *tower_plan(const Tower *t)
+ReplicatePlan tower_plan(const Tower *t, size_t n)
 {
-    return &t->plan;
+    ReplicatePlan plan = t->plan;
+    plan.n_records = MIN_OF(n, plan.n_records);
+    plan.n_replicates = n / plan.n_records;
+    return plan;
 }
 
 const MeasureOrder *tower_measures(const Tower *t)
@@ -613,7 +596,7 @@ Variant tower_variant(const Tower *t, const SimTask *task)
 
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES])
 {
-    const ReplicatePlan plan = plan_of(t, t->plan.n_records);
+    const ReplicatePlan plan = tower_plan(t, t->plan.n_records);
     Measured parts[TOWER_RECORDS_MAX];
     ReplicateSummary sum;
     for (size_t i = 0; i < plan.n_records; i++)
@@ -626,7 +609,7 @@ void tower_standard_errors(const Tower *t, const SimResult by_record[], double e
 static void store_task(const Problem *p, const SimTask *task, const char *parts)
 {
     const size_t n = MAX_OF(task->n_parts, 1);
-    const ReplicatePlan plan = plan_of(p->self, n);
+    const ReplicatePlan plan = tower_plan(p->self, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, parts, p->part_size, task->summary != NULL, &sum);
     if (task->summary)

@@ -53,34 +53,27 @@ static Seat seat_of(const Ranks *r, size_t worker)
 
 /* -- messages ------------------------------------------------------------------------------------------------------ */
 
-/* Give a message to whom it concerns: an answer to the worker that waits for it, whatever else, as a sign of life, to all
- * of the rank. What should be an answer and is none goes to them all the same: it is no good one. r->lock is held. */
-static void deliver(Ranks *r, Message *m)
-{
-    const Pool *p = &r->pool[r->is_open];
-    const Answer *a = m->bytes;
-    const int is_answer = m->tag == TAG_DONE && (m->n < sizeof *a || a->epoch == r->epoch);
-    const int is_right = is_answer && is_answer_of(a, m->n, p->n_workers) && seat_of(r, a->worker).rank == m->from;
-    if (!is_right) {
-        free(m->bytes);
-        *m = (Message){.from = m->from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
-    }
-    for (size_t i = 0; i < p->n_workers; i++)
-        if (is_right ? i == a->worker : seat_of(r, i).rank == m->from)
-            if (write(p->worker[i].in, m, sizeof *m) < 0)
-                continue; /* it is full of signs of life */
-}
-
+/* Receive messages and give each to whom it concerns: an answer to the worker that waits for it, whatever else, as a sign
+ * of life, to all of the rank. What should be an answer and is none goes to them all the same: it is no good one. */
 static void *receive(void *user)
 {
     Ranks *r = user;
-    double pause = PAUSE_MIN_S;
-    while (!r->ending) {
+    for (double pause = PAUSE_MIN_S; !r->ending;) {
         Message m;
         pthread_mutex_lock(&r->lock);
         const int there = message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m);
-        if (there)
-            deliver(r, &m);
+        const Pool *p = &r->pool[r->is_open];
+        const Answer *a = there ? m.bytes : NULL;
+        const int is_answer = there && m.tag == TAG_DONE && (m.n < sizeof *a || a->epoch == r->epoch);
+        const int is_right = is_answer && is_answer_of(a, m.n, p->n_workers) && seat_of(r, a->worker).rank == m.from;
+        if (there && !is_right) {
+            free(m.bytes);
+            m = (Message){.from = m.from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
+        }
+        for (size_t i = 0; there && i < p->n_workers; i++)
+            if (is_right ? i == a->worker : seat_of(r, i).rank == m.from)
+                if (write(p->worker[i].in, &m, sizeof m) < 0)
+                    continue; /* it is full of signs of life */
         pthread_mutex_unlock(&r->lock);
         pause = there ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
         if (!there)
@@ -168,12 +161,6 @@ static Status open_pool(Ranks *r, int is_open, size_t n, Err *err)
     return pool_open(&r->pool[is_open], &protocol, n, err);
 }
 
-static int go_on(void *observer)
-{
-    const Observer *o = observer;
-    return !o->go_on || o->go_on(o->user);
-}
-
 /* A task whose x is the recipe, and its part Opened. */
 static Status open_problem(Ranks *r, Err *err)
 {
@@ -181,11 +168,8 @@ static Status open_problem(Ranks *r, Err *err)
     size_t n = 0;
     for (int i = 1; i <= r->n; i++) {
         Rank *rank = &r->rank[i];
-        rank->opening = (Task){.x = p->recipe,
-                               .result = &rank->opened,
-                               .size = sizeof rank->opened,
-                               .may_go_on = go_on,
-                               .user = (void *)(uintptr_t)&p->observer};
+        rank->opening =
+            (Task){.x = p->recipe, .result = &rank->opened, .size = sizeof rank->opened, .observer = &p->observer};
         TRY(pool_ask(&r->pool[0].worker[i - 1], 1, &rank->opening, err));
     }
     for (int i = 1; i <= r->n; i++) {

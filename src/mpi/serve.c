@@ -62,7 +62,8 @@ static int may_go_on(void *user)
 static void do_order(Seat *w, Order *order, const Simulator *simulator, void *self)
 {
     Service *s = w->service;
-    const Doer doer = {simulator, self, s->problem.n_var, may_go_on, s};
+    const Observer observer = {.go_on = may_go_on, .user = s};
+    const Doer doer = {simulator, self, s->problem.n_var, &observer};
     size_t n;
     Answer *a = order_do(order, (size_t)w->number, &doer, &n);
     if (!a)
