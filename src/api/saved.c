@@ -80,30 +80,17 @@ static void walk(Pack *p, imtet_search *s, Err *err)
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
 
-/* Beside its place and renamed: the file is the old one or the new one, whenever the program ends. */
-static Status replace(const char *path, const Pack *p, Err *err)
-{
-    char beside[PATH_MAX];
-    if (snprintf(beside, sizeof beside, "%s.part", path) >= PATH_MAX)
-        return fail(err, STATUS_IO, "%.80s...: the name is too long", path);
-    FILE *f = fopen(beside, "we");
-    int done = f && fwrite(p->bytes, 1, p->n, f) == p->n && fflush(f) == 0 && fsync(fileno(f)) == 0;
-    if (f)
-        done = fclose(f) == 0 && done;
-    if (done && rename(beside, path) == 0)
-        return STATUS_OK;
-    const Status status = fail_errno(err, path, "cannot be written");
-    unlink(beside);
-    return status;
-}
-
-/* Pack the mark, the settings and counts, then the walk, then the hash of it all. */
 Status saved_write(imtet_search *s, const char *path, Err *err)
 {
     Pack p = {0};
+    char beside[PATH_MAX];
     const SearchView v = search_look(s->search);
     if (!v.state)
         return fail_memory(err, 1, "the state of the search");
+    if (snprintf(beside, sizeof beside, "%s.part", path) >= PATH_MAX)
+        return fail(err, STATUS_IO, "%.80s...: the name is too long", path);
+
+    /* 1. Pack the mark, the settings and counts, then the walk, then the hash of it all. */
     s->n_entered = v.all->n;
     s->n_state = v.n_state;
     s->state = (unsigned char *)(uintptr_t)v.state; /* the search's own */
@@ -119,7 +106,17 @@ Status saved_write(imtet_search *s, const char *path, Err *err)
     s->state = NULL;
     uint64_t hash = hash_fnv1a(p.bytes, p.n, HASH_SEED);
     pack(&p, &hash, sizeof hash);
-    const Status status = pack_finished(&p) ? replace(path, &p, err) : fail_memory(err, 1, "the search as bytes");
+
+    /* 2. Write it beside its place and rename it: the file is the old one or the new one, whenever the program ends. */
+    Status status = pack_finished(&p) ? STATUS_OK : fail_memory(err, 1, "the search as bytes");
+    FILE *f = status == STATUS_OK ? fopen(beside, "we") : NULL;
+    int done = f && fwrite(p.bytes, 1, p.n, f) == p.n && fflush(f) == 0 && fsync(fileno(f)) == 0;
+    if (f)
+        done = fclose(f) == 0 && done;
+    if (status == STATUS_OK && !(done && rename(beside, path) == 0)) {
+        status = fail_errno(err, path, "cannot be written");
+        unlink(beside);
+    }
     free(p.bytes);
     free(text);
     return status;

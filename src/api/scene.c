@@ -183,6 +183,7 @@ static Status add_names(const Question *q, const char *what, int list, size_t n,
     return STATUS_OK;
 }
 
+/* Put the box of a search, its names and the frequencies of the building into the result. */
 static Status describe(Question *q, Err *err)
 {
     const Problem *p = &q->problem;
@@ -223,6 +224,7 @@ static Status find_device(const Question *q, LinearDevice *device, Err *err)
     return STATUS_OK;
 }
 
+/* Simulate once; the result has every measure and part that the case has. */
 static Status simulate(Question *q, Err *err)
 {
     SimResult s;
@@ -261,6 +263,7 @@ static size_t add_columns(imtet_result *r, const Track *t, const char *name, siz
     return first + n;
 }
 
+/* Simulate once more with samples, whose columns become tables. */
 static Status history(Question *q, Err *err)
 {
     static const char *const FLOORS[SAMPLE_PARTS] = {"floor_m", "floor_m_s", "drift_m",  "accel_g",
@@ -291,6 +294,7 @@ imtet_status imtet_scene_history(imtet_scene *scene, const char *kind, const dou
 
 /* -- a record ------------------------------------------------------------------------------------------------------ */
 
+/* Read a record as a run does, with the settings of the caller. */
 static Status read_motion(const char *path, const char *const list[], imtet_result **out, Err *err)
 {
     Settings s;

@@ -278,6 +278,7 @@ static imtet_status leave(imtet_search *s, Status status, const Err *err, imtet_
     return api_status(status, err, error);
 }
 
+/* Give out up to n free designs; the search chooses more where it can. */
 static Status ask(imtet_search *s, size_t n, long ids[], double X[], size_t *found, Err *err)
 {
     const size_t n_var = s->schema.n_var, failing = s->failing;

@@ -76,23 +76,6 @@ static void *widen(void *array, size_t n, size_t size, int *lacks)
     return wider ? wider : array;
 }
 
-/* Of large arrays the system moves the pages, and copies nothing. */
-static Status grow(EvaluationTable *t, Err *err)
-{
-    const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
-    int lacks = 0;
-    t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
-#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
-    EVALUATION_ARRAYS(X)
-#undef X
-    for (size_t i = 0; i < t->n_used; i++)
-        point_row(t, i);
-    if (lacks)
-        return fail_memory(err, n_max, "evaluations");
-    t->n_max = n_max;
-    return STATUS_OK;
-}
-
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
     const Evaluation own = *e;
@@ -109,8 +92,19 @@ void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 
 Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
 {
-    if (t->n == t->n_max)
-        TRY(grow(t, err));
+    if (t->n == t->n_max) { /* of large arrays the system moves the pages, and copies nothing */
+        const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
+        int lacks = 0;
+        t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
+#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
+        EVALUATION_ARRAYS(X)
+#undef X
+        for (size_t i = 0; i < t->n_used; i++)
+            point_row(t, i);
+        if (lacks)
+            return fail_memory(err, n_max, "evaluations");
+        t->n_max = n_max;
+    }
     if (t->n == t->n_used) {
         t->row[t->n_used] = (Evaluation){0};
         point_row(t, t->n_used++);

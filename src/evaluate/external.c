@@ -191,6 +191,7 @@ static Pool *pool(void *self)
     return &((External *)self)->pool;
 }
 
+/* An answer becomes an evaluation; only here it is known how many constraint values the first one of the run had. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
 {
     (void)n;

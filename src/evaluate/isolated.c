@@ -22,10 +22,10 @@ static void serve(void *self, size_t worker)
 
 static size_t write_order(void *self, const Worker *w, char *request)
 {
-    const Isolated *q = self;
-    return order_write((Order *)(void *)request, w, q->doer.n_var);
+    return order_write((Order *)(void *)request, w, ((const Isolated *)self)->doer.n_var);
 }
 
+/* An answer comes whole or not at all; its length says of how many tasks it is. */
 static void look(void *self, Worker *w)
 {
     (void)self;

@@ -215,72 +215,62 @@ static void add_objective(MeasureOrder *o, int k)
     o->objectives |= (MeasureSet)1 << k;
 }
 
-static Status take_objectives(MeasureOrder *o, const char *list, Err *err)
+Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
 {
     static const char KEY[] = "search.objectives";
-    char name[64];
-    for (size_t i = 0; i < list_count(list); i++) {
-        if (!list_item(list, i, name, sizeof name))
+    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
+    const size_t n_names = is_auto || is_paper ? 0 : list_count(objectives);
+    char name[64], text[128];
+    int k;
+    *out = (MeasureOrder){0};
+
+    /* 1. Objectives: those of the paper, or a list of names. */
+    for (k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
+        if (is_paper || measure_exists(k, n_floors))
+            add_objective(out, k);
+    for (size_t i = 0; i < n_names; i++) {
+        if (!list_item(objectives, i, name, sizeof name))
             return bad_data(err, "%s: name %zu is empty or too long", KEY, i + 1);
-        int k = find(name, strlen(name));
+        k = find(name, strlen(name));
         if (is_chance(name))
-            TRY(take_chance(o, KEY, name, &k, err));
+            TRY(take_chance(out, KEY, name, &k, err));
         else if (k == MEASURES_LISTED)
             return no_result(KEY, name, err);
-        if (o->objectives >> k & 1)
+        if (out->objectives >> k & 1)
             return bad_data(err, "%s: %s stands there twice", KEY, name);
-        add_objective(o, k);
+        add_objective(out, k);
     }
-    return STATUS_OK;
-}
 
-/* What stands before the relation of every limit; limits.c reads the rest. */
-static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
-{
-    char text[128];
+    /* 2. Limits: what stands before the relation of every one; limits.c reads the rest. */
     for (size_t i = 0; i < list_count(limits); i++) {
         if (!list_item(limits, i, text, sizeof text))
             continue;
         const size_t inside = is_chance(text) ? strcspn(text, ")") : 0, n = inside + strcspn(text + inside, "<> \t");
-        int k = find(text, n);
+        k = find(text, n);
         text[n] = 0;
         if (is_chance(text))
-            TRY(take_chance(o, "search.limits", text, &k, err));
-        else if (k == MEASURES_LISTED)
-            continue;
-        o->limited |= (MeasureSet)1 << k;
+            TRY(take_chance(out, "search.limits", text, &k, err));
+        if (k != MEASURES_LISTED || is_chance(text))
+            out->limited |= (MeasureSet)1 << k;
     }
-    return STATUS_OK;
-}
 
-Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
-{
-    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
-    *out = (MeasureOrder){0};
-    for (int k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
-        if (is_paper || measure_exists(k, n_floors))
-            add_objective(out, k);
-    if (!is_auto && !is_paper)
-        TRY(take_objectives(out, objectives, err));
-    TRY(take_limits(out, limits, err));
+    /* 3. What is judged: both; one record alone need not have a rate, so that loss stands for annual_loss. */
     out->judged |= out->objectives | out->limited;
-    if (out->judged >> MEASURE_ANNUAL_LOSS & 1) /* one record alone need not have a rate */
+    if (out->judged >> MEASURE_ANNUAL_LOSS & 1)
         out->judged = (out->judged & ~((MeasureSet)1 << MEASURE_ANNUAL_LOSS)) | (MeasureSet)1 << MEASURE_LOSS;
+
+    /* 4. All others behind the objectives. */
     out->n = out->n_obj;
-    for (int k = 0; k < N_MEASURES; k++)
+    for (k = 0; k < N_MEASURES; k++)
         if (!(out->objectives >> k & 1) && (k < MEASURES_LISTED || (out->limited >> k & 1)))
             out->of[out->n++] = k;
     return STATUS_OK;
 }
 
+_Static_assert((int)OUTCOME_OK == RUN_OK && (int)OUTCOME_ENGINE_FAILED == RUN_ENGINE_FAILED,
+               "the outcomes of an evaluation begin with those of a run");
+
 Outcome measure_outcome(RunOutcome outcome)
 {
-    static const Outcome OUTCOMES[] = {
-        [RUN_OK] = OUTCOME_OK,
-        [RUN_NOT_FINITE] = OUTCOME_NOT_FINITE,
-        [RUN_OUT_OF_STEPS] = OUTCOME_OUT_OF_STEPS,
-        [RUN_ENERGY_BALANCE] = OUTCOME_ENERGY_BALANCE,
-        [RUN_ENGINE_FAILED] = OUTCOME_ENGINE_FAILED,
-    };
-    return OUTCOMES[outcome];
+    return (Outcome)outcome;
 }

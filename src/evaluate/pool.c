@@ -28,6 +28,7 @@ static void close_pipes(const Worker *w)
     close(w->reader);
 }
 
+/* Open the pipes of a worker, and start its process; a worker that is none has one pipe, from us to us. */
 static Status worker_start(Worker *w, Err *err)
 {
     const Protocol *how = &w->pool->protocol;

@@ -55,6 +55,7 @@ const Problem *queue_problem(const Queue *q)
     return q->problem;
 }
 
+/* The arrays of a slot, in one store with it. */
 static void layout(void *slot, Carve *c)
 {
     Slot *s = slot;

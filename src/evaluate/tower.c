@@ -36,7 +36,7 @@ typedef struct {
 
 struct Tower {
     MeasureSet judged; /* what is not finite there has failed */
-    size_t n_workers, n_floors;
+    size_t n_workers;
     ReplicatePlan plan; /* of a design: n_records of the scenes */
     DesignSpace design;
     MeasureOrder order;
@@ -237,10 +237,11 @@ static void write_lost(const Task *task, const char *reason)
 
 static Pool *processes(void *self)
 {
-    Tower *t = self;
-    return t->isolated.pool.n_workers > 0 ? &t->isolated.pool : NULL;
+    Pool *pool = &((Tower *)self)->isolated.pool;
+    return pool->n_workers > 0 ? pool : NULL;
 }
 
+/* An evaluation is the summary of its parts; its reason is that of the part that failed first. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
     const Tower *t = p->self;
@@ -259,6 +260,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = (int)sum.n_replicates;
 }
 
+/* Also of a tower that was opened in part. */
 static void tower_close(void *self)
 {
     Tower *t = self;
@@ -374,10 +376,9 @@ static Status prepare(Tower *t, Err *err)
         TRY(tower_space(s, &t->design, err));
     else
         t->design = *scene_design(t->place[0].scenario->scene);
-    t->n_floors = t->design.n_floors;
 
     /* 3. Objectives and variables. */
-    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->n_floors, err));
+    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->design.n_floors, err));
     design_bounds(&t->design, &s->design, t->lower, t->upper);
     for (int j = 0; j < t->design.n_var; j++)
         if (design_is_log(&t->design, j) || design_word(&t->design, j, 0)) {
@@ -458,6 +459,7 @@ typedef struct {
     char path[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
 } RecordList;
 
+/* Add a record to the list once it is known to be there, and how often it comes where that is needed. */
 static Status list_record(const char *source, void *user, Err *err)
 {
     RecordList *list = user;
@@ -557,7 +559,7 @@ const DesignSpace *tower_design(const Tower *t)
 
 int tower_n_floors(const Tower *t)
 {
-    return (int)t->n_floors;
+    return (int)t->design.n_floors;
 }
 
 size_t tower_n_records(const Tower *t)

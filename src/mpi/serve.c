@@ -77,6 +77,7 @@ static void do_order(Seat *w, Order *order, const Simulator *simulator, void *se
     pthread_mutex_unlock(&s->talking);
 }
 
+/* One worker of this rank: does the orders that come for it until the problem is closed. */
 static void *work(void *user)
 {
     Seat *w = user;
@@ -98,6 +99,7 @@ static void *work(void *user)
 
 /* -- the problem --------------------------------------------------------------------------------------------------- */
 
+/* Workers end before what they work on, and answers that are on their way before their bytes. */
 static void close_problem(Service *s)
 {
     s->closing = 1;
