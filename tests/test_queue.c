@@ -260,10 +260,10 @@ TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
     Queue *q = open_queue(1);
     ask(q, 3);
     for (int k = 0; k < 3 * PARTS; k++) {
-        assert_int_equal(queue_take(q, 0, &task[k]), 1);
+        assert_int_equal(queue_take(q, 0, 0, 1, &task[k]), 1);
         assert_true(task[k].x[0] == k / PARTS && task[k].part == (size_t)k % PARTS && task[k].id == 101 + k / PARTS);
     }
-    assert_int_equal(queue_take(q, 0, &task[0]), 0);
+    assert_int_equal(queue_take(q, 0, 0, 1, &task[0]), 0);
     for (int k = 3 * PARTS; k-- > 0;) { /* the last part first */
         CHECK_OK(simulate(&bench, 0, &task[k], &err), &err);
         queue_give(q, &task[k], STATUS_OK, &err);
@@ -308,12 +308,6 @@ static Status double_or_die(void *self, size_t worker, const Task *t, Err *err)
     return STATUS_OK;
 }
 
-static int go_on(void *user)
-{
-    (void)user;
-    return 1;
-}
-
 static void note_lost(const Task *t, const char *reason)
 {
     *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
@@ -326,7 +320,7 @@ TEST(a_simulation_that_crashes_ends_its_own_task_alone)
     for (int i = 0; i < DESIGNS; i++) {
         const double x = (double)((i * 7) % 11 - 3);
         double result = 0.5;
-        const Task task = {.x = &x, .result = &result, .size = sizeof result, .may_go_on = go_on};
+        const Task task = {.x = &x, .result = &result, .size = sizeof result};
         size_t n_done;
         CHECK_OK(pool_do(&q.pool, (size_t)i % WORKERS, 1, &task, &n_done, &err), &err);
         assert_same_number(result, x < 0.0 ? SIGKILL : x == 0.0 ? -1.0 : 2.0 * x);

@@ -109,35 +109,30 @@ const char *imtet_result_text(const imtet_result *result, const char *name)
     return v ? v->text : NULL;
 }
 
-static Status numbers_of(const imtet_result *r, const char *name, const NamedValue **out, Err *err)
-{
-    if (!r || !name)
-        return misused(err, "imtet_result_numbers: %s is NULL", r ? "name" : "the result");
-    const NamedValue *v = *out = find(r, name);
-    if (v && v->numbers)
-        return STATUS_OK;
-    if (v)
-        return misused(err, "%s is a text of this result, not a number", name);
-    const char **names = calloc(r->n + 1, sizeof *names);
-    for (size_t i = 0; names && i < r->n; i++)
-        names[i] = r->value[i].name;
-    const Status status = fail_no_word(err, STATUS_USAGE, "imtet_result_numbers", name, "number of this result", names,
-                                       names ? (int)r->n : 0);
-    free(names);
-    return status;
-}
-
 imtet_status imtet_result_numbers(const imtet_result *result, const char *name, const double **numbers, size_t *rows,
                                   size_t *columns, imtet_error *error)
 {
     Err err = {0};
-    const NamedValue *v = NULL;
-    const Status status = numbers_of(result, name, &v, &err);
+    const NamedValue none = {0}, *v = result && name ? find(result, name) : NULL;
+    if (!result || !name) {
+        misused(&err, "imtet_result_numbers: %s is NULL", result ? "name" : "the result");
+    } else if (!v) {
+        const char **names = calloc(result->n + 1, sizeof *names);
+        for (size_t i = 0; names && i < result->n; i++)
+            names[i] = result->value[i].name;
+        fail_no_word(&err, STATUS_USAGE, "imtet_result_numbers", name, "number of this result", names,
+                     names ? (int)result->n : 0);
+        free(names);
+    } else if (!v->numbers) {
+        misused(&err, "%s is a text of this result, not a number", name);
+    }
+    if (err.code != STATUS_OK)
+        v = &none;
     if (numbers)
-        *numbers = status == STATUS_OK ? v->numbers : NULL;
+        *numbers = v->numbers;
     if (rows)
-        *rows = status == STATUS_OK ? v->rows : 0;
+        *rows = v->rows;
     if (columns)
-        *columns = status == STATUS_OK ? v->columns : 0;
-    return api_status(status, &err, error);
+        *columns = v->columns;
+    return api_status(err.code, &err, error);
 }

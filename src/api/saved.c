@@ -23,15 +23,15 @@ static void walk_text(Pack *p, char *text, size_t size)
 }
 
 /* One told design, or one that is only asked for. */
-static void walk_row(Pack *p, Asking *a, size_t i, Err *err)
+static void walk_row(Pack *p, imtet_search *s, size_t i, Err *err)
 {
-    Evaluation *e = &a->table.row[i];
-    size_t told = a->design[i].place == DESIGN_TOLD, outcome = e->outcome, kind = e->kind, generation = e->generation;
+    Evaluation *e = &s->table.row[i];
+    size_t told = s->design[i].place == DESIGN_TOLD, outcome = e->outcome, kind = e->kind, generation = e->generation;
     char reason[REASON_MAX];
     snprintf(reason, sizeof reason, "%s", e->reason ? e->reason : "");
-    pack_numbers(p, e->x, a->table.n_var, -INFINITY, INFINITY);
-    pack(p, e->f, a->table.n_obj * sizeof *e->f); /* not numbers where it failed */
-    pack(p, e->extra, a->table.n_extra * sizeof *e->extra);
+    pack_numbers(p, e->x, s->table.n_var, -INFINITY, INFINITY);
+    pack(p, e->f, s->table.n_obj * sizeof *e->f); /* not numbers where it failed */
+    pack(p, e->extra, s->table.n_extra * sizeof *e->extra);
     pack_size(p, &told, 1);
     pack_size(p, &outcome, OUTCOME_COUNT - 1);
     pack_size(p, &kind, KIND_COUNT - 1);
@@ -44,92 +44,79 @@ static void walk_row(Pack *p, Asking *a, size_t i, Err *err)
         evaluation_set_outcome(e, (Outcome)outcome, reason);
     e->kind = (EvaluationKind)kind;
     e->generation = (long)generation;
-    a->design[i].place = told ? DESIGN_TOLD : DESIGN_FREE;
-    a->n_told += told;
+    s->design[i].place = told ? DESIGN_TOLD : DESIGN_FREE;
+    s->n_told += told;
 }
 
-static void walk_rows(Pack *p, Asking *a, Err *err)
-{
-    size_t n = a->table.n;
-    double *zero = calloc(a->table.n_var, sizeof *zero);
-    pack_size(p, &n, COUNT_MAX);
-    p->faulty = p->faulty || !zero;
-    for (size_t i = 0; i < n && !p->faulty; i++) {
-        p->faulty =
-            p->reading && (p->n - p->at < a->table.n_var * sizeof *zero || asking_add(a, zero, err) != STATUS_OK);
-        if (!p->faulty)
-            walk_row(p, a, i, err);
-    }
-    free(zero);
-}
-
-/* What has entered is told; a search that has asked for anything has a state. */
-static void walk_state(Pack *p, Asking *a)
-{
-    pack_size(p, &a->n_entered, a->table.n);
-    pack_size(p, &a->n_state, p->reading ? p->n - p->at : SIZE_MAX);
-    if (p->reading && !p->faulty && a->n_state > 0) {
-        a->state = malloc(a->n_state);
-        p->faulty = !a->state;
-    }
-    pack(p, a->state, a->n_state);
-    for (size_t i = 0; i < a->n_entered && !p->faulty; i++)
-        p->faulty = a->design[i].place != DESIGN_TOLD;
-    p->faulty = p->faulty || a->n_state == 0;
-}
-
+/* Everything behind the settings and counts of a search. */
 static void walk(Pack *p, imtet_search *s, Err *err)
 {
     const size_t n_var = s->schema.n_var;
+    size_t n = s->table.n;
+
+    /* 1. Bounds, designs to begin with, and every row. A damaged count of rows is found before room is made for them. */
     pack(p, s->lower, (2 + s->n_given) * n_var * sizeof *s->lower);
-    walk_rows(p, &s->asking, err);
-    walk_state(p, &s->asking);
+    pack_size(p, &n, COUNT_MAX);
+    for (size_t i = 0; i < n && !p->faulty; i++) {
+        p->faulty =
+            p->reading && (p->n - p->at < n_var * sizeof *s->lower || handle_add(s, s->lower, err) != STATUS_OK);
+        if (!p->faulty)
+            walk_row(p, s, i, err);
+    }
+
+    /* 2. The state of the search: what has entered it is told, and one that has asked for anything has a state. */
+    pack_size(p, &s->n_entered, s->table.n);
+    pack_size(p, &s->n_state, p->reading ? p->n - p->at : SIZE_MAX);
+    if (p->reading && !p->faulty && s->n_state > 0) {
+        s->state = malloc(s->n_state);
+        p->faulty = !s->state;
+    }
+    pack(p, s->state, s->n_state);
+    for (size_t i = 0; i < s->n_entered && !p->faulty; i++)
+        p->faulty = s->design[i].place != DESIGN_TOLD;
+    p->faulty = p->faulty || s->n_state == 0;
     pack_size(p, &s->failing, COUNT_MAX);
 }
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
 
-/* Beside its place and renamed: the file is the old one or the new one, whenever the program ends. */
-static Status replace(const char *path, const Pack *p, Err *err)
-{
-    char beside[PATH_MAX];
-    if (snprintf(beside, sizeof beside, "%s.part", path) >= PATH_MAX)
-        return fail(err, STATUS_IO, "%.80s...: the name is too long", path);
-    FILE *f = fopen(beside, "we");
-    int done = f && fwrite(p->bytes, 1, p->n, f) == p->n && fflush(f) == 0 && fsync(fileno(f)) == 0;
-    if (f)
-        done = fclose(f) == 0 && done;
-    if (done && rename(beside, path) == 0)
-        return STATUS_OK;
-    const Status status = fail_errno(err, path, "cannot be written");
-    unlink(beside);
-    return status;
-}
-
 Status saved_write(imtet_search *s, const char *path, Err *err)
 {
     Pack p = {0};
-    Asking *a = &s->asking;
-    const SearchView v = search_look(a->search);
+    char beside[PATH_MAX];
+    const SearchView v = search_look(s->search);
     if (!v.state)
         return fail_memory(err, 1, "the state of the search");
-    a->n_entered = v.all->n;
-    a->n_state = v.n_state;
-    a->state = (unsigned char *)(uintptr_t)v.state; /* the search's own */
+    if (snprintf(beside, sizeof beside, "%s.part", path) >= PATH_MAX)
+        return fail(err, STATUS_IO, "%.80s...: the name is too long", path);
+
+    /* 1. Pack the mark, the settings and counts, then the walk, then the hash of it all. */
+    s->n_entered = v.all->n;
+    s->n_state = v.n_state;
+    s->state = (unsigned char *)(uintptr_t)v.state; /* the search's own */
     char *text = settings_text(&s->settings);
-    size_t n_con = s->schema.n_extra;
     pack(&p, (void *)(uintptr_t)MARK, sizeof MARK);
     pack_expect(&p, SAVED_VERSION);
     p.faulty = p.faulty || !text;
     if (text)
         walk_text(&p, text, TEXT_MAX);
-    pack_size(&p, &n_con, CONSTRAINTS_MAX);
+    pack_size(&p, &s->schema.n_extra, CONSTRAINTS_MAX);
     pack_size(&p, &s->n_given, COUNT_MAX);
     walk(&p, s, err);
-    a->state = NULL;
+    s->state = NULL;
     uint64_t hash = hash_fnv1a(p.bytes, p.n, HASH_SEED);
     pack(&p, &hash, sizeof hash);
-    const Status status = pack_finished(&p) ? replace(path, &p, err) : fail_memory(err, 1, "the search as bytes");
+
+    /* 2. Write it beside its place and rename it: the file is the old one or the new one, whenever the program ends. */
+    Status status = pack_finished(&p) ? STATUS_OK : fail_memory(err, 1, "the search as bytes");
+    FILE *f = status == STATUS_OK ? fopen(beside, "we") : NULL;
+    int done = f && fwrite(p.bytes, 1, p.n, f) == p.n && fflush(f) == 0 && fsync(fileno(f)) == 0;
+    if (f)
+        done = fclose(f) == 0 && done;
+    if (status == STATUS_OK && !(done && rename(beside, path) == 0)) {
+        status = fail_errno(err, path, "cannot be written");
+        unlink(beside);
+    }
     free(p.bytes);
     free(text);
     return status;
@@ -137,8 +124,8 @@ Status saved_write(imtet_search *s, const char *path, Err *err)
 
 /* -- reading ------------------------------------------------------------------------------------------------------- */
 
-/* Settings and counts, and of these an empty search. */
-static Status read_head(Pack *p, const char *path, imtet_search **out, Err *err)
+/* Settings and counts, of these an empty search, then what it knew. */
+static Status read_search(Pack *p, const char *path, imtet_search **out, Err *err)
 {
     Settings settings;
     size_t n_con = 0, n_given = 0;
@@ -148,46 +135,40 @@ static Status read_head(Pack *p, const char *path, imtet_search **out, Err *err)
     pack_size(p, &n_con, CONSTRAINTS_MAX);
     pack_size(p, &n_given, p->n);
     settings_defaults(&settings);
-    Status status = p->faulty ? bad_data(err, "%s: is damaged", path) : settings_parse(&settings, path, text, err);
+    const Status status =
+        p->faulty ? bad_data(err, "%s: is damaged", path) : settings_parse(&settings, path, text, err);
     free(text);
+    TRY(status);
     settings.problem.constraints = (long)n_con;
-    return status == STATUS_OK ? handle_create(out, &settings, n_given, err) : status;
-}
-
-static Status read_search(Pack *p, const char *path, imtet_search **out, Err *err)
-{
-    TRY(read_head(p, path, out, err));
+    TRY(handle_create(out, &settings, n_given, err));
     walk(p, *out, err);
     if (!pack_finished(p))
         return bad_data(err, "%s: is damaged", path);
-    (*out)->known = (*out)->asking.table.n;
+    (*out)->known = (*out)->table.n;
     return handle_open(*out, err);
 }
 
+/* Read the file whole; only one whose mark, hash and version are right is unpacked. */
 Status saved_read(imtet_search **out, const char *path, Err *err)
 {
     char *bytes;
     size_t n;
     uint64_t version, hash;
+    Status status;
     TRY(file_read(path, FILE_LARGEST, &bytes, &n, err));
-    Status status = STATUS_OK;
-    if (n < sizeof MARK + sizeof version + sizeof hash || memcmp(bytes, MARK, sizeof MARK) != 0)
+    if (n < sizeof MARK + sizeof version + sizeof hash || memcmp(bytes, MARK, sizeof MARK) != 0) {
         status = bad_data(err, "%s: is no saved search", path);
-    if (status == STATUS_OK) {
-        n -= sizeof hash;
+    } else {
+        Pack p = {
+            .bytes = (unsigned char *)bytes, .n = n - sizeof hash, .at = sizeof MARK + sizeof version, .reading = 1};
         memcpy(&version, bytes + sizeof MARK, sizeof version);
-        memcpy(&hash, bytes + n, sizeof hash);
-        if (hash != hash_fnv1a(bytes, n, HASH_SEED))
+        memcpy(&hash, bytes + p.n, sizeof hash);
+        if (hash != hash_fnv1a(bytes, p.n, HASH_SEED))
             status = bad_data(err, "%s: is damaged: its bytes are not those that were written", path);
         else if (version != SAVED_VERSION)
             status = bad_data(err, "%s: was saved by another version of imtet, which can go on with it", path);
-    }
-    Pack p = {.bytes = (unsigned char *)bytes, .n = n, .at = sizeof MARK + sizeof version, .reading = 1};
-    if (status == STATUS_OK)
-        status = read_search(&p, path, out, err);
-    if (status != STATUS_OK) {
-        handle_free(*out);
-        *out = NULL;
+        else
+            status = read_search(&p, path, out, err);
     }
     free(bytes);
     return status;

@@ -374,7 +374,7 @@ Status pair_take(const Schema *schema, const char *option, const char *text, siz
 {
     char name[TABLE_NAME_MAX];
     TRY(split(option, text, NAN, name, value, err));
-    return schema_pick_result(schema, option, name, STATUS_USAGE, k, err);
+    return schema_pick(schema, schema->n_obj + schema->n_extra, option, name, k, err);
 }
 
 Status pairs_take(const Schema *schema, const char *option, const char *list, double otherwise, double values[],
@@ -387,7 +387,7 @@ Status pairs_take(const Schema *schema, const char *option, const char *list, do
         if (!list_item(list, j, item, sizeof item))
             return misused(err, "%s: item %zu is empty or too long", option, j + 1);
         TRY(split(option, item, otherwise, name, &value, err));
-        TRY(schema_pick_objective(schema, option, name, STATUS_USAGE, &k, err));
+        TRY(schema_pick(schema, schema->n_obj, option, name, &k, err));
         values[k] = value;
     }
     return STATUS_OK;

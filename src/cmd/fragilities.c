@@ -24,7 +24,7 @@ static Status write_limits(const Schema *schema, const char *list, char out[OPTI
         const char *relation = "=";
         *is = 0;
         if (is[-1] != '<' && is[-1] != '>') {
-            TRY(schema_pick_result(schema, "--fragility", item, STATUS_USAGE, &k, err));
+            TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "--fragility", item, &k, err));
             relation = schema_objective(schema, k)->sense > 0 ? "<=" : ">=";
         }
         used +=

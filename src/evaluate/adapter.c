@@ -58,21 +58,6 @@ Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
                : external_open(p, &r->settings.problem, threads_wanted(r->settings.search.threads), err);
 }
 
-/* The one place that picks a simulator. */
-static Status open_simulator(Adapter *a, const Settings *s, Err *err)
-{
-    Settings own = *s;
-    own.sim.measures_only = 1;
-    if (s->problem.kind == PROBLEM_TOWER)
-        return tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err);
-    TRY(external_open(&a->problem, &s->problem, a->threads, err));
-    a->recipe.settings = *s;
-    a->problem.recipe = &a->recipe;
-    a->problem.recipe_size = sizeof a->recipe;
-    executor_choose(&a->problem);
-    return STATUS_OK;
-}
-
 /* Columns, limits and constraints of the simulator that is open. */
 static Status describe(Adapter *a, const Settings *s, Err *err)
 {
@@ -108,15 +93,30 @@ Status adapter_constrain(Adapter *a, long n, Err *err)
     return describe(a, &a->recipe.settings, err);
 }
 
+/* The one place that picks a simulator. */
+static Status prepare(Adapter *a, const Settings *s, Err *err)
+{
+    Settings own = *s;
+    own.sim.measures_only = 1;
+    if (s->problem.kind == PROBLEM_TOWER) {
+        TRY(tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err));
+    } else {
+        TRY(external_open(&a->problem, &s->problem, a->threads, err));
+        a->recipe.settings = *s;
+        a->problem.recipe = &a->recipe;
+        a->problem.recipe_size = sizeof a->recipe;
+        executor_choose(&a->problem);
+    }
+    return describe(a, s, err);
+}
+
 Status adapter_open(Adapter **out, const Settings *s, Err *err)
 {
     *out = NULL;
     Adapter *a;
     TRY_ROOM(a, 1, "a problem", err);
     a->threads = (int)threads_wanted(s->search.threads);
-    Status status = open_simulator(a, s, err);
-    if (status == STATUS_OK)
-        status = describe(a, s, err);
+    const Status status = prepare(a, s, err);
     if (status == STATUS_OK)
         *out = a;
     else

@@ -40,19 +40,15 @@ double damage_cost(DamagedPart part, double demand)
     return cost;
 }
 
-static const double *demands(const SimResult *r, DamagedPart part)
-{
-    return part == PART_ACCELERATION ? r->peak_acceleration_g : r->drift_ratio;
-}
-
 double damage_loss(const SimResult *r)
 {
     const double share[N_PARTS] = {r->repair.structure, r->repair.drift_sensitive, r->repair.acceleration_sensitive};
     double loss = 0;
-    for (DamagedPart p = 0; p < N_PARTS; p++)
+    for (DamagedPart p = 0; p < N_PARTS; p++) {
+        const double *demand = p == PART_ACCELERATION ? r->peak_acceleration_g : r->drift_ratio;
         for (int j = 0; j < r->n_floors; j++)
-            loss +=
-                damage_cost(p, demands(r, p)[j]) * (share[p] / DAMAGE_PARTS[p].cost[DAMAGE_STATES - 1]) / r->n_floors;
+            loss += damage_cost(p, demand[j]) * (share[p] / DAMAGE_PARTS[p].cost[DAMAGE_STATES - 1]) / r->n_floors;
+    }
     return loss;
 }
 

@@ -37,27 +37,19 @@ static LinearDevice device_at(const Tuning *t, const double u[2])
                           .tmd_damping = DAMPING_MIN * pow(DAMPING_MAX / DAMPING_MIN, u[1])};
 }
 
-/* J1, J2, J3 over n records by the rule. */
-static void combine(const Tuning *t, size_t n, const Measured of[], double J[3])
+/* J1, J2, J3 over n records by the rule; returns their goal. */
+static double combine(const Tuning *t, size_t n, const Measured of[], double J[3])
 {
-    ReplicatePlan plan = *tower_plan(t->tower);
+    const ReplicatePlan plan = tower_plan(t->tower, n);
     ReplicateSummary sum;
-    plan.n_records = n;
-    plan.n_replicates = 1;
-    replicates_summarise(&plan, of, sizeof *of, &sum);
+    replicates_summarise(&plan, of, sizeof *of, 0, &sum);
     J[0] = sum.mean[MEASURE_J1];
     J[1] = sum.mean[MEASURE_J2];
     J[2] = sum.mean[MEASURE_J3];
-}
-
-static double goal_of(const Tuning *t, size_t n, const Measured of[])
-{
-    double J[3];
-    combine(t, n, of, J);
     return J[0] / t->no_core[0] + J[1] / t->no_core[1] + J[2] / t->no_core[2];
 }
 
-static void count_all(Tuning *t)
+static void use_all_records(Tuning *t)
 {
     t->n_records = tower_n_records(t->tower);
     for (size_t r = 0; r < t->n_records; r++)
@@ -73,25 +65,15 @@ static void add_point(Tuning *t, double u0, double u1)
     t->at[t->n++][1] = fmin(fmax(u1, 0), 1);
 }
 
-/* Warburton's device for the first mode, whose shape says which share of the mass the roof sees. */
-static Status add_warburton(Tuning *t, Err *err)
-{
-    SceneModes modes;
-    const Building *b = scene_building(t->scenario->scene);
-    TRY(scene_frequencies(t->scenario->scene, t->search->x, &modes, err));
-    const double roof = b->phi[(b->n - 1) * b->n];
-    const LinearDevice d = warburton_device(t->hz, modes.core_mass_kg * roof * roof);
-    add_point(t, log(d.tmd_hz / (t->hz * HZ_MIN)) / log(HZ_MAX / HZ_MIN),
-              log(d.tmd_damping / DAMPING_MIN) / log(DAMPING_MAX / DAMPING_MIN));
-    return STATUS_OK;
-}
-
-/* The first grid, over all of the square. */
+/* The first grid, over all of the square; for a tuned mass with Warburton's device for the first mode, whose shape says
+ * which share of the mass the roof sees. */
 static Status begin(Tuning *t, Err *err)
 {
-    const Building *b = scene_building(t->scenario->scene);
-    const int is_tmd = t->search->kind == SCENE_TMD, n = is_tmd ? GRID_HZ : GRID_LINKS,
-              rows = is_tmd ? GRID_DAMPING : 1;
+    const Scene *scene = t->scenario->scene;
+    const Building *b = scene_building(scene);
+    const int is_tmd = t->search->kind == SCENE_TMD, n = is_tmd ? GRID_HZ : GRID_LINKS;
+    const int rows = is_tmd ? GRID_DAMPING : 1;
+    SceneModes modes;
     double mass = 0;
     for (int i = 0; i < b->n * b->n; i++)
         mass += b->M[i];
@@ -99,14 +81,20 @@ static Status begin(Tuning *t, Err *err)
     t->link = mass / b->n * b->omega[0];
     t->kind = t->search->kind;
     t->n = 0;
-    for (int d = 0; d < 2; d++) {
-        t->best[d] = 0.5;
-        t->spacing[d] = 1.0 / (d == 0 ? n : rows);
-    }
+    t->best[0] = t->best[1] = 0.5;
+    t->spacing[0] = 1.0 / n;
+    t->spacing[1] = 1.0 / rows;
     for (int i = 0; i < n; i++)
         for (int k = 0; k < rows; k++)
             add_point(t, (i + 0.5) / n, (k + 0.5) / rows);
-    return is_tmd ? add_warburton(t, err) : STATUS_OK;
+    if (!is_tmd)
+        return STATUS_OK;
+    TRY(scene_frequencies(scene, t->search->x, &modes, err));
+    const double roof = b->phi[(b->n - 1) * b->n];
+    const LinearDevice d = warburton_device(t->hz, modes.core_mass_kg * roof * roof);
+    add_point(t, log(d.tmd_hz / (t->hz * HZ_MIN)) / log(HZ_MAX / HZ_MIN),
+              log(d.tmd_damping / DAMPING_MIN) / log(DAMPING_MAX / DAMPING_MIN));
+    return STATUS_OK;
 }
 
 /* About the best point, half as far as before; where that is known by few records alone, as far, and itself, by all. */
@@ -114,7 +102,7 @@ static void surround(Tuning *t, int by_all)
 {
     const int rows = t->search->kind == SCENE_TMD;
     if (by_all)
-        count_all(t);
+        use_all_records(t);
     t->n = 0;
     for (int d = 0; d < 2; d++)
         t->spacing[d] *= by_all ? 1 : 0.5;
@@ -126,14 +114,15 @@ static void surround(Tuning *t, int by_all)
 
 /* -- what simulations say ------------------------------------------------------------------------------------------ */
 
-/* By the building alone, of (n_records) all: of many the strongest, and others evenly spread by their strength. */
+/* Choose the records of the first grid by the building alone, of (n_records) all: of many the strongest, and others
+ * evenly spread by their strength. */
 static void choose_records(Tuning *t, const Measured of[])
 {
     const size_t n = t->n_records;
-    double goal[TOWER_RECORDS_MAX];
+    double goal[TOWER_RECORDS_MAX], J[3];
     combine(t, n, of, t->no_core);
     for (size_t r = 0; r < n; r++)
-        goal[r] = of[r].outcome == RUN_OK ? goal_of(t, 1, &of[r]) : INFINITY;
+        goal[r] = of[r].outcome == RUN_OK ? combine(t, 1, &of[r], J) : INFINITY;
     t->n_records = 0;
     for (size_t r = 0; r < n; r++) {
         size_t n_stronger = 0;
@@ -147,19 +136,7 @@ static void choose_records(Tuning *t, const Measured of[])
     }
 }
 
-/* of (n, n_records) */
-static void take(Tuning *t, const Measured of[])
-{
-    for (size_t i = 0; i < t->n; i++) {
-        const double goal = goal_of(t, t->n_records, of + i * t->n_records);
-        if (goal < t->least) {
-            t->least = goal;
-            memcpy(t->best, t->at[i], sizeof t->best);
-        }
-    }
-}
-
-/* Every point under every record. */
+/* Simulate every point under every record; of the building alone that chooses the records, of devices the best point. */
 static Status simulate(const Problem *p, size_t n, Tuning tuning[], Err *err)
 {
     size_t n_tasks = 0, k = 0;
@@ -179,57 +156,59 @@ static Status simulate(const Problem *p, size_t n, Tuning tuning[], Err *err)
     }
     const Status status =
         tasks && of ? tower_run(p, n_tasks, tasks, NULL, NULL, err) : fail_memory(err, n_tasks, "simulations");
-    for (size_t i = k = 0; status == STATUS_OK && i < n; i++) {
+    const Measured *own = of;
+    for (size_t i = 0; status == STATUS_OK && i < n; i++) {
         Tuning *t = &tuning[i];
-        const Measured *own = of + k;
-        k += t->n * t->n_records;
-        if (t->kind == SCENE_NO_CORE)
-            choose_records(t, own);
-        else
-            take(t, own);
+        if (t->kind == SCENE_NO_CORE) {
+            own += t->n_records;
+            choose_records(t, own - t->n_records);
+            continue;
+        }
+        for (size_t j = 0; j < t->n; j++, own += t->n_records) {
+            double J[3];
+            const double goal = combine(t, t->n_records, own, J);
+            if (goal < t->least) {
+                t->least = goal;
+                memcpy(t->best, t->at[j], sizeof t->best);
+            }
+        }
     }
     free(tasks);
     free(of);
     return status;
 }
 
-static Status tune(const Problem *p, size_t n, Tuning tuning[], Err *err)
-{
-    const int by_few = tower_n_records(tower_of(p)) > SUITE;
-    TRY(simulate(p, n, tuning, err)); /* the building alone */
-    for (size_t i = 0; i < n; i++)
-        TRY(begin(&tuning[i], err));
-    TRY(simulate(p, n, tuning, err));
-    for (int grid = -by_few; grid < FINER; grid++) {
-        for (size_t i = 0; i < n; i++)
-            surround(&tuning[i], grid < 0);
-        TRY(simulate(p, n, tuning, err));
-    }
-    return STATUS_OK;
-}
-
 Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
 {
+    const int by_few = tower_n_records(tower_of(p)) > SUITE;
     Tuning *tuning;
     Status status = STATUS_OK;
-    size_t n_held = 0;
+    size_t n_acquired = 0;
     TRY_ROOM(tuning, n, "devices", err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
         Tuning *t = &tuning[i];
-        t->tower = tower_of(p);
-        t->search = &search[i];
-        t->n = 1;
-        count_all(t);
-        t->kind = SCENE_NO_CORE;
-        status = tower_hold(p, search[i].scene, &t->scenario, err);
-        n_held += status == STATUS_OK;
+        *t = (Tuning){.tower = tower_of(p), .search = &search[i], .n = 1, .kind = SCENE_NO_CORE};
+        use_all_records(t);
+        status = tower_acquire(p->self, search[i].scene, &t->scenario, err);
+        n_acquired += status == STATUS_OK;
     }
+
+    /* The building alone, the first grid, and finer ones, the first of them by all records where few were chosen. */
     if (status == STATUS_OK)
-        status = tune(p, n, tuning, err);
+        status = simulate(p, n, tuning, err);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        status = begin(&tuning[i], err);
+    if (status == STATUS_OK)
+        status = simulate(p, n, tuning, err);
+    for (int grid = -by_few; grid < FINER && status == STATUS_OK; grid++) {
+        for (size_t i = 0; i < n; i++)
+            surround(&tuning[i], grid < 0);
+        status = simulate(p, n, tuning, err);
+    }
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         search[i].device = device_at(&tuning[i], tuning[i].best);
-    for (size_t i = 0; i < n_held; i++)
-        tower_let_go(p, search[i].scene);
+    for (size_t i = 0; i < n_acquired; i++)
+        tower_release(p->self, search[i].scene);
     free(tuning);
     return status;
 }

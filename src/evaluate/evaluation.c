@@ -59,31 +59,6 @@ EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)
     return (EvaluationTable){.n_var = n_var, .n_obj = n_obj, .n_extra = n_extra, .n_sd = n_obj};
 }
 
-static void copy_numbers(double to[], const double from[], size_t n)
-{
-    if (n > 0 && from)
-        memcpy(to, from, n * sizeof *to);
-}
-
-void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra)
-{
-    const Evaluation own = *to;
-    const size_t n_sd = own.sd ? n_obj : 0;
-    *to = *from;
-    to->room = own.room;
-    to->reason = "";
-    if (from->reason && from->reason[0]) {
-        snprintf(to->room, REASON_MAX, "%s", from->reason);
-        to->reason = to->room;
-    }
-#define X(array, width)                                                                                                \
-    to->array = own.array;                                                                                             \
-    copy_numbers(to->array, from->array, width);
-    EVALUATION_ARRAYS(X)
-#undef X
-    to->err = NULL;
-}
-
 static void point_row(EvaluationTable *t, size_t i)
 {
 #define X(array, width) t->row[i].array = t->array + i * t->width;
@@ -101,29 +76,6 @@ static void *widen(void *array, size_t n, size_t size, int *lacks)
     return wider ? wider : array;
 }
 
-/* Of large arrays the system moves the pages, and copies nothing. */
-static Status grow(EvaluationTable *t, Err *err)
-{
-    const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
-    int lacks = 0;
-    t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
-#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
-    EVALUATION_ARRAYS(X)
-#undef X
-    for (size_t i = 0; i < t->n_used; i++)
-        point_row(t, i);
-    if (lacks)
-        return fail_memory(err, n_max, "evaluations");
-    t->n_max = n_max;
-    return STATUS_OK;
-}
-
-static void set_unknown(double v[], size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        v[i] = NAN;
-}
-
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
     const Evaluation own = *e;
@@ -132,15 +84,27 @@ void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
         .kind = KIND_UNFINISHED, .reason = "", .room = own.room, .seconds = NAN, .violation = NAN, .x = own.x};
 #define X(array, width)                                                                                                \
     e->array = own.array;                                                                                              \
-    set_unknown(e->array, width);
+    for (size_t i = 0; i < width; i++)                                                                                 \
+        e->array[i] = NAN;
     RESULT_ARRAYS(X)
 #undef X
 }
 
 Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
 {
-    if (t->n == t->n_max)
-        TRY(grow(t, err));
+    if (t->n == t->n_max) { /* of large arrays the system moves the pages, and copies nothing */
+        const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
+        int lacks = 0;
+        t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
+#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
+        EVALUATION_ARRAYS(X)
+#undef X
+        for (size_t i = 0; i < t->n_used; i++)
+            point_row(t, i);
+        if (lacks)
+            return fail_memory(err, n_max, "evaluations");
+        t->n_max = n_max;
+    }
     if (t->n == t->n_used) {
         t->row[t->n_used] = (Evaluation){0};
         point_row(t, t->n_used++);
@@ -163,9 +127,25 @@ Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *
 {
     Evaluation *e;
     TRY(evaluation_table_add(t, &e, err));
-    if (from->reason && from->reason[0])
+    const Evaluation own = *e;
+    const int has_reason = from->reason && from->reason[0];
+    if (has_reason)
         TRY(evaluation_table_give_room(e, err));
-    evaluation_copy(e, from, t->n_var, t->n_obj, t->n_extra);
+    char *const room = e->room;
+    *e = *from;
+    e->room = room;
+    e->reason = "";
+    e->err = NULL;
+    if (has_reason) {
+        snprintf(room, REASON_MAX, "%s", from->reason);
+        e->reason = room;
+    }
+#define X(array, width)                                                                                                \
+    e->array = own.array;                                                                                              \
+    if (from->array && e->array && t->width > 0)                                                                       \
+        memcpy(e->array, from->array, t->width * sizeof *e->array);
+    EVALUATION_ARRAYS(X)
+#undef X
     return STATUS_OK;
 }
 

@@ -82,9 +82,6 @@ typedef struct {
     long level;  /* times that the steps of the settings were doubled for it */
 } Evaluation;
 
-/* All numbers that `from` has (NULL arrays: none) into the arrays of `to`, of the same shapes. */
-void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra);
-
 /* Nothing is known: x and the room stay, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
 

@@ -27,60 +27,47 @@ typedef struct {
 
 /* -- the command --------------------------------------------------------------------------------------------------- */
 
-/* One word of *from, unquoted in place at `to`; *from moves behind it. 0: a quote is left open. */
-static int take_word(const char **from, char **to)
+/* Split the command into words at blanks; quotes are taken off in place. */
+static Status split_command(External *e, const char *from, Err *err)
 {
-    char quote = 0;
-    for (; **from && (quote || (**from != ' ' && **from != '\t')); ++*from) {
-        const char c = **from;
-        if (quote ? c == quote : c == '\'' || c == '"')
-            quote = quote ? 0 : c;
-        else if (c == '\\' && quote != '\'' && (*from)[1])
-            *(*to)++ = *++*from;
-        else
-            *(*to)++ = c;
-    }
-    *(*to)++ = 0;
-    return !quote;
-}
-
-static Status split_command(External *e, const char *command, Err *err)
-{
-    TRY_ROOM(e->text, strlen(command) + 2, "bytes of the command", err);
+    TRY_ROOM(e->text, strlen(from) + 2, "bytes of the command", err);
     char *to = e->text;
     for (size_t n = 0;;) {
-        command += strspn(command, " \t");
-        if (!*command)
+        from += strspn(from, " \t");
+        if (!*from)
             return n > 0 ? STATUS_OK : bad_data(err, "problem.command: is empty; what is to be run?");
         if (n == WORDS_MAX)
             return bad_data(err, "problem.command: has more than %d words", WORDS_MAX);
         e->words[n++] = to;
-        if (!take_word(&command, &to))
+        char quote = 0;
+        for (; *from && (quote || (*from != ' ' && *from != '\t')); ++from) {
+            if (quote ? *from == quote : *from == '\'' || *from == '"')
+                quote = quote ? 0 : *from;
+            else
+                *to++ = *from == '\\' && quote != '\'' && from[1] ? *++from : *from;
+        }
+        if (quote)
             return bad_data(err, "problem.command: a quote is left open");
+        *to++ = 0;
     }
 }
 
 /* -- one request --------------------------------------------------------------------------------------------------- */
 
-static char *write_design(const External *e, char *to, const Task *task)
-{
-    char word[KIND_WORD_MAX];
-    to += sprintf(to, "{\"id\":%ld,\"x\":[", task->id);
-    for (size_t d = 0; d < e->n_var; d++)
-        if (e->kind && kinds_word(e->kinds, d, task->x[d], word))
-            to += sprintf(to, "%s\"%s\"", d ? "," : "", word);
-        else
-            to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
-    return to + sprintf(to, "]}");
-}
-
-/* A design, or a list of them, whole: half a request would be waited for. */
+/* Write a design, or a list of them, whole: half a request would be waited for. */
 static size_t write_request(void *self, const Worker *w, char *request)
 {
-    char *to = request;
+    const External *e = self;
+    char *to = request, word[KIND_WORD_MAX];
     for (size_t i = 0; i < w->n; i++) {
-        to += sprintf(to, "%s", i > 0 ? "," : w->n > 1 ? "[" : "");
-        to = write_design(self, to, &w->task[i]);
+        const Task *task = &w->task[i];
+        to += sprintf(to, "%s{\"id\":%ld,\"x\":[", i > 0 ? "," : w->n > 1 ? "[" : "", task->id);
+        for (size_t d = 0; d < e->n_var; d++)
+            if (e->kind && kinds_word(e->kinds, d, task->x[d], word))
+                to += sprintf(to, "%s\"%s\"", d ? "," : "", word);
+            else
+                to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
+        to += sprintf(to, "]}");
     }
     to += sprintf(to, "%s\n", w->n > 1 ? "]" : "");
     return to - request;
@@ -95,28 +82,19 @@ static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
     snprintf(a->reason, sizeof a->reason, "%s", reason);
 }
 
-/* 0: they are not all finite numbers. */
-static int take_numbers(const json_t *list, double values[])
+/* Is it a list of min to max finite numbers? */
+static int take_numbers(const json_t *list, size_t min, size_t max, double values[])
 {
-    for (size_t k = 0; k < json_array_size(list); k++) {
+    const size_t n = json_array_size(list);
+    if (!json_is_array(list) || n < min || n > max)
+        return 0;
+    for (size_t k = 0; k < n; k++) {
         const json_t *value = json_array_get(list, k);
         values[k] = json_is_number(value) ? json_number_value(value) : NAN;
         if (!isfinite(values[k]))
             return 0;
     }
     return 1;
-}
-
-static int take_objectives(const External *e, const json_t *list, double f[])
-{
-    return json_array_size(list) == e->n_obj && take_numbers(list, f);
-}
-
-/* How many there should be is known where answers meet: combine. No g is none. */
-static int take_constraints(const json_t *list, ExternalAnswer *a, double g[])
-{
-    a->n_con = json_array_size(list);
-    return !list || (json_is_array(list) && a->n_con <= CONSTRAINTS_MAX && take_numbers(list, g));
 }
 
 /* What Python, C and others print for numbers that are none (NaN, -Infinity, inf) is no JSON: a word outside strings
@@ -144,101 +122,76 @@ static void blank_words(char *line)
     }
 }
 
-/* "batch" of an answer. 0: it is no such number. */
-static int take_batch(Worker *w, const json_t *batch)
+/* Settle the next task by one answer. How many constraint values there should be is known where answers meet: combine. */
+static void take_design(const External *e, Worker *w, const json_t *o, const char *line)
 {
-    const json_int_t n = json_integer_value(batch);
-    if (!batch)
-        return 1;
-    if (!json_is_integer(batch) || n < 1 || n > TASKS_MAX)
-        return 0;
-    pool_batch(w, n);
-    return 1;
-}
-
-static void take_design(External *e, Worker *w, const json_t *o, const char *line)
-{
-    const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
+    const json_t *f = json_object_get(o, "f"), *g = json_object_get(o, "g"), *why = json_object_get(o, "error");
+    const json_t *id = json_object_get(o, "id"), *batch = json_object_get(o, "batch");
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
     const Task *task = &w->task[w->n_done];
     ExternalAnswer *a = task->result;
+    a->n_con = json_array_size(g);
     if (!json_is_object(o) || !json_is_number(id))
         pool_settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
     else if (json_number_value(id) != task->id)
         pool_settle(w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), task->id);
-    else if (!take_batch(w, json_object_get(o, "batch")))
+    else if (batch && !pool_batch(w, json_integer_value(batch)))
         pool_settle(w, OUTCOME_GARBLED, 1, "batch is no whole number from 1 to %d", TASKS_MAX);
     else if (why && !json_is_null(why))
         pool_settle(w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
     else if (!json_is_array(f))
         pool_settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
-    else if (!take_objectives(e, f, a->f))
+    else if (!take_numbers(f, e->n_obj, e->n_obj, a->f))
         pool_settle(w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
-    else if (!take_constraints(json_object_get(o, "g"), a, a->f + e->n_obj))
+    else if (g && !take_numbers(g, 0, CONSTRAINTS_MAX, a->f + e->n_obj))
         pool_settle(w, OUTCOME_NOT_FINITE, 0, "g is not a list of at most %d finite numbers", CONSTRAINTS_MAX);
     else
         pool_settle(w, OUTCOME_OK, 0, "%s", "");
 }
 
-static int is_waited_for(const Worker *w)
-{
-    return w->n_done < w->n;
-}
-
-/* Of one design, or of a list of them the list of their answers. */
-static void take_answer(External *e, Worker *w, char *line, size_t length)
-{
-    json_error_t error;
-    const char first = line[strspn(line, " \t\r")];
-    if (first == '{' || (first == '[' && w->n > 1))
-        blank_words(line);
-    json_t *o = json_loadb(line, length, 0, &error);
-    w->n_answered++;
-    if (!o && json_error_code(&error) == json_error_numeric_overflow)
-        pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
-                    e->n_obj);
-    else if (json_is_array(o) && w->n > 1)
-        for (size_t i = 0; i < json_array_size(o) && is_waited_for(w); i++)
-            take_design(e, w, json_array_get(o, i), line);
-    else
-        take_design(e, w, o, line);
-    json_decref(o);
-}
-
-/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request,
- * which it spoils. */
+/* Take the first whole line in the buffer that is not blank: the answer of one design, or of a list of them the list of
+ * their answers. What follows it waits for the next request, which it spoils. */
 static void look_for_answer(void *self, Worker *w)
 {
-    External *e = self;
+    const External *e = self;
     size_t used = 0;
-    for (char *end; is_waited_for(w) && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
+    for (char *end; w->n_done < w->n && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
         char *line = w->line + used;
         const size_t length = end - line;
+        json_error_t error;
         *end = 0;
         used += length + 1;
-        if (strspn(line, " \t\r") < length)
-            take_answer(e, w, line, length);
+        const size_t blanks = strspn(line, " \t\r");
+        if (blanks >= length)
+            continue;
+        if (line[blanks] == '{' || (line[blanks] == '[' && w->n > 1))
+            blank_words(line);
+        json_t *o = json_loadb(line, length, 0, &error);
+        w->n_answered++;
+        if (!o && json_error_code(&error) == json_error_numeric_overflow)
+            pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
+                        e->n_obj);
+        else if (json_is_array(o) && w->n > 1)
+            for (size_t i = 0; i < json_array_size(o) && w->n_done < w->n; i++)
+                take_design(e, w, json_array_get(o, i), line);
+        else
+            take_design(e, w, o, line);
+        json_decref(o);
     }
     memmove(w->line, w->line + used, w->n_line - used);
     w->n_line -= used;
-    if (is_waited_for(w) && w->n_line == LINE_MAX_BYTES)
+    if (w->n_done < w->n && w->n_line == LINE_MAX_BYTES)
         pool_settle(w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
 }
 
 /* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
-static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+static Pool *pool(void *self)
 {
-    External *e = self;
-    return pool_do(&e->pool, worker, n, tasks, n_done, err);
+    return &((External *)self)->pool;
 }
 
-static size_t batch(void *self, size_t worker)
-{
-    const External *e = self;
-    return e->pool.worker[worker].batch;
-}
-
+/* An answer becomes an evaluation; only here it is known how many constraint values the first one of the run had. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
 {
     (void)n;
@@ -268,12 +221,11 @@ static void external_close(void *self)
     free(e);
 }
 
-static const Simulator EXTERNAL = {
-    .combine = combine, .close = external_close, .batch = batch, .simulate_batch = simulate};
+static const Simulator EXTERNAL = {.combine = combine, .close = external_close, .pool = pool};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
-/* Number of each of n variables: one for all, or a list. */
+/* The number of each of n variables: one for all, or a list. */
 static Status read_bounds(const char *key, const char *list, size_t n, double bounds[], Err *err)
 {
     const size_t count = list_count(list);
@@ -290,34 +242,23 @@ static Status read_bounds(const char *key, const char *list, size_t n, double bo
     return STATUS_OK;
 }
 
-static Status set_kinds(External *e, const ProblemOptions *o, Err *err)
+/* The command, the box (a choice has bounds of its own), and the processes. */
+static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
 {
-    if (kinds_are_real(o->kinds))
-        return STATUS_OK;
-    snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
-    e->kind = calloc(e->n_var, sizeof *e->kind);
-    return e->kind ? kinds_read(e->kinds, e->n_var, e->kind, e->lower, e->upper, err)
-                   : fail(err, STATUS_NO_MEMORY, "no memory for %zu variables", e->n_var);
-}
-
-static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
-{
+    TRY(split_command(e, o->command, err));
     TRY_ROOM(e->lower, 2 * e->n_var, "bounds of variables", err);
     e->upper = e->lower + e->n_var;
     TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
     TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
-    TRY(set_kinds(e, o, err)); /* a choice has bounds of its own */
+    if (!kinds_are_real(o->kinds)) {
+        snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
+        TRY_ROOM(e->kind, e->n_var, "variables", err);
+        TRY(kinds_read(e->kinds, e->n_var, e->kind, e->lower, e->upper, err));
+    }
     for (size_t j = 0; j < e->n_var; j++)
         if (e->lower[j] > e->upper[j])
             return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
                             e->upper[j], j + 1);
-    return STATUS_OK;
-}
-
-static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
-{
-    TRY(split_command(e, o->command, err));
-    TRY(set_bounds(e, o, err));
     const Protocol protocol = {.name = "problem.command",
                                .work = {.words = e->words},
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,

@@ -37,6 +37,7 @@ static void become(const HelperWork *w, size_t slot, pid_t parent)
     _exit(0);
 }
 
+/* Start the worker in a process group of its own. A command shares our memory until it has begun, and with it why. */
 static Started start_worker(const HelperWork *w, size_t slot)
 {
     const pid_t parent = getpid();

@@ -3,24 +3,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static int always(void *user)
-{
-    (void)user;
-    return 1;
-}
-
 /* The child: an order after the other, until nobody sends any. */
 static void serve(void *self, size_t worker)
 {
     const Isolated *q = self;
-    Doer doer = q->doer;
-    const size_t size = order_bytes(1, doer.n_var);
+    const size_t size = order_bytes(1, q->doer.n_var);
     Order *order = malloc(size);
     FILE *in = fdopen(STDIN_FILENO, "r"), *out = fdopen(STDOUT_FILENO, "w");
-    doer.may_go_on = always;
     while (order && in && out && fread(order, size, 1, in) == 1) {
         size_t n_bytes;
-        Answer *a = order_do(order, worker, &doer, &n_bytes);
+        Answer *a = order_do(order, worker, &q->doer, &n_bytes);
         if (!a || fwrite(a, n_bytes, 1, out) != 1 || fflush(out) != 0)
             break;
         free(a);
@@ -30,10 +22,10 @@ static void serve(void *self, size_t worker)
 
 static size_t write_order(void *self, const Worker *w, char *request)
 {
-    const Isolated *q = self;
-    return order_write((Order *)(void *)request, w, q->doer.n_var);
+    return order_write((Order *)(void *)request, w, ((const Isolated *)self)->doer.n_var);
 }
 
+/* An answer comes whole or not at all; its length says of how many tasks it is. */
 static void look(void *self, Worker *w)
 {
     (void)self;

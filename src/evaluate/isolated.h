@@ -14,5 +14,4 @@ typedef struct {
     void (*lost)(const Task *task, const char *reason); /* writes the part of a task whose process has ended */
 } Isolated;
 
-/* doer.may_go_on is not read. */
 Status isolated_open(Isolated *q, size_t n_workers, Err *err);

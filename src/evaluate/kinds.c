@@ -71,6 +71,7 @@ static int is_plain(const char *word)
     return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
 }
 
+/* Words of a choice, whose upper bound is the number of the last one. */
 static Status read_choice(const char *item, double *upper, Err *err)
 {
     char word[KIND_WORD_MAX];
@@ -90,39 +91,34 @@ static Status read_choice(const char *item, double *upper, Err *err)
     return STATUS_OK;
 }
 
-static Status read_kind(const char *item, size_t j, VariableKind *kind, double *lower, double *upper, Err *err)
-{
-    static const char *const WORDS[] = {"real", "log", "int"};
-    if (strncmp(item, CHOICE, sizeof CHOICE - 1) == 0) {
-        *kind = VARIABLE_CHOICE;
-        *lower = 0.0;
-        return read_choice(item, upper, err);
-    }
-    size_t k = 0;
-    while (k < 3 && strcmp(item, WORDS[k]) != 0)
-        k++;
-    if (k == 3)
-        return bad_data(err, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
-    *kind = (VariableKind)k;
-    if (*kind == VARIABLE_LOG && !(*lower > 0.0))
-        return bad_data(err, "problem.lower: is %g for variable %zu, which is log: set it above 0", *lower, j + 1);
-    if (*kind == VARIABLE_WHOLE && (*lower != floor(*lower) || *upper != floor(*upper)))
-        return bad_data(err,
-                        "problem.lower, problem.upper: %g and %g of variable %zu, which is int, are no whole numbers",
-                        *lower, *upper, j + 1);
-    return STATUS_OK;
-}
-
 Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err)
 {
+    static const char *const WORDS[] = {[VARIABLE_REAL] = "real", [VARIABLE_LOG] = "log", [VARIABLE_WHOLE] = "int"};
     const size_t n = list_count(list);
     char item[LIST_MAX];
     if (n != 1 && n != n_var)
         return bad_data(err, "problem.kinds: %zu kinds for %zu variables", n, n_var);
-    for (size_t j = 0; j < n_var; j++) {
+    for (size_t j = 0, k = 0; j < n_var; j++, k = 0) {
         if (!item_of(list, j, item))
             return bad_data(err, "problem.kinds: kind %zu is missing", j + 1);
-        TRY(read_kind(item, j, &kind[j], &lower[j], &upper[j], err));
+        if (strncmp(item, CHOICE, sizeof CHOICE - 1) == 0) {
+            kind[j] = VARIABLE_CHOICE;
+            lower[j] = 0.0;
+            TRY(read_choice(item, &upper[j], err));
+            continue;
+        }
+        while (k < N_OF(WORDS) && strcmp(item, WORDS[k]) != 0)
+            k++;
+        kind[j] = (VariableKind)k;
+        if (k == N_OF(WORDS))
+            return bad_data(err, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
+        if (kind[j] == VARIABLE_LOG && !(lower[j] > 0.0))
+            return bad_data(err, "problem.lower: is %g for variable %zu, which is log: set it above 0", lower[j],
+                            j + 1);
+        if (kind[j] == VARIABLE_WHOLE && (lower[j] != floor(lower[j]) || upper[j] != floor(upper[j])))
+            return bad_data(
+                err, "problem.lower, problem.upper: %g and %g of variable %zu, which is int, are no whole numbers",
+                lower[j], upper[j], j + 1);
     }
     return STATUS_OK;
 }

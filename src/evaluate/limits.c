@@ -2,27 +2,18 @@
 
 #include <ctype.h>
 
-/* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
-static const char *take_name(const char *text, char name[])
+/* Read NAME<=NUMBER or NAME>=NUMBER, where NAME may be a chance p(NAME>NUMBER). */
+static Status read_limit(Limit *l, const Schema *schema, const char *text, Err *err)
 {
     const size_t inside = strncmp(text, "p(", 2) == 0 ? strcspn(text, ")") : 0;
     const char *relation = strpbrk(text + inside, "<>");
+    char name[TABLE_NAME_MAX], *end;
     if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
-        return NULL;
-    snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);
+        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
+    snprintf(name, sizeof name, "%.*s", (int)(relation - text), text);
     for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
         *--last = 0;
-    return relation;
-}
-
-static Status read_limit(Limits *limits, const Schema *schema, const char *text, Err *err)
-{
-    char name[TABLE_NAME_MAX], *end;
-    const char *relation = take_name(text, name);
-    if (!relation)
-        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
-    Limit *l = &limits->limit[limits->n++];
-    TRY(schema_pick_result(schema, "search.limits", name, STATUS_BAD_DATA, &l->result, err));
+    TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "search.limits", name, &l->result, err));
     l->sign = *relation == '<' ? 1.0 : -1.0;
     l->bound = strtod(relation + 2, &end);
     if (end == relation + 2 || *end || !isfinite(l->bound))
@@ -39,10 +30,22 @@ static const Limit *find(const Limits *limits, size_t n, size_t result, double s
     return NULL;
 }
 
-/* One limit on a side, that of what is better only beside the other, and some number between both. */
-static Status check(const Limits *limits, const Schema *schema, Err *err)
+/* Read the list, then check that there is one limit on a side, that of what is better only beside the other, and some
+ * number between both. */
+Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
 {
     const int is_tower = schema->order.n_obj > 0;
+    char text[128];
+    limits->n = 0;
+    if (strcmp(list, "none") == 0)
+        return STATUS_OK;
+    if (list_count(list) > LIMITS_MAX)
+        return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, text, sizeof text))
+            return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
+        TRY(read_limit(&limits->limit[limits->n++], schema, text, err));
+    }
     for (size_t i = 0; i < limits->n; i++) {
         const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
         const Column *c = schema_objective(schema, l->result);
@@ -67,22 +70,6 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
     return STATUS_OK;
 }
 
-Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
-{
-    char text[128];
-    limits->n = 0;
-    if (strcmp(list, "none") == 0)
-        return STATUS_OK;
-    if (list_count(list) > LIMITS_MAX)
-        return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
-    for (size_t i = 0; i < list_count(list); i++) {
-        if (!list_item(list, i, text, sizeof text))
-            return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
-        TRY(read_limit(limits, schema, text, err));
-    }
-    return check(limits, schema, err);
-}
-
 void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, double g[])
 {
     for (size_t c = 0; c < limits->n; c++) {
@@ -105,7 +92,7 @@ Status aspirations_read(const double **aspire, double level[], const Schema *sch
         if (!blank || *end || !isfinite(value))
             return bad_data(err, "search.aspire: item %zu of '%.60s' is not NAME NUMBER", i + 1, list);
         *blank = 0;
-        TRY(schema_pick_objective(schema, "search.aspire", text, STATUS_BAD_DATA, &k, err));
+        TRY(schema_pick(schema, schema->n_obj, "search.aspire", text, &k, err));
         if (!isnan(level[k]))
             return bad_data(err, "search.aspire: %s is given twice", text);
         level[k] = schema_objective(schema, k)->sense * value;

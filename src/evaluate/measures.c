@@ -72,17 +72,6 @@ unsigned measures_need(MeasureSet set)
     return needs;
 }
 
-/* What a scene has of NEEDS_. */
-static unsigned has_of(const CoreOptions *core, const Building *b)
-{
-    Foundation f = {0};
-    const CoreSection section = core_section(core);
-    foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
-    return NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) | (f.rotation > 0 ? NEEDS_TURNING : 0u) |
-           (f.radius_m > 0 ? NEEDS_RADIUS : 0u) | (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) |
-           (section == CORE_BOX ? NEEDS_WALLS : 0u);
-}
-
 Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err)
 {
     static const struct {
@@ -95,7 +84,12 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
         {NEEDS_SHAPE, "the core has no section: set core.section = box or plate, and core.model = none"},
         {NEEDS_WALLS, "the core has no walls: set core.section = box, and core.model = none"},
     };
-    const unsigned has = has_of(core, b);
+    Foundation f = {0};
+    const CoreSection section = core_section(core);
+    foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
+    const unsigned has = NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) |
+                         (f.rotation > 0 ? NEEDS_TURNING : 0u) | (f.radius_m > 0 ? NEEDS_RADIUS : 0u) |
+                         (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) | (section == CORE_BOX ? NEEDS_WALLS : 0u);
     for (int k = 0; k < N_MEASURES; k++)
         for (size_t i = 0; set >> k & 1 && i < N_OF(LACKS); i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)
@@ -168,25 +162,9 @@ static Status no_result(const char *key, const char *name, Err *err)
     return fail_no_word(err, STATUS_BAD_DATA, key, name, "result", names, MEASURES_LISTED);
 }
 
-/* Of a chance that was read, which is minimised. */
-static Status check_chance(const Chance *c, const char *key, Err *err)
-{
-    const Measure *of = &MEASURES[c->of];
-    if (c->of == MEASURE_ANNUAL_LOSS)
-        return bad_data(err, "%s: %s: annual_loss is a sum over records, no result of one simulation", key, c->name);
-    const char exceeds = of->sense > 0 ? '>' : '<';
-    if (c->bound < 0 || (c->bound == 0 && c->sign < 0))
-        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c->name);
-    if (c->bound >= 1 && measure_is_share(c->of))
-        return bad_data(err, "%s: %s: this is a share of 1, no per cent; write %g for %g %%", key, c->name,
-                        0.01 * c->bound, c->bound);
-    if (c->sign * of->sense < 0)
-        return bad_data(err, "%s: %s prefers what is worse: of %s %s is better; write p(%s%c%g)", key, c->name,
-                        of->name, of->sense > 0 ? "less" : "more", of->name, exceeds, c->bound);
-    return STATUS_OK;
-}
-
-/* "p(NAME>NUMBER)" to *k, a measure of the order; another text says so. */
+/* Read "p(NAME>NUMBER)", a share of simulations that is minimised, into *k, a measure of the order; another text says so.
+ * Refused is what is the same for all designs, a per cent where the number is a share, and a preference of what is
+ * worse. */
 static Status take_chance(MeasureOrder *o, const char *key, const char *text, int *k, Err *err)
 {
     Chance c = {0};
@@ -202,10 +180,20 @@ static Status take_chance(MeasureOrder *o, const char *key, const char *text, in
         return bad_data(err, "%s: '%.60s' is no p(NAME>NUMBER) with a column as NAME", key, text);
     snprintf(name, sizeof name, "%.*s", n, c.name + 2);
     c.of = find(name, (size_t)n);
+    c.sign = *relation == '>' ? 1 : -1;
     if (c.of == MEASURES_LISTED)
         return no_result(key, name, err);
-    c.sign = *relation == '>' ? 1 : -1;
-    TRY(check_chance(&c, key, err));
+    const int is_less = MEASURES[c.of].sense > 0;
+    if (c.of == MEASURE_ANNUAL_LOSS)
+        return bad_data(err, "%s: %s: annual_loss is a sum over records, no result of one simulation", key, c.name);
+    if (c.bound < 0 || (c.bound == 0 && c.sign < 0))
+        return bad_data(err, "%s: %s is the same for all designs: no result is below 0", key, c.name);
+    if (c.bound >= 1 && measure_is_share(c.of))
+        return bad_data(err, "%s: %s: this is a share of 1, no per cent; write %g for %g %%", key, c.name,
+                        0.01 * c.bound, c.bound);
+    if (is_less != (c.sign > 0))
+        return bad_data(err, "%s: %s prefers what is worse: of %s %s is better; write p(%s%c%g)", key, c.name, name,
+                        is_less ? "less" : "more", name, is_less ? '>' : '<', c.bound);
     for (*k = 0; *k < CHANCES_MAX && o->chance[*k].name[0] && strcmp(o->chance[*k].name, c.name) != 0;)
         ++*k;
     if (*k == CHANCES_MAX)
@@ -227,77 +215,62 @@ static void add_objective(MeasureOrder *o, int k)
     o->objectives |= (MeasureSet)1 << k;
 }
 
-static Status take_objective(MeasureOrder *o, const char *name, Err *err)
+Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
 {
-    int k = find(name, strlen(name));
-    if (is_chance(name))
-        TRY(take_chance(o, "search.objectives", name, &k, err));
-    else if (k == MEASURES_LISTED)
-        return no_result("search.objectives", name, err);
-    if (o->objectives >> k & 1)
-        return bad_data(err, "search.objectives: %s stands there twice", name);
-    add_objective(o, k);
-    return STATUS_OK;
-}
+    static const char KEY[] = "search.objectives";
+    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
+    const size_t n_names = is_auto || is_paper ? 0 : list_count(objectives);
+    char name[64], text[128];
+    int k;
+    *out = (MeasureOrder){0};
 
-/* What stands before the relation of every limit; limits.c reads the rest. */
-static Status take_limits(MeasureOrder *o, const char *limits, Err *err)
-{
-    char text[128];
+    /* 1. Objectives: those of the paper, or a list of names. */
+    for (k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
+        if (is_paper || measure_exists(k, n_floors))
+            add_objective(out, k);
+    for (size_t i = 0; i < n_names; i++) {
+        if (!list_item(objectives, i, name, sizeof name))
+            return bad_data(err, "%s: name %zu is empty or too long", KEY, i + 1);
+        k = find(name, strlen(name));
+        if (is_chance(name))
+            TRY(take_chance(out, KEY, name, &k, err));
+        else if (k == MEASURES_LISTED)
+            return no_result(KEY, name, err);
+        if (out->objectives >> k & 1)
+            return bad_data(err, "%s: %s stands there twice", KEY, name);
+        add_objective(out, k);
+    }
+
+    /* 2. Limits: what stands before the relation of every one; limits.c reads the rest. */
     for (size_t i = 0; i < list_count(limits); i++) {
         if (!list_item(limits, i, text, sizeof text))
             continue;
         const size_t inside = is_chance(text) ? strcspn(text, ")") : 0, n = inside + strcspn(text + inside, "<> \t");
-        int k = find(text, n);
+        k = find(text, n);
         text[n] = 0;
         if (is_chance(text))
-            TRY(take_chance(o, "search.limits", text, &k, err));
-        else if (k == MEASURES_LISTED)
-            continue;
-        o->limited |= (MeasureSet)1 << k;
+            TRY(take_chance(out, "search.limits", text, &k, err));
+        if (k != MEASURES_LISTED || is_chance(text))
+            out->limited |= (MeasureSet)1 << k;
     }
-    return STATUS_OK;
-}
 
-static Status take_list(MeasureOrder *o, const char *list, Err *err)
-{
-    char name[64];
-    for (size_t i = 0; i < list_count(list); i++) {
-        if (!list_item(list, i, name, sizeof name))
-            return bad_data(err, "search.objectives: name %zu is empty or too long", i + 1);
-        TRY(take_objective(o, name, err));
-    }
-    return STATUS_OK;
-}
-
-Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err)
-{
-    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
-    *out = (MeasureOrder){0};
-    for (int k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
-        if (is_paper || measure_exists(k, n_floors))
-            add_objective(out, k);
-    if (!is_auto && !is_paper)
-        TRY(take_list(out, objectives, err));
-    TRY(take_limits(out, limits, err));
+    /* 3. What is judged: both; one record alone need not have a rate, so that loss stands for annual_loss. */
     out->judged |= out->objectives | out->limited;
-    if (out->judged >> MEASURE_ANNUAL_LOSS & 1) /* one record alone need not have a rate */
+    if (out->judged >> MEASURE_ANNUAL_LOSS & 1)
         out->judged = (out->judged & ~((MeasureSet)1 << MEASURE_ANNUAL_LOSS)) | (MeasureSet)1 << MEASURE_LOSS;
+
+    /* 4. All others behind the objectives. */
     out->n = out->n_obj;
-    for (int k = 0; k < N_MEASURES; k++)
+    for (k = 0; k < N_MEASURES; k++)
         if (!(out->objectives >> k & 1) && (k < MEASURES_LISTED || (out->limited >> k & 1)))
             out->of[out->n++] = k;
     return STATUS_OK;
 }
 
+_Static_assert((int)OUTCOME_OK == RUN_OK && (int)OUTCOME_ENGINE_FAILED == RUN_ENGINE_FAILED,
+               "the outcomes of an evaluation begin with those of a run");
+
 Outcome measure_outcome(RunOutcome outcome)
 {
-    static const Outcome OUTCOMES[] = {
-        [RUN_OK] = OUTCOME_OK,
-        [RUN_NOT_FINITE] = OUTCOME_NOT_FINITE,
-        [RUN_OUT_OF_STEPS] = OUTCOME_OUT_OF_STEPS,
-        [RUN_ENERGY_BALANCE] = OUTCOME_ENERGY_BALANCE,
-        [RUN_ENGINE_FAILED] = OUTCOME_ENGINE_FAILED,
-    };
-    return OUTCOMES[outcome];
+    return (Outcome)outcome;
 }

@@ -22,7 +22,8 @@ Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
     Task *task = (Task *)(order + 1);
     const double began = clock_seconds();
     const size_t size = task->size;
-    size_t n_done;
+    size_t n_done = 0;
+    Pool *pool = pool_of(doer->simulator, doer->self);
     Answer *a = calloc(1, sizeof *a + order->n * size);
     if (!a)
         return NULL;
@@ -31,10 +32,13 @@ Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes)
     for (size_t i = 0; i < order->n; i++) {
         task[i].x = numbers_of(order) + i * doer->n_var;
         task[i].result = a->parts + i * size;
-        task[i].may_go_on = doer->may_go_on;
-        task[i].user = doer->user;
+        task[i].observer = doer->observer;
     }
-    simulate_tasks(doer->simulator, doer->self, worker, order->n, task, &n_done, &a->why);
+    if (pool)
+        pool_do(pool, worker, order->n, task, &n_done, &a->why);
+    while (!pool && n_done < order->n &&
+           doer->simulator->simulate(doer->self, worker, &task[n_done], &a->why) == STATUS_OK)
+        n_done++;
     a->n_done = n_done;
     a->seconds = clock_seconds() - began;
     *n_bytes = sizeof *a + a->n_done * size;

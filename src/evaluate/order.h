@@ -26,8 +26,7 @@ typedef struct {
     const Simulator *simulator;
     void *self;
     size_t n_var;
-    int (*may_go_on)(void *user);
-    void *user;
+    const Observer *observer; /* of the tasks */
 } Doer;
 
 static inline size_t order_bytes(size_t n, size_t n_var)

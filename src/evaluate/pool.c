@@ -21,11 +21,6 @@ static const double FAREWELL_S = 1.0;
 
 /* -- one process --------------------------------------------------------------------------------------------------- */
 
-static int has_ended(const Worker *w)
-{
-    return poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, 0) > 0;
-}
-
 static void close_pipes(const Worker *w)
 {
     close(w->in);
@@ -33,6 +28,7 @@ static void close_pipes(const Worker *w)
     close(w->reader);
 }
 
+/* Open the pipes of a worker, and start its process; a worker that is none has one pipe, from us to us. */
 static Status worker_start(Worker *w, Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -108,24 +104,6 @@ void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format, ..
     w->asked = clock_seconds();
 }
 
-/* Of a worker that has ended, or is silent. */
-static Status lose(Worker *w, int has_gone, Err *err)
-{
-    const Protocol *how = &w->pool->protocol;
-    const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
-                            clock_seconds() < w->asked + LEFT_BEFORE_S;
-    worker_end(w);
-    if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
-        w->is_second = 1;
-        return worker_start(w, err);
-    }
-    if (has_gone)
-        pool_settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
-    else
-        pool_settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", how->timeout_s);
-    return STATUS_OK;
-}
-
 Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -135,7 +113,7 @@ Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
     w->silent_s = 0.0;
     w->why = (Err){0};
     w->is_second = 0;
-    if (w->helper.pid && has_ended(w))
+    if (w->helper.pid && poll(&(struct pollfd){w->helper.to, POLLIN, 0}, 1, 0) > 0)
         worker_end(w); /* it ended after its last answer: no fault of any design */
     if (w->helper.pid == 0 && !how->send)
         TRY(worker_start(w, err));
@@ -148,6 +126,7 @@ Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err)
     return STATUS_OK;
 }
 
+/* Wait until the tasks of a worker are settled, or no more is wanted and the worker has had its time to end. */
 Status pool_wait(Worker *w, Err *err)
 {
     const Protocol *how = &w->pool->protocol;
@@ -158,13 +137,29 @@ Status pool_wait(Worker *w, Err *err)
         const double now = clock_seconds();
         w->silent_s += fmin(now - before, 2.0 * LOOK_S);
         before = now;
-        if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s))
-            TRY(lose(w, has_gone, err));
+
+        /* 1. A worker that has ended, or is silent, is lost, and so is its task; of an end that was not the fault of
+         * that a fresh worker is asked, once. */
+        if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s)) {
+            const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
+                                    clock_seconds() < w->asked + LEFT_BEFORE_S;
+            worker_end(w);
+            if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
+                w->is_second = 1;
+                TRY(worker_start(w, err));
+            } else if (has_gone) {
+                pool_settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+            } else {
+                pool_settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", how->timeout_s);
+            }
+        }
+
+        /* 2. No more may be wanted. */
         if (w->n_done < w->n && ending > 0.0 && now > ending + how->grace_s) {
             worker_end(w);
             return fail(err, STATUS_STOPPED, "stopped");
         }
-        if (ending == 0.0 && !w->task->may_go_on(w->task->user))
+        if (ending == 0.0 && !goes_on(w->task->observer))
             ending = now;
     }
     if (w->why.code != STATUS_OK)
@@ -190,13 +185,16 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-void pool_batch(Worker *w, size_t n)
+int pool_batch(Worker *w, size_t n)
 {
+    if (n < 1 || n > TASKS_MAX)
+        return 0;
     char *room = n > w->batch ? realloc(w->request, n * w->pool->protocol.request_bytes) : w->request;
     if (room) {
         w->request = room;
         w->batch = n;
     }
+    return 1;
 }
 
 Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)

@@ -22,8 +22,6 @@ enum { LINE_MAX_BYTES = 1 << 20 };
 /* What is under way in a process, when no more is wanted. */
 static const double PROCESS_GRACE_S = 5.0;
 
-typedef struct Pool Pool;
-
 typedef struct {
     const Pool *pool;
     const Task *task; /* (n) under way, the first n_done are done; less n: the rest is given up */
@@ -69,13 +67,19 @@ struct Pool {
 Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err);
 void pool_close(Pool *p);
 
-/* As Simulator.simulate_batch; and its two halves, for a worker that takes n at once. */
+static inline Pool *pool_of(const Simulator *s, void *self)
+{
+    return s->pool ? s->pool(self) : NULL;
+}
+
+/* n tasks, TASKS_MAX at most, by a worker; the first *n_done are done where a status ends it. And its two halves, for a
+ * worker that takes n at once. */
 Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
 Status pool_ask(Worker *w, size_t n, const Task tasks[], Err *err);
 Status pool_wait(Worker *w, Err *err);
 
-/* So many designs at once from now on, where there is memory. */
-void pool_batch(Worker *w, size_t n);
+/* So many designs at once from now on, where there is memory. 0: it is no number from 1 to TASKS_MAX. */
+int pool_batch(Worker *w, size_t n);
 
 /* What became of the worker's next task; kill_it: the worker is not to be trusted any more. */
 __attribute__((format(printf, 4, 5))) void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format,

@@ -23,6 +23,7 @@
 
 #include "evaluate/evaluation.h"
 
+typedef struct Pool Pool;
 typedef struct Queue Queue;
 typedef struct Problem Problem;
 
@@ -37,9 +38,25 @@ typedef struct {
     double first, step; /* first: a whole number; step: 1e-4 at least */
 } Steps;
 
+typedef struct {
+    /* Asked from any thread before each task, and during those that take seconds; 0: nothing more is begun. NULL: 1 */
+    int (*go_on)(void *user);
+    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL:
+     * nothing */
+    Status (*done)(const Evaluation *e, void *user, Err *err);
+    void *user;
+} Observer;
+
+/* Whether simulations may go on. NULL: they may. */
+static inline int goes_on(const Observer *o)
+{
+    return !o || !o->go_on || o->go_on(o->user);
+}
+
 /* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
 typedef struct {
-    int kind;
+    int kind, is_brief;
+    int is_full; /* more of the result is wanted than combine needs: a larger part */
     size_t scene;
     double device[3];
 } Variant;
@@ -49,12 +66,11 @@ typedef struct {
     size_t part;   /* 0 .. n_parts-1 */
     size_t repeat; /* evaluations of the same design that there are already: its replicates go on behind theirs */
     Variant variant;
-    const double *x;              /* (n_var) */
-    void *result;                 /* where the part goes, Problem.part_size bytes */
-    size_t size;                  /* so many */
-    int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
-    void *user;                   /* of may_go_on */
-    size_t slot;                  /* the queue's, as are those below */
+    const double *x;          /* (n_var) */
+    void *result;             /* where the part goes, Problem.part_size bytes */
+    size_t size;              /* so many */
+    const Observer *observer; /* where it does not go on they end soon, with STATUS_STOPPED */
+    void *slot;               /* the queue's */
 } Task;
 
 typedef struct {
@@ -63,30 +79,20 @@ typedef struct {
      * there. */
     void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
-    /* In the place of simulate: several tasks at once, so many as the worker wants now, TASKS_MAX at most; *n_done of
-     * them, the first ones, are done where a status ends it. NULL: one */
-    size_t (*batch)(void *self, size_t worker);
-    Status (*simulate_batch)(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err);
+    /* In the place of simulate: workers that are elsewhere (evaluate/pool.h), one for each of ours; NULL, or none is
+     * returned: there are none */
+    Pool *(*pool)(void *self);
 } Simulator;
 
 enum { TASKS_MAX = 64 };
 
-/* Who does the tasks in the place of this process (evaluate/tasks.h), which has a thread for each of several workers;
- * where there is one, the client does them itself while it waits. */
+/* Who does the tasks in the place of this process, which has a thread for each of several workers; where there is one,
+ * the client does them itself while it waits. */
 typedef struct {
     Status (*start)(void **self, Queue *queue, size_t *n_workers, Err *err);
-    void (*help)(void *self);   /* called while the client waits: does something; NULL: needs no help */
     void (*stop)(void *self);   /* none is under way any more */
-    const Simulator *simulator; /* asked by two threads for each of n_workers; NULL: it takes tasks by itself */
+    const Simulator *simulator; /* asked by two threads for each of n_workers, by one where that is 1 */
 } Executor;
-
-typedef struct {
-    int (*go_on)(void *user); /* asked from any thread before each task; 0: nothing more is begun. NULL: 1 */
-    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL:
-     * nothing */
-    Status (*done)(const Evaluation *e, void *user, Err *err);
-    void *user;
-} Observer;
 
 /* Minimised f (n_obj) and g (n_con) of an evaluation. */
 typedef void (*JudgeFn)(const Evaluation *e, double f[], double g[], const void *user);
@@ -208,17 +214,6 @@ static inline double problem_spread(const Problem *p, size_t d, double u)
         return steps_at(&p->steps[d], (size_t)fmin(u * (double)p->steps[d].n, (double)(p->steps[d].n - 1)));
     return problem_is_discrete(p, d) ? fmin(floor(lower + u * (upper - lower + 1.0)), upper)
                                      : problem_from_unit(p, d, u);
-}
-
-/* The first *n_done are done; where they are not n a status ends it. */
-static inline Status simulate_tasks(const Simulator *s, void *self, size_t worker, size_t n, const Task tasks[],
-                                    size_t *n_done, Err *err)
-{
-    if (s->simulate_batch)
-        return s->simulate_batch(self, worker, n, tasks, n_done, err);
-    for (*n_done = 0; *n_done < n; ++*n_done)
-        TRY(s->simulate(self, worker, &tasks[*n_done], err));
-    return STATUS_OK;
 }
 
 static inline void problem_close(Problem *p)

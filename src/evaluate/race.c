@@ -1,33 +1,29 @@
 #include "evaluate/race.h"
 
-/* R^2 of column k of y on that of x; NAN: y does not differ. */
-static double explained(size_t n_designs, size_t n_obj, const double x[], const double y[], size_t k)
-{
-    double n = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
-    for (size_t i = k; i < n_designs * n_obj; i += n_obj)
-        if (isfinite(x[i]) && isfinite(y[i])) {
-            n++;
-            mean_x += (x[i] - mean_x) / n;
-            mean_y += (y[i] - mean_y) / n;
-        }
-    for (size_t i = k; i < n_designs * n_obj; i += n_obj)
-        if (isfinite(x[i]) && isfinite(y[i])) {
-            xx += (x[i] - mean_x) * (x[i] - mean_x);
-            xy += (x[i] - mean_x) * (y[i] - mean_y);
-            yy += (y[i] - mean_y) * (y[i] - mean_y);
-        }
-    return yy > 0 ? (xx > 0 ? xy * xy / (xx * yy) : 0) : NAN;
-}
-
+/* R^2 of a column of y on that of x, as a mean over those whose y differs; 0: none does. */
 static double mean_explained(size_t n_designs, size_t n_obj, const double x[], const double y[])
 {
-    double sum = 0, n = 0;
+    double sum = 0, n_columns = 0;
     for (size_t k = 0; k < n_obj; k++) {
-        const double share = explained(n_designs, n_obj, x, y, k);
-        sum += isnan(share) ? 0 : share;
-        n += !isnan(share);
+        double n = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+        for (size_t i = k; i < n_designs * n_obj; i += n_obj)
+            if (isfinite(x[i]) && isfinite(y[i])) {
+                n++;
+                mean_x += (x[i] - mean_x) / n;
+                mean_y += (y[i] - mean_y) / n;
+            }
+        for (size_t i = k; i < n_designs * n_obj; i += n_obj)
+            if (isfinite(x[i]) && isfinite(y[i])) {
+                xx += (x[i] - mean_x) * (x[i] - mean_x);
+                xy += (x[i] - mean_x) * (y[i] - mean_y);
+                yy += (y[i] - mean_y) * (y[i] - mean_y);
+            }
+        if (yy > 0) {
+            sum += xx > 0 ? xy * xy / (xx * yy) : 0;
+            n_columns++;
+        }
     }
-    return n > 0 ? sum / n : 0;
+    return n_columns > 0 ? sum / n_columns : 0;
 }
 
 static void swap(size_t order[], size_t i, size_t j)

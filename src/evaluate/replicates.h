@@ -63,13 +63,12 @@ typedef struct {
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
-/* parts (n_replicates, n_records), each of `size` bytes that begin with its Measured numbers. */
-void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out);
-
 enum { BOOTSTRAP = 200 };
 
-/* error of the same parts and their summary. */
-void replicates_errors(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out);
+/* parts (n_replicates, n_records), each of `size` bytes that begin with its Measured numbers. wants_errors 0: error is
+ * NAN. */
+void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, int wants_errors,
+                          ReplicateSummary *out);
 
 /* v (n), sorted by this call: mean_plus_sd, quantile or cvar, sense +1: large values are bad. sd NAN: one value. */
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);

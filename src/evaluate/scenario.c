@@ -3,28 +3,20 @@
 
 #include "sim/fast/fast.h"
 
-static Status build(Scenario *w, Err *err)
-{
-    const Status status = scene_create(&w->scene, &w->options, &w->motion, err);
-    if (status != STATUS_OK)
-        scenario_close(w);
-    return status;
-}
-
 Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err)
 {
-    *out = *read;
-    TRY_ROOM(out->accel, read->n, "samples of a motion", err);
-    memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
     const size_t rows = read->force_rows ? read->n_force_rows * (read->n_force + 1) : 0;
+    *out = *read;
+    out->accel = malloc(read->n * sizeof *out->accel);
     out->force_rows = rows ? malloc(rows * sizeof *out->force_rows) : NULL;
-    if (rows && !out->force_rows) {
-        motion_free(out);
-        return fail_memory(err, rows, "forces");
+    Status status =
+        out->accel && (!rows || out->force_rows) ? STATUS_OK : fail_memory(err, read->n, "samples of a motion");
+    if (status == STATUS_OK) {
+        memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
+        if (rows)
+            memcpy(out->force_rows, read->force_rows, rows * sizeof *out->force_rows);
+        status = motion_scale(out, record, err);
     }
-    if (rows)
-        memcpy(out->force_rows, read->force_rows, rows * sizeof *out->force_rows);
-    const Status status = motion_scale(out, record, err);
     if (status != STATUS_OK)
         motion_free(out);
     return status;
@@ -36,7 +28,10 @@ Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *re
     w->options = *o;
     w->record = *record;
     TRY(motion_scale_copy(&w->motion, read, record, err));
-    return build(w, err);
+    const Status status = scene_create(&w->scene, &w->options, &w->motion, err);
+    if (status != STATUS_OK)
+        scenario_close(w);
+    return status;
 }
 
 void scenario_close(Scenario *w)

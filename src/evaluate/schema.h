@@ -57,11 +57,8 @@ Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, d
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);
 
-/* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with
- * that status. */
-Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
-                             Err *err);
-/* The same among objectives and further measures: *k counts on behind n_obj. */
-Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
-                          Err *err);
+/* *k: the one of that name among the first n of objectives and further results. Else "WHERE: NAME is no objective (of
+ * more than n_obj: no result); did you mean ...?"; where: an option, "--NAME", for STATUS_USAGE, or what else it was read
+ * from, for STATUS_BAD_DATA. */
+Status schema_pick(const Schema *schema, size_t n, const char *where, const char *name, size_t *k, Err *err);
 void schema_free(Schema *schema);

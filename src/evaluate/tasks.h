@@ -7,8 +7,8 @@
 
 const Problem *queue_problem(const Queue *q);
 
-/* 1 and a task; 0: there is none, now (wait 0) or ever more (wait 1). */
-int queue_take(Queue *q, int wait, Task *task);
+/* Up to n_max tasks for a worker, and how many; 0: there is none, now (wait 0) or ever more (wait 1). */
+size_t queue_take(Queue *q, size_t worker, int wait, size_t n_max, Task tasks[]);
 
 /* The task is done, its part lies at task->result; a status ends everything, `why` is its reason. */
 void queue_give(Queue *q, const Task *task, Status status, const Err *why);

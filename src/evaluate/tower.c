@@ -12,11 +12,11 @@
 #include "settings/settings.h"
 #include "scene/neighbour.h"
 
-/* A part of a task whose whole result is wanted. */
+/* A part of a simulation whose whole result is wanted (Variant.is_full). */
 typedef struct {
     Measured measured;
     SimResult result;
-} Whole;
+} FullResult;
 
 typedef struct {
     pthread_mutex_t lock;
@@ -36,7 +36,7 @@ typedef struct {
 
 struct Tower {
     MeasureSet judged; /* what is not finite there has failed */
-    size_t n_workers, n_floors;
+    size_t n_workers;
     ReplicatePlan plan; /* of a design: n_records of the scenes */
     DesignSpace design;
     MeasureOrder order;
@@ -49,23 +49,30 @@ struct Tower {
     Place *place;       /* (n_places) */
     SimWorker **worker; /* (n_places, n_workers) NULL: it is not there */
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
-    size_t recipe_size;
     Recipe *recipe;
     Isolated isolated; /* {0}: simulated in this process */
 };
 
 /* -- scenes -------------------------------------------------------------------------------------------------------- */
 
-/* The settings of a place, for free. */
-static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err)
+static Record *record_of(const Tower *t, size_t place)
 {
-    const Recipe *r = t->recipe;
-    const SceneChange *c = &r->scene[place % r->n_scenes];
+    return &t->record[t->recipe->scene[place % t->recipe->n_scenes].record];
+}
+
+/* The settings of a place, for free, and its record, which the first who comes reads. */
+static Status read_scene(const Tower *t, size_t place, Settings **out, Err *err)
+{
+    const Recipe *recipe = t->recipe;
+    const SceneChange *c = &recipe->scene[place % recipe->n_scenes];
+    Record *r = record_of(t, place);
+
+    /* 1. The settings of all, at the level of steps of this place, computing what is judged and no more. */
     TRY_ROOM(*out, 1, "a set of settings", err);
     Settings *s = *out;
-    *s = r->settings;
-    memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
-    for (size_t level = place / r->n_scenes; level > 0; level--)
+    *s = recipe->settings;
+    memcpy(s->motion.record, recipe_record(recipe, c->record), sizeof s->motion.record);
+    for (size_t level = place / recipe->n_scenes; level > 0; level--)
         estimate_options(&s->sim, &s->sim);
     const unsigned needs = measures_need(s->sim.forces == FORCES_YES ? ~(MeasureSet)0 : t->judged);
     s->sim.filtered = (needs & NEEDS_FILTER) != 0;
@@ -73,14 +80,13 @@ static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err
         s->sim.forces = FORCES_YES;
     if (needs & NEEDS_FORCES)
         s->sim.measures_only = 0;
-    return c->setting[0] ? settings_set(s, c->setting, err) : STATUS_OK;
-}
+    if (c->setting[0])
+        TRY(settings_set(s, c->setting, err));
 
-static Status read_record(Record *r, const MotionOptions *o, Err *err)
-{
+    /* 2. The record; all who want it hear of the same fault. */
     pthread_mutex_lock(&r->lock);
     if (!r->is_read)
-        r->status = motion_open(&r->motion, o, &r->why);
+        r->status = motion_open(&r->motion, &s->motion, &r->why);
     r->is_read = 1;
     pthread_mutex_unlock(&r->lock);
     if (r->status != STATUS_OK)
@@ -90,42 +96,15 @@ static Status read_record(Record *r, const MotionOptions *o, Err *err)
 
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
 {
-    const Tower *t = p->self;
-    Record *r = &t->record[t->recipe->scene[scene].record];
     Settings *s;
-    Status status = settings_of(t, scene, &s, err);
+    Status status = read_scene(p->self, scene, &s, err);
     if (status == STATUS_OK)
-        status = read_record(r, &s->motion, err);
-    if (status == STATUS_OK)
-        status = motion_scale_copy(out, &r->motion, &s->motion, err);
+        status = motion_scale_copy(out, &record_of(p->self, scene)->motion, &s->motion, err);
     free(s);
     return status;
 }
 
-static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
-{
-    Record *r = &t->record[t->recipe->scene[place % t->recipe->n_scenes].record];
-    Settings *s;
-    Status status = settings_of(t, place, &s, err);
-    if (status == STATUS_OK)
-        status = read_record(r, &s->motion, err);
-    if (status == STATUS_OK) {
-        const SceneOptions options = settings_scene(s);
-        status = scenario_open(w, &options, &s->motion, &r->motion, err);
-    }
-    if (status == STATUS_OK) {
-        const Building *b = scene_building(w->scene);
-        status = measures_check(t->judged, &w->options.core, b, err);
-        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
-            status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
-        if (status != STATUS_OK)
-            scenario_close(w);
-    }
-    free(s);
-    return status;
-}
-
-static void let_go(Tower *t, size_t place)
+void tower_release(Tower *t, size_t place)
 {
     Place *p = &t->place[place];
     pthread_mutex_lock(&p->lock);
@@ -137,62 +116,64 @@ static void let_go(Tower *t, size_t place)
     pthread_mutex_unlock(&p->lock);
 }
 
-static Status take_hold(Tower *t, size_t place, Err *err)
+/* Keep the scene of a place open. The first who comes opens it and checks that it has what every measure that is judged
+ * needs. */
+Status tower_acquire(Tower *t, size_t place, const Scenario **out, Err *err)
 {
     Place *p = &t->place[place];
+    Settings *s = NULL;
     Status status = STATUS_OK;
     pthread_mutex_lock(&p->lock);
     if (!p->scenario) {
-        p->scenario = calloc(1, sizeof *p->scenario);
-        status = p->scenario ? open_scenario(t, place, p->scenario, err)
-                             : fail(err, STATUS_NO_MEMORY, "no memory for a scene");
+        Scenario *w = p->scenario = calloc(1, sizeof *w);
+        status = w ? read_scene(t, place, &s, err) : fail_memory(err, 1, "a scene");
+        if (status == STATUS_OK) {
+            const SceneOptions options = settings_scene(s);
+            status = scenario_open(w, &options, &s->motion, &record_of(t, place)->motion, err);
+        }
+        const Building *b = status == STATUS_OK ? scene_building(w->scene) : NULL;
+        if (b)
+            status = measures_check(t->judged, &w->options.core, b, err);
+        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
+            status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
+        if (b && status != STATUS_OK)
+            scenario_close(w);
+        free(s);
     }
-    if (status == STATUS_OK) {
-        p->n_users++;
-    } else {
+    p->n_users += status == STATUS_OK;
+    if (status != STATUS_OK) {
         free(p->scenario);
         p->scenario = NULL;
     }
+    *out = p->scenario;
     pthread_mutex_unlock(&p->lock);
     return status;
 }
 
-Status tower_hold(const Problem *p, size_t scene, const Scenario **out, Err *err)
-{
-    Tower *t = p->self;
-    TRY(take_hold(t, scene, err));
-    *out = t->place[scene].scenario;
-    return STATUS_OK;
-}
-
-void tower_let_go(const Problem *p, size_t scene)
-{
-    let_go(p->self, scene);
-}
-
-static void leave(Tower *t, size_t place, size_t worker)
+static void detach(Tower *t, size_t place, size_t worker)
 {
     SimWorker **w = &t->worker[place * t->n_workers + worker];
     if (*w) {
         sim_worker_free(*w);
         *w = NULL;
-        let_go(t, place);
+        tower_release(t, place);
     }
 }
 
-/* The integrator of that worker, which leaves the scene that it was at where it is one of a sweep. */
-static Status go_to(Tower *t, size_t place, size_t worker, SimWorker **out, Err *err)
+/* The integrator of a worker at a place. In a sweep it leaves the scene where it was. */
+static Status attach(Tower *t, size_t place, size_t worker, SimWorker **out, Err *err)
 {
     SimWorker **w = &t->worker[place * t->n_workers + worker];
     if (!*w) {
         if (t->recipe->is_sweep && t->at[worker] > 0)
-            leave(t, t->at[worker] - 1, worker);
+            detach(t, t->at[worker] - 1, worker);
         t->at[worker] = place + 1;
-        TRY(take_hold(t, place, err));
-        const Status status = sim_worker_create(w, t->place[place].scenario->scene, err);
+        const Scenario *scenario;
+        TRY(tower_acquire(t, place, &scenario, err));
+        const Status status = sim_worker_create(w, scenario->scene, err);
         if (status != STATUS_OK) {
             *w = NULL;
-            let_go(t, place);
+            tower_release(t, place);
             return status;
         }
     }
@@ -202,21 +183,21 @@ static Status go_to(Tower *t, size_t place, size_t worker, SimWorker **out, Err 
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
-enum { BRIEF = N_SCENES }; /* Variant.kind - BRIEF: to the end of the strong part of the motion */
-
-static Status simulate_here(void *self, size_t worker, const Task *task, Err *err)
+/* Simulate one part of a design: a replicate of it under one record. */
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
     Tower *t = self;
     const Settings *s = &t->recipe->settings;
+    const Variant *v = &task->variant;
     const size_t n = t->plan.n_records, k = task->repeat * t->plan.n_replicates + task->part / n;
-    const int is_brief = task->variant.kind >= BRIEF;
-    const SceneKind kind = (SceneKind)(task->variant.kind - (is_brief ? BRIEF : 0));
-    const LinearDevice device = {task->variant.device[0], task->variant.device[1], task->variant.device[2]};
-    SimResult own, *result = task->size < sizeof(Whole) ? &own : &((Whole *)task->result)->result;
+    const size_t place = v->scene + task->part % n;
+    const SceneKind kind = (SceneKind)v->kind;
+    SimResult own, *result = v->is_full ? &((FullResult *)task->result)->result : &own;
     Design design = {0};
     SimWorker *w;
-    const size_t place = task->variant.scene + task->part % n;
-    TRY(go_to(t, place, worker, &w, err));
+
+    /* 1. What is built: the design, and of a case with gaps replicate k of it. */
+    TRY(attach(t, place, worker, &w, err));
     if (kind != SCENE_NO_CORE)
         design_of(&t->design, task->x, &design);
     if (kind == SCENE_IMPACT)
@@ -225,13 +206,17 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
         const AsBuilt built = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
     }
+
+    /* 2. The run, to the end of the motion or of its strong part. */
     const Scenario *scenario = t->place[place].scenario;
-    sim_worker_device(w, &device);
+    sim_worker_device(w, &(LinearDevice){v->device[0], v->device[1], v->device[2]});
     sim_worker_until(
-        w, is_brief ? motion_strong_part(&scenario->motion, 2 * M_PI / scene_building(scenario->scene)->omega[0])
-                    : INFINITY);
+        w, v->is_brief ? motion_strong_part(&scenario->motion, 2 * M_PI / scene_building(scenario->scene)->omega[0])
+                       : INFINITY);
     TRY(sim_run_built(w, kind, &design, result, err));
-    result->rate_per_year = t->record[t->recipe->scene[place % t->recipe->n_scenes].record].rate_per_year;
+
+    /* 3. What it is judged by. */
+    result->rate_per_year = record_of(t, place)->rate_per_year;
     measures_chances(&t->order, result);
     if (kind == SCENE_IMPACT)
         measures_settle(result, t->judged);
@@ -239,42 +224,32 @@ static Status simulate_here(void *self, size_t worker, const Task *task, Err *er
     return STATUS_OK;
 }
 
-static const Simulator HERE = {.simulate = simulate_here};
+static const Simulator HERE = {.simulate = simulate};
 
 static void write_lost(const Task *task, const char *reason)
 {
     SimResult lost = {.outcome = RUN_ENGINE_FAILED};
     snprintf(lost.reason, sizeof lost.reason, "%s", reason);
     *(Measured *)task->result = measured(&lost);
-    if (task->size >= sizeof(Whole))
-        ((Whole *)task->result)->result = lost;
+    if (task->variant.is_full)
+        ((FullResult *)task->result)->result = lost;
 }
 
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+static Pool *processes(void *self)
 {
-    Tower *t = self;
-    size_t n_done;
-    return t->isolated.pool.n_workers > 0 ? pool_do(&t->isolated.pool, worker, 1, task, &n_done, err)
-                                          : simulate_here(self, worker, task, err);
+    Pool *pool = &((Tower *)self)->isolated.pool;
+    return pool->n_workers > 0 ? pool : NULL;
 }
 
-/* Of a design that has n parts: all, the first replicate of every record, or one alone. */
-static ReplicatePlan plan_of(const Tower *t, size_t n)
-{
-    ReplicatePlan plan = t->plan;
-    plan.n_records = MIN_OF(n, plan.n_records);
-    plan.n_replicates = n / plan.n_records;
-    return plan;
-}
-
+/* An evaluation is the summary of its parts; its reason is that of the part that failed first. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
     const Tower *t = p->self;
-    const ReplicatePlan plan = plan_of(t, n);
+    const ReplicatePlan plan = tower_plan(t, n);
     ReplicateSummary sum;
-    replicates_summarise(&plan, parts, p->part_size, &sum);
-    evaluation_set_outcome(e, sum.outcome,
-                           ((const Measured *)(const void *)((const char *)parts + sum.shown * p->part_size))->reason);
+    replicates_summarise(&plan, parts, p->part_size, 0, &sum);
+    const Measured *shown = (const void *)((const char *)parts + sum.shown * p->part_size);
+    evaluation_set_outcome(e, sum.outcome, shown->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
         e->f[i] = sum.mean[t->order.of[i]];
         e->sd[i] = sum.sd[t->order.of[i]];
@@ -285,12 +260,13 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     e->replicates = (int)sum.n_replicates;
 }
 
+/* Also of a tower that was opened in part. */
 static void tower_close(void *self)
 {
     Tower *t = self;
     pool_close(&t->isolated.pool);
     for (size_t i = 0; t->worker && i < t->n_places * t->n_workers; i++)
-        leave(t, i / t->n_workers, i % t->n_workers);
+        detach(t, i / t->n_workers, i % t->n_workers);
     for (size_t i = 0; t->place && i < t->n_places; i++)
         pthread_mutex_destroy(&t->place[i].lock);
     for (size_t i = 0; t->record && i < t->recipe->n_records; i++) {
@@ -305,17 +281,185 @@ static void tower_close(void *self)
     free(t);
 }
 
-static const Simulator TOWER = {.simulate = simulate, .combine = combine, .close = tower_close};
+static const Simulator TOWER = {.simulate = simulate, .pool = processes, .combine = combine, .close = tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
-/* The records of a search. */
+Status tower_space(const Settings *s, DesignSpace *out, Err *err)
+{
+    Building b;
+    TRY(building_load(&b, &s->building, err));
+    const int n_floors = b.n;
+    building_free(&b);
+    return design_space_make(out, &s->design, core_section(&s->core), n_floors, err);
+}
+
+/* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
+ * t_top = t_base. */
+static void swap_if_top_heavy(double x[], const void *self)
+{
+    const Tower *t = self;
+    double *t_base = &x[t->design.n_gaps], *t_top = t_base + 1;
+    if (t->design.n_walls > 0 && *t_top > *t_base) {
+        const double thicker = *t_top;
+        *t_top = *t_base;
+        *t_base = thicker;
+    }
+}
+
+/* Variables that take values that are sold: gaps multiples of a step, thicknesses those of a list; their bounds become
+ * the first and the last value within. */
+static Status set_steps(Tower *t, const DesignOptions *o, Err *err)
+{
+    const DesignSpace *space = &t->design;
+    const NumberList *plates = &o->step_thickness_m;
+    const double step = o->step_gap_m;
+    Steps gaps = {0}, walls = {.n = plates->n, .at = plates->at};
+    for (int i = 1; i < plates->n; i++)
+        if (!(plates->at[i] > plates->at[i - 1]))
+            return bad_data(err, "design.step_thickness_m: %g stands behind %g; give them in ascending order",
+                            plates->at[i], plates->at[i - 1]);
+    if (step > 0.0) {
+        const double first = ceil(o->gap_m.at[0] / step - 1e-9), last = floor(o->gap_m.at[1] / step + 1e-9);
+        if (step < 1e-4)
+            return bad_data(err, "design.step_gap_m: %g m is no step that is kept on site; give 0.0001 or more", step);
+        if (first > last)
+            return bad_data(err, "design.step_gap_m: no multiple of %g lies within design.gap_m", step);
+        gaps = (Steps){.n = (size_t)(last - first) + 1, .first = first, .step = step};
+    }
+    for (int j = 0; j < space->n_gaps + space->n_walls; j++) {
+        const Steps *s = j < space->n_gaps ? &gaps : &walls;
+        if (s->n == 0)
+            continue;
+        t->has_kinds = 1;
+        t->kind[j] = VARIABLE_STEPPED;
+        t->steps[j] = *s;
+        t->lower[j] = steps_at(s, 0);
+        t->upper[j] = steps_at(s, s->n - 1);
+    }
+    return STATUS_OK;
+}
+
+/* Everything that a tower has of its recipe. */
+static Status prepare(Tower *t, Err *err)
+{
+    const Recipe *r = t->recipe;
+    const Settings *s = &r->settings;
+    SimWorker *unused;
+
+    /* 1. Room for records, scenes and workers. */
+    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, 0, err));
+    t->judged = t->order.judged;
+    t->n_places = (1 + TOWER_LEVELS) * r->n_scenes;
+    TRY_ROOM(t->record, r->n_records, "records", err);
+    TRY_ROOM(t->place, t->n_places, "scenes", err);
+    for (size_t i = 0; i < r->n_records; i++) {
+        Source source;
+        pthread_mutex_init(&t->record[i].lock, NULL);
+        if ((t->plan.n_records == 1 || t->plan.rule == ROBUST_MEAN) &&
+            source_read(recipe_record(r, i), &source, NULL) == STATUS_OK)
+            t->record[i].rate_per_year = source.rate * (double)t->plan.n_records;
+    }
+    for (size_t i = 0; i < t->n_places; i++)
+        pthread_mutex_init(&t->place[i].lock, NULL);
+    TRY_ROOM(t->worker, t->n_places * t->n_workers, "scenes", err);
+    TRY_ROOM(t->at, t->n_workers, "workers", err);
+
+    /* 2. The scenes of a search, for every worker; of a sweep the building alone is read now. */
+    for (size_t i = 0; !r->is_sweep && i < r->n_scenes * t->n_workers; i++) {
+        Err why = {0};
+        const Status status = attach(t, i / t->n_workers, i % t->n_workers, &unused, &why);
+        if (status != STATUS_OK)
+            return fail(err, status, "%s%s", i < t->n_workers ? "" : "motion.records: ", why.text);
+    }
+    if (r->is_sweep)
+        TRY(tower_space(s, &t->design, err));
+    else
+        t->design = *scene_design(t->place[0].scenario->scene);
+
+    /* 3. Objectives and variables. */
+    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->design.n_floors, err));
+    design_bounds(&t->design, &s->design, t->lower, t->upper);
+    for (int j = 0; j < t->design.n_var; j++)
+        if (design_is_log(&t->design, j) || design_word(&t->design, j, 0)) {
+            t->has_kinds = 1;
+            t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
+        }
+    TRY(set_steps(t, &s->design, err));
+
+    /* 4. Processes, which are forked with all of this. */
+    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
+    t->isolated.lost = write_lost;
+    return s->run.isolate == SWITCH_ON ? isolated_open(&t->isolated, t->n_workers, err) : STATUS_OK;
+}
+
+/* The problem of a recipe, which it takes, for free; with the ranks of a cluster, where this process has some. */
+static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
+{
+    const Settings *s = &recipe->settings;
+    const size_t workers = threads_wanted(s->search.threads);
+    Tower *t = calloc(1, sizeof *t);
+    if (!t) {
+        free(recipe);
+        return fail_memory(err, 1, "a scene");
+    }
+    t->recipe = recipe;
+    t->n_workers = MIN_OF(workers, n_tasks);
+    t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
+                              .n_replicates = s->sim.replicates,
+                              .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
+                              .quantile = s->sim.quantile > 0 ? s->sim.quantile : 1 - s->sim.tail,
+                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
+    const Status status = prepare(t, err);
+    if (status != STATUS_OK) {
+        tower_close(t);
+        return status;
+    }
+    *p = (Problem){.n_var = t->design.n_var,
+                   .n_obj = t->order.n_obj,
+                   .n_extra = t->order.n - t->order.n_obj,
+                   .lower = t->lower,
+                   .upper = t->upper,
+                   .kind = t->has_kinds ? t->kind : NULL,
+                   .steps = t->steps,
+                   .repair = swap_if_top_heavy,
+                   .simulator = &TOWER,
+                   .self = t,
+                   .n_parts = t->plan.n_records * t->plan.n_replicates,
+                   .n_cheap = t->plan.n_replicates > 1 ? t->plan.n_records : 0,
+                   .part_size = sizeof(Measured),
+                   .n_workers = t->n_workers};
+    if (n_tasks > 1) {
+        p->recipe = recipe;
+        p->recipe_size = recipe_size(recipe->n_records, recipe->n_scenes);
+        p->inputs = recipe->is_sweep ? 0 : scene_building(t->place[0].scenario->scene)->hash;
+        for (size_t r = 0; !recipe->is_sweep && r < recipe->n_records; r++)
+            p->inputs = (p->inputs ^ t->record[r].motion.file_hash ^ t->record[r].motion.forces_hash) * HASH_PRIME;
+        executor_choose(p);
+    }
+    return STATUS_OK;
+}
+
+static Status make_recipe(Recipe **out, const Settings *s, size_t n_records, size_t n_scenes, Err *err)
+{
+    if (s->problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "problem.kind: this needs problem.kind = tower, which alone has a building, a core and a "
+                             "motion");
+    *out = calloc(1, recipe_size(n_records, n_scenes));
+    if (!*out)
+        return fail_memory(err, n_scenes, "scenes");
+    **out = (Recipe){.settings = *s, .n_records = n_records, .n_scenes = n_scenes};
+    return STATUS_OK;
+}
+
+/* The records of a study. */
 typedef struct {
     size_t n;
     int needs_rates; /* each has to say how often it comes */
     char path[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
 } RecordList;
 
+/* Add a record to the list once it is known to be there, and how often it comes where that is needed. */
 static Status list_record(const char *source, void *user, Err *err)
 {
     RecordList *list = user;
@@ -337,256 +481,53 @@ static Status list_record(const char *source, void *user, Err *err)
     return option_put_path(list->path[list->n++], source, err);
 }
 
-/* What a sum over records wants of the settings. */
-static Status check_annual_loss(const Settings *s, Err *err)
+/* List motion.record alone, or all of the study; a sum over them, annual_loss, wants more of them and of the settings. */
+static Status list_records(const Settings *s, TowerUse use, RecordList *list, Err *err)
 {
+    MeasureOrder order;
     MotionOptions scaled = s->motion;
     char scaling[SCALINGS_TEXT_MAX];
-    scaled.factor = 1;
-    if (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0)
+    TRY(measures_order(&order, s->search.objectives, s->search.limits, 0, err));
+    if (use == TOWER_SINGLE)
+        return list_record(s->motion.record, list, err);
+    list->needs_rates = (order.objectives | order.limited) >> MEASURE_ANNUAL_LOSS & 1;
+    if (list->needs_rates && (s->sim.robust != ROBUST_MEAN || s->sim.quantile > 0))
         return bad_data(err, "sim.robust: annual_loss (search.objectives or search.limits) is a sum over the records, "
                              "as many times their mean: set sim.robust = mean");
-    if (motion_scalings(&scaled, scaling) > 0)
+    scaled.factor = 1;
+    if (list->needs_rates && motion_scalings(&scaled, scaling) > 0)
         return bad_data(err,
                         "%s: annual_loss (search.objectives or search.limits) wants every record as strong as the "
                         "events that it stands for: write factor=NUMBER behind each, and leave this out",
                         scaling);
-    return STATUS_OK;
-}
-
-/* All of the study, or motion.record alone. */
-static Status list_records(const Settings *s, TowerUse use, RecordList **out, Err *err)
-{
-    MeasureOrder order;
-    TRY(measures_order(&order, s->search.objectives, s->search.limits, 0, err));
-    const int is_sum = use == TOWER_AS_SET && (order.objectives | order.limited) >> MEASURE_ANNUAL_LOSS & 1;
-    if (is_sum)
-        TRY(check_annual_loss(s, err));
-    TRY_ROOM(*out, 1, "a list of records", err);
-    (*out)->needs_rates = is_sum;
-    const Status status = use == TOWER_SINGLE ? list_record(s->motion.record, *out, err)
-                                              : suite_of_study(&s->motion, list_record, *out, err);
-    if (status != STATUS_OK)
-        free(*out);
-    return status;
-}
-
-static Status open_all(Tower *t, Err *err)
-{
-    SimWorker *unused;
-    for (size_t i = 0; i < t->recipe->n_scenes; i++)
-        for (size_t w = 0; w < t->n_workers; w++) {
-            Err why = {0};
-            const Status status = go_to(t, i, w, &unused, &why);
-            if (status != STATUS_OK)
-                return fail(err, status, "%s%s", i > 0 ? "motion.records: " : "", why.text);
-        }
-    t->design = *scene_design(t->place[0].scenario->scene);
-    return STATUS_OK;
-}
-
-Status tower_space(const Settings *s, DesignSpace *out, Err *err)
-{
-    Building b;
-    TRY(building_load(&b, &s->building, err));
-    const int n_floors = b.n;
-    building_free(&b);
-    return design_space_make(out, &s->design, core_section(&s->core), n_floors, err);
-}
-
-static Status make_room(Tower *t, Err *err)
-{
-    const Recipe *r = t->recipe;
-    t->n_places = (1 + TOWER_LEVELS) * r->n_scenes;
-    t->record = calloc(r->n_records, sizeof *t->record);
-    t->place = calloc(t->n_places, sizeof *t->place);
-    t->worker = calloc(t->n_places * t->n_workers, sizeof(SimWorker *));
-    t->at = calloc(t->n_workers, sizeof *t->at);
-    if (!t->record || !t->place || !t->worker || !t->at)
-        return fail_memory(err, r->n_scenes, "scenes");
-    const size_t n = t->plan.n_records;
-    for (size_t i = 0; i < r->n_records; i++) {
-        Source s;
-        pthread_mutex_init(&t->record[i].lock, NULL);
-        if ((n == 1 || t->plan.rule == ROBUST_MEAN) && source_read(recipe_record(r, i), &s, NULL) == STATUS_OK)
-            t->record[i].rate_per_year = s.rate * (double)n;
-    }
-    for (size_t i = 0; i < t->n_places; i++)
-        pthread_mutex_init(&t->place[i].lock, NULL);
-    return STATUS_OK;
-}
-
-/* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
- * t_top = t_base. */
-static void swap_if_top_heavy(double x[], const void *self)
-{
-    const Tower *t = self;
-    double *t_base = &x[t->design.n_gaps], *t_top = t_base + 1;
-    if (t->design.n_walls > 0 && *t_top > *t_base) {
-        const double thicker = *t_top;
-        *t_top = *t_base;
-        *t_base = thicker;
-    }
-}
-
-static Problem problem_on(Tower *t)
-{
-    return (Problem){.n_var = t->design.n_var,
-                     .n_obj = t->order.n_obj,
-                     .n_extra = t->order.n - t->order.n_obj,
-                     .lower = t->lower,
-                     .upper = t->upper,
-                     .kind = t->has_kinds ? t->kind : NULL,
-                     .steps = t->steps,
-                     .repair = swap_if_top_heavy,
-                     .simulator = &TOWER,
-                     .self = t,
-                     .n_parts = t->plan.n_records * t->plan.n_replicates,
-                     .n_cheap = t->plan.n_replicates > 1 ? t->plan.n_records : 0,
-                     .part_size = sizeof(Measured),
-                     .n_workers = t->n_workers};
-}
-
-/* Multiples of the step of gaps that lie within their bounds. */
-static Status take_gap_steps(const DesignOptions *o, Steps *s, Err *err)
-{
-    const double step = o->step_gap_m, first = ceil(o->gap_m.at[0] / step - 1e-9);
-    const double last = floor(o->gap_m.at[1] / step + 1e-9);
-    if (step < 1e-4)
-        return bad_data(err, "design.step_gap_m: %g m is no step that is kept on site; give 0.0001 or more", step);
-    if (first > last)
-        return bad_data(err, "design.step_gap_m: no multiple of %g lies within design.gap_m", step);
-    *s = (Steps){.n = (size_t)(last - first) + 1, .first = first, .step = step};
-    return STATUS_OK;
-}
-
-static Status take_steps(Tower *t, const DesignOptions *o, Err *err)
-{
-    const DesignSpace *space = &t->design;
-    const NumberList *plates = &o->step_thickness_m;
-    Steps gaps = {0}, walls = {.n = plates->n, .at = plates->at};
-    for (int i = 1; i < plates->n; i++)
-        if (!(plates->at[i] > plates->at[i - 1]))
-            return bad_data(err, "design.step_thickness_m: %g stands behind %g; give them in ascending order",
-                            plates->at[i], plates->at[i - 1]);
-    if (o->step_gap_m > 0.0)
-        TRY(take_gap_steps(o, &gaps, err));
-    for (int j = 0; j < space->n_gaps + space->n_walls; j++) {
-        const Steps *s = j < space->n_gaps ? &gaps : &walls;
-        if (s->n == 0)
-            continue;
-        t->has_kinds = 1;
-        t->kind[j] = VARIABLE_STEPPED;
-        t->steps[j] = *s;
-        t->lower[j] = steps_at(s, 0);
-        t->upper[j] = steps_at(s, s->n - 1);
-    }
-    return STATUS_OK;
-}
-
-static Status prepare(Tower *t, Err *err)
-{
-    const Settings *s = &t->recipe->settings;
-    TRY(make_room(t, err));
-    TRY(t->recipe->is_sweep ? tower_space(&t->recipe->settings, &t->design, err) : open_all(t, err));
-    t->n_floors = t->design.n_floors;
-    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->n_floors, err));
-    t->judged |= t->order.judged;
-    design_bounds(&t->design, &s->design, t->lower, t->upper);
-    for (int j = 0; j < t->design.n_var; j++)
-        if (design_is_log(&t->design, j) || design_word(&t->design, j, 0)) {
-            t->has_kinds = 1;
-            t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
-        }
-    return take_steps(t, &s->design, err);
-}
-
-/* Hash of the building and of the records that were read. */
-static uint64_t hash_of_files(const Tower *t)
-{
-    uint64_t hash = t->recipe->is_sweep ? 0 : scene_building(t->place[0].scenario->scene)->hash;
-    for (size_t r = 0; r < t->recipe->n_records; r++)
-        hash = (hash ^ t->record[r].motion.file_hash ^ t->record[r].motion.forces_hash) * HASH_PRIME;
-    return hash;
-}
-
-/* Takes the recipe, for free. */
-static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
-{
-    const Settings *s = &recipe->settings;
-    const size_t workers = threads_wanted(s->search.threads);
-    MeasureOrder order;
-    Tower *t = calloc(1, sizeof *t);
-    if (!t) {
-        free(recipe);
-        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
-    }
-    t->recipe = recipe;
-    t->n_workers = MIN_OF(workers, n_tasks);
-    t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
-                              .n_replicates = s->sim.replicates,
-                              .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
-                              .quantile = s->sim.quantile > 0 ? s->sim.quantile : 1 - s->sim.tail,
-                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
-    Status status = measures_order(&order, s->search.objectives, s->search.limits, 0, err);
-    t->judged = status == STATUS_OK ? order.judged : 0;
-    if (status == STATUS_OK)
-        status = prepare(t, err);
-    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
-    t->isolated.lost = write_lost;
-    if (status == STATUS_OK && s->run.isolate == SWITCH_ON)
-        status = isolated_open(&t->isolated, t->n_workers, err);
-    if (status != STATUS_OK) {
-        tower_close(t);
-        return status;
-    }
-    *p = problem_on(t);
-    if (n_tasks > 1) { /* with the ranks of a cluster, where this process has some */
-        p->recipe = recipe;
-        p->recipe_size = recipe_size(recipe->n_records, recipe->n_scenes);
-        p->inputs = recipe->is_sweep ? 0 : hash_of_files(t);
-        executor_choose(p);
-    }
-    return STATUS_OK;
-}
-
-/* NULL: err says why. */
-static Recipe *make_recipe(const Settings *s, size_t n_records, size_t n_scenes, Err *err)
-{
-    Recipe *r = s->problem.kind == PROBLEM_TOWER ? calloc(1, recipe_size(n_records, n_scenes)) : NULL;
-    if (!r && s->problem.kind != PROBLEM_TOWER)
-        bad_data(err, "problem.kind: this needs problem.kind = tower, which alone has a building, a core and a motion");
-    else if (!r)
-        fail_memory(err, n_scenes, "scenes");
-    else
-        *r = (Recipe){.settings = *s, .n_records = n_records, .n_scenes = n_scenes};
-    return r;
+    return suite_of_study(&s->motion, list_record, list, err);
 }
 
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
     RecordList *list;
-    TRY(list_records(s, use, &list, err));
-    const size_t n = list->n;
-    Recipe *r = make_recipe(s, n, n, err);
-    if (r)
-        memcpy(recipe_record(r, 0), list->path, n * sizeof list->path[0]);
+    Recipe *r;
+    TRY_ROOM(list, 1, "a list of records", err);
+    Status status = list_records(s, use, list, err);
+    if (status == STATUS_OK)
+        status = make_recipe(&r, s, list->n, list->n, err);
+    if (status == STATUS_OK) {
+        memcpy(recipe_record(r, 0), list->path, list->n * sizeof list->path[0]);
+        for (size_t i = 0; i < list->n; i++)
+            r->scene[i].record = i;
+        if (use == TOWER_SINGLE)
+            r->settings.sim.replicates = 1;
+        status = open_recipe(p, r, n_tasks, err);
+    }
     free(list);
-    if (!r)
-        return err->code;
-    for (size_t i = 0; i < n; i++)
-        r->scene[i].record = i;
-    if (use == TOWER_SINGLE)
-        r->settings.sim.replicates = 1;
-    return open_recipe(p, r, n_tasks, err);
+    return status;
 }
 
 Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const char *const records[], size_t n_scenes,
                          const SceneChange scenes[], Err *err)
 {
-    Recipe *r = make_recipe(s, n_records, n_scenes, err);
-    if (!r)
-        return err->code;
+    Recipe *r;
+    TRY(make_recipe(&r, s, n_records, n_scenes, err));
     r->is_sweep = 1;
     memcpy(r->scene, scenes, n_scenes * sizeof *scenes);
     Status status = STATUS_OK;
@@ -600,11 +541,9 @@ Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const 
 
 Status tower_reopen(Problem *p, const Recipe *recipe, Err *err)
 {
-    const size_t size = recipe_size(recipe->n_records, recipe->n_scenes);
-    Recipe *own = malloc(size);
-    if (!own)
-        return fail_memory(err, recipe->n_scenes, "scenes");
-    memcpy(own, recipe, size);
+    Recipe *own;
+    TRY(make_recipe(&own, &recipe->settings, recipe->n_records, recipe->n_scenes, err));
+    memcpy(own, recipe, recipe_size(recipe->n_records, recipe->n_scenes));
     return open_recipe(p, own, SIZE_MAX, err);
 }
 
@@ -620,7 +559,7 @@ const DesignSpace *tower_design(const Tower *t)
 
 int tower_n_floors(const Tower *t)
 {
-    return (int)t->n_floors;
+    return (int)t->design.n_floors;
 }
 
 size_t tower_n_records(const Tower *t)
@@ -628,9 +567,12 @@ size_t tower_n_records(const Tower *t)
     return t->plan.n_records;
 }
 
-const ReplicatePlan *tower_plan(const Tower *t)
+ReplicatePlan tower_plan(const Tower *t, size_t n)
 {
-    return &t->plan;
+    ReplicatePlan plan = t->plan;
+    plan.n_records = MIN_OF(n, plan.n_records);
+    plan.n_replicates = n / plan.n_records;
+    return plan;
 }
 
 const MeasureOrder *tower_measures(const Tower *t)
@@ -648,93 +590,88 @@ const Scenario *tower_record(const Tower *t, size_t i)
 Variant tower_variant(const Tower *t, const SimTask *task)
 {
     const LinearDevice *d = &task->device;
-    return (Variant){task->kind + (task->is_brief ? BRIEF : 0),
-                     task->scene + task->level * t->recipe->n_scenes,
-                     {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
+    return (Variant){.kind = task->kind,
+                     .is_brief = task->is_brief,
+                     .scene = task->scene + task->level * t->recipe->n_scenes,
+                     .device = {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
 }
 
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES])
 {
-    const ReplicatePlan plan = plan_of(t, t->plan.n_records);
+    const ReplicatePlan plan = tower_plan(t, t->plan.n_records);
     Measured parts[TOWER_RECORDS_MAX];
     ReplicateSummary sum;
     for (size_t i = 0; i < plan.n_records; i++)
         parts[i] = measured(&by_record[i]);
-    replicates_summarise(&plan, parts, sizeof *parts, &sum);
-    replicates_errors(&plan, parts, sizeof *parts, &sum);
+    replicates_summarise(&plan, parts, sizeof *parts, 1, &sum);
     memcpy(error, sum.error, sizeof sum.error);
 }
 
-static void take(const Problem *p, const SimTask *task, SimResult *result, const char *parts)
+/* Give a task that is done what it wants of its parts. */
+static void store_task(const Problem *p, const SimTask *task, const char *parts)
 {
-    const size_t n = task->n_parts ? task->n_parts : 1;
-    const ReplicatePlan plan = plan_of(p->self, n);
+    const size_t n = MAX_OF(task->n_parts, 1);
+    const ReplicatePlan plan = tower_plan(p->self, n);
     ReplicateSummary sum;
-    replicates_summarise(&plan, parts, p->part_size, &sum);
-    if (task->summary) {
-        replicates_errors(&plan, parts, p->part_size, &sum);
+    replicates_summarise(&plan, parts, p->part_size, task->summary != NULL, &sum);
+    if (task->summary)
         *task->summary = sum;
-    }
-    if (result)
-        *result = ((const Whole *)(const void *)(parts + sum.shown * p->part_size))->result;
+    if (task->result)
+        *task->result = ((const FullResult *)(const void *)(parts + sum.shown * p->part_size))->result;
     for (size_t i = 0; task->parts && i < n; i++)
         memcpy(&task->parts[i], parts + i * p->part_size, sizeof *task->parts);
 }
 
-/* Some more are asked for than there are workers: parts of all at once would need memory. */
-static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult results[], SimTell *tell, void *user,
-                      Err *err)
-{
-    const Problem *p = queue_problem(q);
-    Finished done;
-    for (size_t asked = 0, i = 0; i < n;) {
-        if (asked < n && queue_pending(q) < 4 * p->n_workers) {
-            const SimTask *task = &tasks[asked++];
-            const Asked design = {
-                .x = task->x, .variant = tower_variant(p->self, task), .n_parts = task->n_parts ? task->n_parts : 1};
-            TRY(queue_ask(q, &design, err));
-            continue;
-        }
-        TRY(queue_next(q, &done, err));
-        take(p, &tasks[i], results ? &results[i] : tasks[i].result, done.parts);
-        i++;
-        if (tell)
-            tell(i, user);
-    }
-    return STATUS_OK;
-}
-
-static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], SimTell *tell, void *user,
-                  Err *err)
+/* Ask a queue of its own for all tasks. Some more are under way at once than there are workers: parts of all would need
+ * memory. */
+Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tell, void *user, Err *err)
 {
     Queue *q;
     Problem own = *p;
     size_t n_simulations = 0;
+    int is_full = 0;
     own.observer.done = NULL;
     own.order = NULL;
     own.n_parts = 1;
     for (size_t i = 0; i < n; i++) {
-        n_simulations += tasks[i].n_parts ? tasks[i].n_parts : 1;
+        n_simulations += MAX_OF(tasks[i].n_parts, 1);
         own.n_parts = MAX_OF(tasks[i].n_parts, own.n_parts);
-        own.part_size = results || tasks[i].result ? sizeof(Whole) : own.part_size;
+        is_full |= tasks[i].result != NULL;
     }
+    own.part_size = is_full ? sizeof(FullResult) : own.part_size;
     own.n_workers = MIN_OF(n_simulations, own.n_workers);
     if (own.n_workers < 2)
         own.executor = NULL;
     TRY(queue_open(&q, &own, err));
-    const Status status = run_all(q, n, tasks, results, tell, user, err);
+    Status status = STATUS_OK;
+    for (size_t asked = 0, i = 0; i < n && status == STATUS_OK;) {
+        Finished done;
+        if (asked < n && queue_pending(q) < 4 * own.n_workers) {
+            const SimTask *task = &tasks[asked++];
+            Asked design = {.x = task->x, .variant = tower_variant(p->self, task), .n_parts = MAX_OF(task->n_parts, 1)};
+            design.variant.is_full = is_full;
+            status = queue_ask(q, &design, err);
+        } else if ((status = queue_next(q, &done, err)) == STATUS_OK) {
+            store_task(&own, &tasks[i++], done.parts);
+            if (tell)
+                tell(i, user);
+        }
+    }
     queue_close(q);
     return status;
 }
 
-Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tell, void *user, Err *err)
-{
-    return run(p, n, tasks, NULL, tell, user, err);
-}
-
 Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err)
 {
-    return run(p, n, tasks, results, NULL, NULL, err);
+    SimTask *own;
+    TRY_ROOM(own, n, "simulations", err);
+    for (size_t i = 0; i < n; i++) {
+        own[i] = tasks[i];
+        own[i].result = &results[i];
+    }
+    const Status status = tower_run(p, n, own, NULL, NULL, err);
+    free(own);
+    return status;
 }
 
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
@@ -744,7 +681,7 @@ Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult s
     TRY_ROOM(tasks, n, "designs", err);
     for (size_t i = 0; i < n; i++)
         tasks[i] = (SimTask){.x = X + i * p->n_var, .n_parts = p->n_parts, .summary = &out[i]};
-    const Status status = run(p, n, tasks, shown, NULL, NULL, err);
+    const Status status = tower_simulate(p, n, tasks, shown, err);
     free(tasks);
     return status;
 }

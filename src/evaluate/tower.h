@@ -46,7 +46,9 @@ const Tower *tower_of(const Problem *p);
 int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
-const ReplicatePlan *tower_plan(const Tower *t);
+
+/* How a design is judged that has n parts: all, the first replicate of every record, of the first n records, or one. */
+ReplicatePlan tower_plan(const Tower *t, size_t n);
 
 /* Standard errors (evaluate/replicates.h) of a design simulated once under each of the n_records. */
 void tower_standard_errors(const Tower *t, const SimResult by_record[], double error[N_MEASURES]);
@@ -54,9 +56,9 @@ void tower_standard_errors(const Tower *t, const SimResult by_record[], double e
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* of a search; 0: motion.record */
 
-/* A scene, open until it is let go. */
-Status tower_hold(const Problem *p, size_t scene, const Scenario **out, Err *err);
-void tower_let_go(const Problem *p, size_t scene);
+/* A scene, open until it is released. */
+Status tower_acquire(Tower *t, size_t scene, const Scenario **out, Err *err);
+void tower_release(Tower *t, size_t scene);
 
 /* The ground motion of a scene, for motion_free. */
 Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);

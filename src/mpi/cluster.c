@@ -31,25 +31,13 @@ static int n_ranks(void)
     return n;
 }
 
-/* Of all ranks, on rank 0. */
-static Status compare(const Hello hello[], Err *err)
-{
-    for (int i = 1; i < n_ranks(); i++) {
-        if (memcmp(hello[i].version, hello[0].version, sizeof hello[i].version) != 0)
-            return bad_data(err, "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
-                            hello[i].host, hello[i].version, hello[0].host, hello[0].version);
-        if (hello[i].arguments != hello[0].arguments)
-            return bad_data(err, "rank %d on %s has another command line than rank 0: all must have one", i,
-                            hello[i].host);
-    }
-    return STATUS_OK;
-}
-
-/* All come to one verdict, whose reason is rank 0's to tell. */
+/* Every rank compares what all say of themselves, so that all come to one verdict, whose reason is rank 0's to tell. */
 static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VERSION_MAX], Err *err)
 {
     Hello mine = {.arguments = HASH_SEED};
-    Hello *all = calloc(n_ranks(), sizeof *all);
+    Status verdict = STATUS_OK;
+    const int n = n_ranks();
+    Hello *all = calloc(n, sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     host_name(mine.host);
@@ -57,27 +45,27 @@ static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VER
     for (int i = 1; i < argc; i++)
         mine.arguments = hash_fnv1a(argv[i], strlen(argv[i]) + 1, mine.arguments);
     MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, MPI_COMM_WORLD);
-    const Status verdict = compare(all, err);
+    for (int i = 1; i < n && verdict == STATUS_OK; i++)
+        if (memcmp(all[i].version, all->version, sizeof all->version) != 0)
+            verdict = bad_data(err, "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
+                               all[i].host, all[i].version, all->host, all->version);
+        else if (all[i].arguments != all->arguments)
+            verdict =
+                bad_data(err, "rank %d on %s has another command line than rank 0: all must have one", i, all[i].host);
     free(all);
     return verdict;
 }
 
 /* Launchers signal every rank: rank 0 alone decides what a signal means. */
-static void ignore_signals(void)
-{
-    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
-    for (size_t i = 0; i < N_OF(SIGNALS); i++)
-        signal(SIGNALS[i], SIG_IGN);
-}
-
 Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
                     Err *err)
 {
+    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
     int level;
     MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
     *serves = rank_of_this() > 0;
-    if (*serves)
-        ignore_signals();
+    for (size_t i = 0; *serves && i < N_OF(SIGNALS); i++)
+        signal(SIGNALS[i], SIG_IGN);
     Status status = check_ranks(*argc, *argv, version, err);
     if (status == STATUS_OK && level < MPI_THREAD_SERIALIZED)
         status = fail(err, STATUS_INTERNAL, "this MPI cannot be called by one thread after the other");
@@ -108,35 +96,28 @@ int message_receive(int from, int tag, Message *m)
     return 1;
 }
 
-/* What still comes is dropped until every rank has left; 0: one does not. */
-static int wait_until_all_left(void)
-{
-    int left = 0;
-    const double give_up = clock_seconds() + LEAVE_S;
-    while (left < n_ranks() - 1 && clock_seconds() < give_up) {
-        Message m;
-        if (!message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m)) {
-            pause_s(2e-4);
-            continue;
-        }
-        free(m.bytes);
-        left += m.tag == TAG_LEFT;
-    }
-    return left == n_ranks() - 1;
-}
-
+/* Rank 0 lets all others end, and drops what still comes until every rank has left; where one does not, or a rank failed,
+ * the whole job is aborted. */
 void cluster_leave(int exit_code)
 {
-    int is_over, is_whole = 1;
+    int is_over, is_whole = exit_code == 0;
     MPI_Finalized(&is_over);
     if (is_over)
         return;
     if (rank_of_this() == 0) {
+        int n_left = n_ranks() - 1;
         for (int i = 1; i < n_ranks(); i++)
             MPI_Send(NULL, 0, MPI_BYTE, i, TAG_OPEN, MPI_COMM_WORLD);
-        is_whole = wait_until_all_left();
-    } else {
-        is_whole = exit_code == 0;
+        for (const double give_up = clock_seconds() + LEAVE_S; n_left > 0 && clock_seconds() < give_up;) {
+            Message m;
+            if (!message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m)) {
+                pause_s(2e-4);
+                continue;
+            }
+            free(m.bytes);
+            n_left -= m.tag == TAG_LEFT;
+        }
+        is_whole = n_left == 0;
     }
     if (!is_whole)
         MPI_Abort(MPI_COMM_WORLD, exit_code);

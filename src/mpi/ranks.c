@@ -53,34 +53,27 @@ static Seat seat_of(const Ranks *r, size_t worker)
 
 /* -- messages ------------------------------------------------------------------------------------------------------ */
 
-/* An answer is for the worker that waits for it, whatever else a sign of life for all of the rank, as is an answer that
- * is none: that is no good one. r->lock is held. */
-static void hear(Ranks *r, Message *m)
-{
-    const Pool *p = &r->pool[r->is_open];
-    const Answer *a = m->bytes;
-    const int is_answer = m->tag == TAG_DONE && (m->n < sizeof *a || a->epoch == r->epoch);
-    const int is_right = is_answer && is_answer_of(a, m->n, p->n_workers) && seat_of(r, a->worker).rank == m->from;
-    if (!is_right) {
-        free(m->bytes);
-        *m = (Message){.from = m->from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
-    }
-    for (size_t i = 0; i < p->n_workers; i++)
-        if (is_right ? i == a->worker : seat_of(r, i).rank == m->from)
-            if (write(p->worker[i].in, m, sizeof *m) < 0)
-                continue; /* it is full of signs of life */
-}
-
+/* Receive messages and give each to whom it concerns: an answer to the worker that waits for it, whatever else, as a sign
+ * of life, to all of the rank. What should be an answer and is none goes to them all the same: it is no good one. */
 static void *receive(void *user)
 {
     Ranks *r = user;
-    double pause = PAUSE_MIN_S;
-    while (!r->ending) {
+    for (double pause = PAUSE_MIN_S; !r->ending;) {
         Message m;
         pthread_mutex_lock(&r->lock);
         const int there = message_receive(MPI_ANY_SOURCE, MPI_ANY_TAG, &m);
-        if (there)
-            hear(r, &m);
+        const Pool *p = &r->pool[r->is_open];
+        const Answer *a = there ? m.bytes : NULL;
+        const int is_answer = there && m.tag == TAG_DONE && (m.n < sizeof *a || a->epoch == r->epoch);
+        const int is_right = is_answer && is_answer_of(a, m.n, p->n_workers) && seat_of(r, a->worker).rank == m.from;
+        if (there && !is_right) {
+            free(m.bytes);
+            m = (Message){.from = m.from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
+        }
+        for (size_t i = 0; there && i < p->n_workers; i++)
+            if (is_right ? i == a->worker : seat_of(r, i).rank == m.from)
+                if (write(p->worker[i].in, &m, sizeof m) < 0)
+                    continue; /* it is full of signs of life */
         pthread_mutex_unlock(&r->lock);
         pause = there ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
         if (!there)
@@ -127,6 +120,7 @@ static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
     w->n = w->n_done;
 }
 
+/* Take the messages of a worker. By how long its tasks took it gets more or fewer at once. */
 static void look(void *self, Worker *w)
 {
     Message m;
@@ -146,18 +140,14 @@ static void look(void *self, Worker *w)
     w->n_line = 0;
 }
 
-static Status simulate(void *self, size_t worker, size_t n, const Task tasks[], size_t *n_done, Err *err)
+static Pool *pool(void *self)
 {
-    return pool_do(&((Ranks *)self)->pool[1], worker, n, tasks, n_done, err);
-}
-
-static size_t batch(void *self, size_t worker)
-{
-    return ((const Ranks *)self)->pool[1].worker[worker].batch;
+    return &((Ranks *)self)->pool[1];
 }
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
+/* The pool of those who open the problem, or of the workers of all. */
 static Status open_pool(Ranks *r, int is_open, size_t n, Err *err)
 {
     const Problem *p = r->problem;
@@ -173,46 +163,7 @@ static Status open_pool(Ranks *r, int is_open, size_t n, Err *err)
     return pool_open(&r->pool[is_open], &protocol, n, err);
 }
 
-static int go_on(void *observer)
-{
-    const Observer *o = observer;
-    return !o->go_on || o->go_on(o->user);
-}
-
-/* A task whose x is the recipe, and its part Opened. */
-static Status open_problem(Ranks *r, Err *err)
-{
-    const Problem *p = r->problem;
-    size_t n = 0;
-    for (int i = 1; i <= r->n; i++) {
-        Rank *rank = &r->rank[i];
-        rank->opening = (Task){.x = p->recipe,
-                               .result = &rank->opened,
-                               .size = sizeof rank->opened,
-                               .may_go_on = go_on,
-                               .user = (void *)(uintptr_t)&p->observer};
-        TRY(pool_ask(&r->pool[0].worker[i - 1], 1, &rank->opening, err));
-    }
-    for (int i = 1; i <= r->n; i++) {
-        const Opened *o = &r->rank[i].opened;
-        TRY(pool_wait(&r->pool[0].worker[i - 1], err));
-        if (o->inputs != p->inputs)
-            return bad_data(err,
-                            "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
-                            "): records and building must be the same on every machine",
-                            i, o->host, o->inputs, p->inputs);
-        n += o->n_workers;
-    }
-    TRY(open_pool(r, 1, 2 * n, err));
-    pthread_mutex_lock(&r->lock);
-    r->n_seats = n;
-    for (int i = 1; i <= r->n; i++)
-        r->rank[i].n_workers = r->rank[i].opened.n_workers;
-    r->is_open = 1;
-    pthread_mutex_unlock(&r->lock);
-    return STATUS_OK;
-}
-
+/* The thread that receives ends before what it writes to. */
 static void stop(void *self)
 {
     Ranks *r = self;
@@ -226,17 +177,21 @@ static void stop(void *self)
     free(r);
 }
 
+/* Let every rank open the problem, and learn how many workers each has. */
 static Status start(void **self, Queue *q, size_t *n_workers, Err *err)
 {
+    const Problem *p = queue_problem(q);
     size_t n;
     Ranks *r;
+
+    /* 1. All ranks, and a thread that hears them. */
     TRY_ROOM(r, 1, "a set of ranks", err);
     *self = r;
     pthread_mutex_init(&r->lock, NULL);
     cluster_executor(&n);
     r->n = (int)n;
     r->n_seats = n;
-    r->problem = queue_problem(q);
+    r->problem = p;
     r->epoch = (int64_t)(1e9 * clock_seconds());
     TRY_ROOM(r->rank, n + 1, "ranks", err);
     for (size_t i = 1; i <= n; i++)
@@ -245,11 +200,37 @@ static Status start(void **self, Queue *q, size_t *n_workers, Err *err)
     r->is_running = pthread_create(&r->thread, NULL, receive, r) == 0;
     if (!r->is_running)
         return fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);
-    TRY(open_problem(r, err));
-    *n_workers = r->n_seats;
+
+    /* 2. Each opens the problem: a task whose x is the recipe, and whose part is Opened. */
+    for (int i = 1; i <= r->n; i++) {
+        Rank *rank = &r->rank[i];
+        rank->opening =
+            (Task){.x = p->recipe, .result = &rank->opened, .size = sizeof rank->opened, .observer = &p->observer};
+        TRY(pool_ask(&r->pool[0].worker[i - 1], 1, &rank->opening, err));
+    }
+    *n_workers = 0;
+    for (int i = 1; i <= r->n; i++) {
+        const Opened *o = &r->rank[i].opened;
+        TRY(pool_wait(&r->pool[0].worker[i - 1], err));
+        if (o->inputs != p->inputs)
+            return bad_data(err,
+                            "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
+                            "): records and building must be the same on every machine",
+                            i, o->host, o->inputs, p->inputs);
+        *n_workers += o->n_workers;
+    }
+
+    /* 3. From now on their workers are asked. */
+    TRY(open_pool(r, 1, 2 * *n_workers, err));
+    pthread_mutex_lock(&r->lock);
+    r->n_seats = *n_workers;
+    for (int i = 1; i <= r->n; i++)
+        r->rank[i].n_workers = r->rank[i].opened.n_workers;
+    r->is_open = 1;
+    pthread_mutex_unlock(&r->lock);
     return STATUS_OK;
 }
 
-static const Simulator ON_RANKS = {.batch = batch, .simulate_batch = simulate};
+static const Simulator ON_RANKS = {.pool = pool};
 
 const Executor EXECUTOR_RANKS = {.start = start, .stop = stop, .simulator = &ON_RANKS};

@@ -62,7 +62,8 @@ static int may_go_on(void *user)
 static void do_order(Seat *w, Order *order, const Simulator *simulator, void *self)
 {
     Service *s = w->service;
-    const Doer doer = {simulator, self, s->problem.n_var, may_go_on, s};
+    const Observer observer = {.go_on = may_go_on, .user = s};
+    const Doer doer = {simulator, self, s->problem.n_var, &observer};
     size_t n;
     Answer *a = order_do(order, (size_t)w->number, &doer, &n);
     if (!a)
@@ -76,6 +77,7 @@ static void do_order(Seat *w, Order *order, const Simulator *simulator, void *se
     pthread_mutex_unlock(&s->talking);
 }
 
+/* One worker of this rank: does the orders that come for it until the problem is closed. */
 static void *work(void *user)
 {
     Seat *w = user;
@@ -97,6 +99,7 @@ static void *work(void *user)
 
 /* -- the problem --------------------------------------------------------------------------------------------------- */
 
+/* Workers end before what they work on, and answers that are on their way before their bytes. */
 static void close_problem(Service *s)
 {
     s->closing = 1;
@@ -114,20 +117,7 @@ static void close_problem(Service *s)
     s->held = (Message){0};
 }
 
-static Status start_workers(Service *s, Err *err)
-{
-    const size_t n = s->problem.n_workers;
-    TRY_ROOM(s->seat, n, "threads", err);
-    for (; s->n_workers < n; s->n_workers++) {
-        Seat *w = &s->seat[s->n_workers];
-        *w = (Seat){.service = s, .number = (int)s->n_workers, .request = MPI_REQUEST_NULL};
-        if (pthread_create(&w->thread, NULL, work, w) != 0)
-            return fail(err, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", s->n_workers + 1, n);
-    }
-    return STATUS_OK;
-}
-
-/* The recipe is kept. A problem that is open already stays so. */
+/* Open the problem of a recipe, which is kept, and start its workers. A problem that is open already stays so. */
 static Status open_problem(void *self, size_t worker, const Task *task, Err *err)
 {
     (void)worker;
@@ -141,8 +131,18 @@ static Status open_problem(void *self, size_t worker, const Task *task, Err *err
         s->held = s->heard;
         s->heard.bytes = NULL;
         status = s->reopen(&s->problem, task->x, n, &why);
-        if (status == STATUS_OK)
-            status = start_workers(s, &why);
+        s->seat = status == STATUS_OK ? calloc(s->problem.n_workers, sizeof *s->seat) : NULL;
+        if (status == STATUS_OK && !s->seat)
+            status = fail_memory(&why, s->problem.n_workers, "threads");
+    }
+    for (; status == STATUS_OK && s->n_workers < s->problem.n_workers; s->n_workers++) {
+        Seat *w = &s->seat[s->n_workers];
+        *w = (Seat){.service = s, .number = (int)s->n_workers, .request = MPI_REQUEST_NULL};
+        if (pthread_create(&w->thread, NULL, work, w) != 0) {
+            status = fail(&why, STATUS_NO_MEMORY, "no thread for the simulations (%zu of %zu)", s->n_workers + 1,
+                          s->problem.n_workers);
+            break;
+        }
     }
     *opened = (Opened){.inputs = s->problem.inputs, .n_workers = s->n_workers};
     host_name(opened->host);
@@ -156,11 +156,18 @@ static const Simulator OPENS = {.simulate = open_problem};
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-static void exchange(Service *s)
+/* Open problems and say that this rank lives until rank 0 says that it is over; then leave. A task that takes longer than
+ * a moment ends with the process. */
+Status serve(ReopenFn reopen, Err *err)
 {
+    Service *s;
+    TRY_ROOM(s, 1, "a rank", err);
     Message *m = &s->heard;
     Seat opener = {.service = s, .request = MPI_REQUEST_NULL};
     double pause = PAUSE_MIN_S;
+    s->reopen = reopen;
+    MPI_Comm_rank(MPI_COMM_WORLD, &s->rank);
+    pthread_mutex_init(&s->talking, NULL);
     for (m->n = 1; m->n > 0;) {
         if (hear(s, TAG_OPEN, m)) {
             if (m->n > 0)
@@ -173,25 +180,14 @@ static void exchange(Service *s)
         pause = longer_pause(pause, s->n_running > 0 ? PAUSE_BUSY_S : PAUSE_MAX_S);
         pause_s(pause);
     }
-}
-
-/* A task that takes longer than a moment ends with the process. */
-Status serve(ReopenFn reopen, Err *err)
-{
-    Service *s;
-    TRY_ROOM(s, 1, "a rank", err);
-    s->reopen = reopen;
-    MPI_Comm_rank(MPI_COMM_WORLD, &s->rank);
-    pthread_mutex_init(&s->talking, NULL);
-    exchange(s);
     s->closing = 1;
     for (const double until = clock_seconds() + FAREWELL_S; s->n_running > 0 && clock_seconds() < until;)
         pause_s(1e-3);
     const int is_busy = s->n_running > 0;
     say(s, TAG_LEFT);
-    if (is_busy)
-        return STATUS_OK;
-    close_problem(s);
-    free(s);
+    if (!is_busy) {
+        close_problem(s);
+        free(s);
+    }
     return STATUS_OK;
 }

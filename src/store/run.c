@@ -366,7 +366,7 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
                         "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?",
                         word, run->folder, schema_objective(&run->schema, 0)->name);
     if (is_best)
-        TRY(schema_pick_objective(&run->schema, "best_NAME", word + sizeof BEST - 1, STATUS_BAD_DATA, &k, err));
+        TRY(schema_pick(&run->schema, run->schema.n_obj, "best_NAME", word + sizeof BEST - 1, &k, err));
     if (run->n_front == 0)
         return run_why_empty(run, err);
     *row = is_best ? run_best(run, k) : run_knee(run);

@@ -23,7 +23,7 @@ static void hear(External *e, const uint8_t *data, size_t size)
     for (size_t i = 0; i < N_DESIGNS; i++)
         task[i] = (Task){.id = (long)i + 1, .result = answers + i * one};
     for (size_t at = 0; answers && w.line && at < N_DESIGNS && size > 0;) {
-        if (!is_waited_for(&w))
+        if (w.n_done >= w.n)
             w.task = task + at, w.n = at < 2 ? 1 : N_DESIGNS - at, w.n_done = 0;
         const size_t piece = size < 7 + w.n_line ? size : 7 + w.n_line, room = LINE_MAX_BYTES - w.n_line;
         const size_t n = piece < room ? piece : room;
@@ -32,7 +32,7 @@ static void hear(External *e, const uint8_t *data, size_t size)
         data += n;
         size -= n;
         look_for_answer(e, &w);
-        if (is_waited_for(&w))
+        if (w.n_done < w.n)
             continue;
         for (size_t i = 0; i < w.n_done; i++)
             demand_numbers(w.task[i].result);
