@@ -213,7 +213,7 @@ TEST(choose_limits_any_result_of_a_run)
 {
     size_t k, i;
     Run h = run_in("run");
-    CHECK_OK(schema_pick_result(&h.schema, "", "drift_ratio", STATUS_USAGE, &k, &err), &err);
+    CHECK_OK(schema_pick(&h.schema, h.schema.n_obj + h.schema.n_extra, "", "drift_ratio", &k, &err), &err);
     const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
     json_t *o = json_of("choose @/run --json --max drift_ratio=%.17g", bound), *pick;
     assert_less(0, json_array_size(json_object_get(o, "designs")));

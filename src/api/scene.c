@@ -3,7 +3,6 @@
 #include "api/named_values.h"
 #include "base/linalg.h"
 #include "evaluate/device.h"
-#include "evaluate/tower.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
 #include "sim/samples.h"

@@ -5,7 +5,6 @@
 
 #include "base/hash.h"
 #include "evaluate/isolated.h"
-#include "evaluate/tasks.h"
 #include "motion/builtin.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
