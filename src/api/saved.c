@@ -54,7 +54,8 @@ static void walk(Pack *p, imtet_search *s, Err *err)
     const size_t n_var = s->schema.n_var;
     size_t n = s->table.n;
 
-    /* 1. Bounds, designs to begin with, and every row. A damaged count of rows is found before room is made for them. */
+    /* 1. Bounds, designs to begin with, and every row. A damaged count of rows is found before room is made for
+     * them. */
     pack(p, s->lower, (2 + s->n_given) * n_var * sizeof *s->lower);
     pack_size(p, &n, COUNT_MAX);
     for (size_t i = 0; i < n && !p->faulty; i++) {

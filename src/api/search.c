@@ -31,8 +31,8 @@ Status handle_add(imtet_search *s, const double x[], Err *err)
     return STATUS_OK;
 }
 
-/* Put a design that the search asks for into the table. A search that was saved asks again for what was under way, which
- * may be told already. */
+/* Put a design that the search asks for into the table. A search that was saved asks again for what was under way,
+ * which may be told already. */
 static Status take_question(imtet_search *s, const Question *q, Err *err)
 {
     const size_t row = q->number - 1;
@@ -46,8 +46,8 @@ static Status take_question(imtet_search *s, const Question *q, Err *err)
     return s->design[row].place == DESIGN_TOLD ? search_tell(s->search, q->number, e, NULL, err) : STATUS_OK;
 }
 
-/* Let the search go on until it waits for answers, or ends: what may be asked for now is in the table. Meanwhile threads
- * and BLAS are as the search wants them; afterwards the caller's own are as before. */
+/* Let the search go on until it waits for answers, or ends: what may be asked for now is in the table. Meanwhile
+ * threads and BLAS are as the search wants them; afterwards the caller's own are as before. */
 static Status advance(imtet_search *s, Err *err)
 {
     const int threads = omp_get_max_threads();

@@ -136,7 +136,8 @@ static void choose_records(Tuning *t, const Measured of[])
     }
 }
 
-/* Simulate every point under every record; of the building alone that chooses the records, of devices the best point. */
+/* Simulate every point under every record; of the building alone that chooses the records, of devices the best
+ * point. */
 static Status simulate(const Problem *p, size_t n, Tuning tuning[], Err *err)
 {
     size_t n_tasks = 0, k = 0;

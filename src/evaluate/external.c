@@ -122,7 +122,8 @@ static void blank_words(char *line)
     }
 }
 
-/* Settle the next task by one answer. How many constraint values there should be is known where answers meet: combine. */
+/* Settle the next task by one answer. How many constraint values there should be is known where answers meet:
+ * combine. */
 static void take_design(const External *e, Worker *w, const json_t *o, const char *line)
 {
     const json_t *f = json_object_get(o, "f"), *g = json_object_get(o, "g"), *why = json_object_get(o, "error");

@@ -162,8 +162,8 @@ static Status no_result(const char *key, const char *name, Err *err)
     return fail_no_word(err, STATUS_BAD_DATA, key, name, "result", names, MEASURES_LISTED);
 }
 
-/* Read "p(NAME>NUMBER)", a share of simulations that is minimised, into *k, a measure of the order; another text says so.
- * Refused is what is the same for all designs, a per cent where the number is a share, and a preference of what is
+/* Read "p(NAME>NUMBER)", a share of simulations that is minimised, into *k, a measure of the order; another text says
+ * so. Refused is what is the same for all designs, a per cent where the number is a share, and a preference of what is
  * worse. */
 static Status take_chance(MeasureOrder *o, const char *key, const char *text, int *k, Err *err)
 {

@@ -85,8 +85,8 @@ static void end(Queue *q, size_t rank, Status status, const char *why)
     pthread_cond_broadcast(&q->news);
 }
 
-/* A worker that takes ahead does so only where there is enough for all. Of those that wait one worker takes no more than
- * leaves some for the others. */
+/* A worker that takes ahead does so only where there is enough for all. Of those that wait one worker takes no more
+ * than leaves some for the others. */
 size_t queue_take(Queue *q, size_t worker, int wait, size_t n_max, Task tasks[])
 {
     const Problem *p = q->problem;

@@ -58,7 +58,7 @@ Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, d
 size_t schema_find_objective(const Schema *schema, const char *name);
 
 /* *k: the one of that name among the first n of objectives and further results. Else "WHERE: NAME is no objective (of
- * more than n_obj: no result); did you mean ...?"; where: an option, "--NAME", for STATUS_USAGE, or what else it was read
- * from, for STATUS_BAD_DATA. */
+ * more than n_obj: no result); did you mean ...?"; where: an option, "--NAME", for STATUS_USAGE, or what else it was
+ * read from, for STATUS_BAD_DATA. */
 Status schema_pick(const Schema *schema, size_t n, const char *where, const char *name, size_t *k, Err *err);
 void schema_free(Schema *schema);

@@ -480,7 +480,8 @@ static Status list_record(const char *source, void *user, Err *err)
     return option_put_path(list->path[list->n++], source, err);
 }
 
-/* List motion.record alone, or all of the study; a sum over them, annual_loss, wants more of them and of the settings. */
+/* List motion.record alone, or all of the study; a sum over them, annual_loss, wants more of them and of the
+ * settings. */
 static Status list_records(const Settings *s, TowerUse use, RecordList *list, Err *err)
 {
     MeasureOrder order;

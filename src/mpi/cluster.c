@@ -96,8 +96,8 @@ int message_receive(int from, int tag, Message *m)
     return 1;
 }
 
-/* Rank 0 lets all others end, and drops what still comes until every rank has left; where one does not, or a rank failed,
- * the whole job is aborted. */
+/* Rank 0 lets all others end, and drops what still comes until every rank has left; where one does not, or a rank
+ * failed, the whole job is aborted. */
 void cluster_leave(int exit_code)
 {
     int is_over, is_whole = exit_code == 0;

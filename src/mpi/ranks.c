@@ -53,8 +53,9 @@ static Seat seat_of(const Ranks *r, size_t worker)
 
 /* -- messages ------------------------------------------------------------------------------------------------------ */
 
-/* Receive messages and give each to whom it concerns: an answer to the worker that waits for it, whatever else, as a sign
- * of life, to all of the rank. What should be an answer and is none goes to them all the same: it is no good one. */
+/* Receive messages and give each to whom it concerns: an answer to the worker that waits for it, whatever else, as a
+ * sign of life, to all of the rank. What should be an answer and is none goes to them all the same: it is no good
+ * one. */
 static void *receive(void *user)
 {
     Ranks *r = user;

@@ -156,8 +156,8 @@ static const Simulator OPENS = {.simulate = open_problem};
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-/* Open problems and say that this rank lives until rank 0 says that it is over; then leave. A task that takes longer than
- * a moment ends with the process. */
+/* Open problems and say that this rank lives until rank 0 says that it is over; then leave. A task that takes longer
+ * than a moment ends with the process. */
 Status serve(ReopenFn reopen, Err *err)
 {
     Service *s;
