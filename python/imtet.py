@@ -488,7 +488,10 @@ class Run(_Copied):
 
     def _read(self, db):
         text, n_var, provenance = db.execute("SELECT settings, n_var, provenance FROM run").fetchone()
-        self.settings, self.inputs = _read_settings(text), json.loads(provenance).get("inputs", {})
+        parser = configparser.RawConfigParser(delimiters="=", comment_prefixes=";")
+        parser.read_string(text)
+        self.settings = {f"{section}.{key}": value for section in parser for key, value in parser[section].items()}
+        self.inputs = json.loads(provenance).get("inputs", {})
         columns = [row[1] for row in db.execute("PRAGMA table_info(evaluation)")]
         finer = [row[1] for row in db.execute("PRAGMA table_info(finer)")]
         numbers = columns[columns.index("digest") + 1:]
@@ -518,7 +521,7 @@ class Run(_Copied):
     def front(self):
         """Record array of the designs on the front, by ascending ids."""
         d = self.designs
-        if self.settings["problem.noisy"] == "yes" or float(self.settings.get("problem.noise", 0)) > 0:
+        if self.settings["problem.noisy"] == "yes":
             raise NotImplementedError("of a noisy problem the front has means of evaluations: read front.csv")
         with np.errstate(invalid="ignore"):
             wanted = (d.outcome == "ok") & ~(d.violation > 0)
@@ -551,12 +554,6 @@ class Run(_Copied):
                 accuracy = (_ERRORS.get(accuracy) or float(accuracy)) * 2 ** (-1.5 * level)
             self._scenes[level] = Scene(None, **{**self.settings, "sim.accuracy": accuracy})
         return self._scenes[level].simulate(np.array([row[n] for n in self.variables]))
-
-
-def _read_settings(text):
-    parser = configparser.RawConfigParser(delimiters="=", comment_prefixes=";")
-    parser.read_string(text)
-    return {f"{section}.{key}": value for section in parser.sections() for key, value in parser[section].items()}
 
 
 def open_run(path):
