@@ -273,7 +273,7 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
         CHECK_OK(search_course(&s, &p, i ? SURROGATE_OFF : SURROGATE_ON, &c, &err), &err);
         assert_int_equal(c.n, 200);
         for (size_t j = 0; j < c.n; j++) {
-            first = c.counts[j] && j < 52 ? fmin(first, sum_of(&c, j)) : first;
+            first = j < 52 && c.counts[j] ? fmin(first, sum_of(&c, j)) : first;
             last = c.counts[j] ? fmin(last, sum_of(&c, j)) : last;
             assert_true(j == 0 || c.cpu_s[j] >= c.cpu_s[j - 1]);
         }

@@ -36,7 +36,7 @@ static void write_building(double k_factor, double m_factor, int top_first)
 static void warnings_of(const char *arguments, char keys[512])
 {
     size_t used = 0, i;
-    json_t *o = json_of(arguments), *w;
+    json_t *o = json_of("%s", arguments), *w;
     assert_int_equal(json_array_size(json_object_get(o, "faults")), 0);
     keys[0] = 0;
     json_array_foreach(json_object_get(o, "warnings"), i, w)
@@ -200,7 +200,7 @@ TEST(units_are_taken_from_the_comments_of_the_files)
         snprintf(text, sizeof text, "%s%.17g,0\n0,%.17g\n", CASES[i].M, 3e5 / CASES[i].mass, 3e5 / CASES[i].mass);
         write_in_place(path, text);
         snprintf(text, sizeof text, "building @/%s --json", folder);
-        json_t *o = json_of(text);
+        json_t *o = json_of("%s", text);
         assert_close(number(o, "mass_kg"), 6e5, 1e-12);
         const json_t *mode = json_array_get(json_object_get(o, "modes"), 0);
         assert_close(number(mode, "hz"), sqrt(1e3) * (sqrt(5) - 1) / (4 * M_PI), 1e-9);

@@ -30,7 +30,7 @@ TEST(optimize_and_polish_answer_as_json)
     assert_int_equal(json_integer_value(json_object_get(study, "simulated")), 60);
     snprintf(design, sizeof design, "simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
              json_integer_value(json_object_get(knee, "design")));
-    json_t *alone = json_of(design);
+    json_t *alone = json_of("%s", design);
     assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
     assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
     assert_true(json_object_get(json_object_get(study, "baselines"), "links") != NULL);

@@ -90,13 +90,13 @@ TEST(designs_off_the_front_stay_addressable)
     snprintf(word, sizeof word, "@/run:%ld", known.off);
     assert_same_number(j1_of(word), known.off_j1);
     snprintf(word, sizeof word, "evaluate @/run --design %ld --json", known.off);
-    json_t *o = json_of(word), *first = json_array_get(json_object_get(o, "records"), 0);
+    json_t *o = json_of("%s", word), *first = json_array_get(json_object_get(o, "records"), 0);
     assert_same_number(number(json_object_get(first, "with_core"), "j1_m"), known.off_j1);
     json_decref(o);
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
-    free(output_of(word));
+    free(output_of("%s", word));
     snprintf(word, sizeof word, "polish @/run --design %ld --evals 24", known.off);
-    char *said = output_of(word);
+    char *said = output_of("%s", word);
     assert_int_equal(strstr(said, "No improvement was found") != NULL, strstr(said, "\npolished") == NULL);
     free(said);
 }
@@ -170,7 +170,7 @@ TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its
     char words[2][400];
     snprintf(words[0], sizeof words[0], "evaluate @/run --design %ld --json", known.off);
     snprintf(words[1], sizeof words[1], SIMULATE "@/run:%ld", known.off);
-    json_t *o = json_of(words[0]), *one = json_of(words[1]);
+    json_t *o = json_of("%s", words[0]), *one = json_of("%s", words[1]);
     const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
     const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
     assert_less(0, number(wanted, "j3_g"));

@@ -462,7 +462,7 @@ static long impacts_with(double gap, const char *law, const char *engine)
         "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.duration_s=3.5 "
         "--set sim.engine=%s --set contact.law=%s",
         engine, law);
-    json_t *o = json_of(command);
+    json_t *o = json_of("%s", command);
     const long n = (long)number(o, "impacts");
     const Table t = table_of("one/contacts.csv");
     if (t.n_rows != (size_t)n)

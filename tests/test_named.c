@@ -68,11 +68,11 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
     char words[300];
     assert_true(e->level > 0);
     snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", e->id);
-    json_t *o = json_of(words);
+    json_t *o = json_of("%s", words);
     assert_same_number(number(o, "j3_g"), wanted);
     json_decref(o);
     strcat(words, " --set sim.accuracy=coarse");
-    o = json_of(words);
+    o = json_of("%s", words);
     assert_true(number(o, "j3_g") != wanted);
     json_decref(o);
     run_free(&run);

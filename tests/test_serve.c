@@ -485,7 +485,7 @@ TEST(what_if_under_another_motion_is_what_simulate_prints)
         "simulate @/runs/a/settings.ini --design @/runs/a/front.csv:%.0f --pga 0.41 --set motion.stretch=2.5 --set "
         "contact.restitution=0.55 --json",
         front.values[0]);
-    json_t *other = json_of(arguments);
+    json_t *other = json_of("%s", arguments);
     for (size_t k = 0; k < 7; k++)
         assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)),
                            number(other, NAMES[k]));
@@ -511,7 +511,7 @@ TEST(what_if_of_a_run_of_several_simulations_is_one_of_them)
              "simulate @/runs/d/settings.ini --design @/runs/d/front.csv:%.0f --json%s%s --pga 0.25", front.values[0],
              json_string_value(json_object_get(bounds, "options")),
              json_string_value(json_object_get(bounds, "pga_options")));
-    json_t *other = json_of(arguments);
+    json_t *other = json_of("%s", arguments);
     assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), 0)),
                        number(other, "j1_m"));
     assert_null(json_object_get(answer, "dominated_by"));

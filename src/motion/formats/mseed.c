@@ -28,8 +28,8 @@ static int parse_record(const char *bytes, size_t n, MSRecord **record)
     if (!MS_ISVALIDHEADER(bytes) || msr_parse((char *)bytes, left, record, 0, 0, 0) != 0)
         return -1;
     const MSRecord *r = *record;
-    const int encoding = r->encoding,
-              is_listed = encoding >= 0 && encoding < (int)sizeof HALF_BYTES && HALF_BYTES[encoding];
+    const int encoding = (unsigned char)r->encoding, /* -1, none, is no row of the table */
+        is_listed = encoding < (int)sizeof HALF_BYTES && HALF_BYTES[encoding];
     const int64_t room = (int64_t)r->reclen - r->fsdh->data_offset;
     if (r->reclen < 64 || (r->samplecnt > 0 && (r->fsdh->data_offset < 48 ||
                                                 r->samplecnt * (is_listed ? HALF_BYTES[encoding] : 1) > 2 * room)))
