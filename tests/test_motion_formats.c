@@ -1324,6 +1324,8 @@ TEST(a_record_behind_a_record_is_a_channel_in_every_format)
             assert_string_equal(m.format, "knet");
             assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-4);
             motion_free(&m);
+        } else {
+            free(t.text);
         }
     }
 }
