@@ -15,7 +15,7 @@
 
 #include "evaluate/consequences.h"
 #include "evaluate/evaluation.h"
-#include "sim/sim.h"
+#include "sim/result.h"
 
 /* What a measure needs beside a simulation; a set of bits. */
 enum {

@@ -27,6 +27,7 @@
 #pragma once
 
 #include "evaluate/measures.h"
+#include "scene/design.h"
 #include "sim/as_built.h"
 
 enum { TOWER_RECORDS_MAX = 64 }; /* of one design */
