@@ -1,6 +1,7 @@
 #include "scene/core_beam.h"
 
 #include "base/linalg.h"
+#include "base/units.h"
 
 /* ---- beams ---------------------------------------------------------------------------------------------------- */
 
@@ -197,9 +198,17 @@ double core_beam_dashpot_share(const CoreBeam *c)
     return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
 }
 
+/* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
+static void set_uplift(CoreBeam *c, double share)
+{
+    const double moment = c->base.anchors * foundation_uplift_nm(&c->base, c->base.weight_n + GRAVITY * c->mass_kg);
+    if (c->base.anchors > 0)
+        c->uplift = (Uplift){moment / c->base.rotation, c->base.rotation, share / (1 - share)};
+}
+
 static void set_base(CoreBeam *c, const double storey_m[])
 {
-    double z = 0;
+    double z = 0, share = 0;
     if (c->base.rotation == 0 && c->base.translation == 0)
         return;
     for (int j = 0; j < c->n; j++) {
@@ -209,6 +218,10 @@ static void set_base(CoreBeam *c, const double storey_m[])
             c->base_translation[i] += c->base.translation > 0 ? c->K[j * c->n + i] / c->base.translation : 0;
         }
     }
+    z = 0;
+    for (int j = 0; j < c->n; j++)
+        share += c->base_rotation[j] * (z += storey_m[j]);
+    set_uplift(c, share);
     for (int i = 0; i < c->n; i++)
         c->zeta[i] += core_beam_base_loss(c, c->omega[i], c->phi + i, c->n) / (2 * c->omega[i]);
 }

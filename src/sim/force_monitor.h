@@ -4,7 +4,7 @@
  *
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
- * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core; overturning
+ * less Kc z (theta - d) where the mat of the core lifts (scene/uplift.h), less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core; overturning
  * is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
  * alone, also where the building's model has more degrees of freedom: what the others carry acts on the floors as
  * statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a +

@@ -11,7 +11,7 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
 {
     memset(model, 0, sizeof *model);
     const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n + 1);
-    const size_t need = (2 * n_pad + (size_t)n + 1 + 3) * m_max + 3 * n_pad;
+    const size_t need = (2 * n_pad + (size_t)n + 2 + 3) * m_max + 3 * n_pad;
     double *p = aligned_alloc(64, need * sizeof *p);
     model->like = malloc((size_t)nb_max * sizeof *model->like);
     model->store = p;
@@ -26,7 +26,7 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
     model->R = p;
     model->RT = model->R + m_max * n_pad;
     model->B = model->RT + m_max * n_pad;
-    model->omega = model->B + m_max * (size_t)(n + 1);
+    model->omega = model->B + m_max * (size_t)(n + 2);
     model->zeta = model->omega + m_max;
     model->gamma = model->zeta + m_max;
     model->gap = model->gamma + m_max;
@@ -83,7 +83,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     model->nb = building->n;
     model->nc = core ? n : 0;
     model->m = model->nb + model->nc;
-    model->n_devices = model->has_mass = 0;
+    model->n_devices = model->has_mass = model->may_lift = 0;
     model->m_pad = padded(model->m);
     memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
@@ -146,10 +146,25 @@ void model_add_device(SimModel *model, const Device *device, int on_mass)
         b[last] = -1 / model->gamma[last];
 }
 
+void model_add_uplift(SimModel *model, const CoreBeam *core, int joined)
+{
+    const int first = joined ? 0 : model->nb, end = joined ? model->nb : model->m;
+    double *b = model->B + (size_t)model->n_devices * (size_t)model->m_pad;
+    if (core->uplift.theta_up == 0)
+        return;
+    model->may_lift = 1;
+    model->device[model->n_devices++] = (Device){.floor = -1, .lifts = core->uplift, .exponent = 1};
+    memset(b, 0, (size_t)model->m_pad * sizeof *b);
+    for (int i = first; i < end; i++)
+        for (int j = 0; j < core->n; j++) /* R is -phi of the core's own modes */
+            b[i] += (joined ? 1 : -1) * core->base_rotation[j] * model->R[i * model->n_pad + j];
+}
+
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result)
 {
-    for (int e = 0; e < model->n_devices; e++) {
-        result->device[model->has_mass && e + 1 == model->n_devices ? FLOORS_MAX : model->device[e].floor] = peak[e];
+    const int n = model->n_devices - model->may_lift;
+    for (int e = 0; e < n; e++) {
+        result->device[model->has_mass && e + 1 == n ? FLOORS_MAX : model->device[e].floor] = peak[e];
         result->stroke_m = fmax(result->stroke_m, peak[e].stroke);
         result->dashpot_n = fmax(result->dashpot_n, peak[e].force);
     }

@@ -190,10 +190,10 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     return status;
 }
 
-/* A link or friction link on every floor, the tuned mass. */
-static int sim_devices_max(const DesignSpace *s)
+/* A link or friction link on every floor, the tuned mass, the mat that lifts. */
+static int sim_devices_max(const DesignSpace *s, const CoreOptions *core)
 {
-    return (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0);
+    return (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0) + foundation_may_lift(core->foundation);
 }
 
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
@@ -212,8 +212,9 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
         status = floor_filter_create(&w->filter, scene->building.n, scene->options.sim.filter_hz, err);
     sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
-        status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n,
-                                            scene->building.yields, sim_devices_max(&scene->design), err);
+        status =
+            scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n, scene->building.yields,
+                                       sim_devices_max(&scene->design, &scene->options.core), err);
     if (status == STATUS_OK)
         *out = w;
     else
@@ -300,9 +301,17 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
     for (int j = 0; j < model->n; j++)
         force[j] += (s->force ? s->force[j] : 0) + motion_force(motion, j, s->t);
     memset(out, 0, (size_t)model->n * sizeof *out);
+    const double *lifts = NULL; /* of the joined core, whose modes are the building's */
+    double lifted = 0, slope;
+    if (model->may_lift && model->nc == 0) {
+        lifts = model->B + (size_t)(model->n_devices - 1) * (size_t)model->m_pad;
+        for (int i = 0; i < model->nb; i++)
+            lifted += lifts[i] * s->q[i];
+        lifted = device_elastic(&model->device[model->n_devices - 1], lifted, &slope);
+    }
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
-        double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
+        double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]) - lifted * (lifts ? lifts[i] : 0);
         for (int j = 0; j < model->n; j++)
             pull += row[j] * force[j];
         for (int j = 0; j < model->n; j++)
@@ -490,6 +499,8 @@ static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, dou
         if (d->bumper[j] >= 0)
             w->model.contact[j].bumper = built * d->bumper[j];
     add_devices(w, d, exponent);
+    if (core)
+        model_add_uplift(&w->model, core, 0);
     return STATUS_OK;
 }
 
@@ -518,6 +529,8 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
         force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
     if (status == STATUS_OK)
         status = model_set(&w->model, w->options, w->building, NULL, NULL, err);
+    if (status == STATUS_OK)
+        model_add_uplift(&w->model, &w->core, 1);
     if (status == STATUS_OK)
         status = run_engine(w, result, err);
     if (status == STATUS_OK)

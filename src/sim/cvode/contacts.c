@@ -36,7 +36,7 @@ static double device_pull(const SimModel *model, int e, const double q[], const 
     double slope;
     const double rate = apart(model, e, v), viscous = device_viscous(&model->device[e], rate, &slope);
     *power += rate * viscous;
-    return viscous + model->device[e].stiffness * apart(model, e, q);
+    return viscous + device_elastic(&model->device[e], apart(model, e, q), &slope);
 }
 
 static double add_devices(const SimModel *model, const double q[], const double v[], double g[])
@@ -55,7 +55,7 @@ double devices_look(const SimModel *model, const double q[], const double v[], D
         if (peak)
             peak[e] = (DevicePeak){fmax(peak[e].stroke, fabs(d)),
                                    fmax(peak[e].force, fabs(device_pull(model, e, q, v, &power)))};
-        held += 0.5 * model->device[e].stiffness * d * d;
+        held += device_held(&model->device[e], d);
     }
     return held;
 }
@@ -200,7 +200,8 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
     }
     for (int e = 0; e < model->n_devices; e++) {
         double power = 0;
-        force[model->device[e].floor] -= device_pull(model, e, q, v, &power);
+        if (model->device[e].floor >= 0)
+            force[model->device[e].floor] -= device_pull(model, e, q, v, &power);
     }
 }
 

@@ -166,6 +166,7 @@ typedef struct FastWork {
     int yielding_level;        /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
     double storey_rate;        /* [1/s2] times the square of a step: what the other storeys change of one, at most */
     int yielding;              /* some storey did in the last step */
+    int lifting;               /* the mat of the core is up at the end of the last step */
     double hysteresis;         /* [J] */
     m22 *newton_g, *newton_LU; /* (rows, rows) of Active */
     double LU_of;              /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
@@ -205,7 +206,7 @@ typedef struct FastWork {
     /* energy account and counts */
     double contact_lost, contact_clamped;
     double device_taken;                 /* [J] */
-    DevicePeak device[FLOORS_MAX + 1];   /* (n_devices) */
+    DevicePeak device[FLOORS_MAX + 2];   /* (n_devices) */
     double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
     long closings[FLOORS_PAD_MAX];
     long impacts, v0_limited, steps, flights, forces;
