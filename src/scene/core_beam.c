@@ -198,12 +198,20 @@ double core_beam_dashpot_share(const CoreBeam *c)
     return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
 }
 
+/* [s] A dashpot that gives way sooner than this is none. */
+static const double DASHPOT_FELT_S = 1e-4;
+
 /* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
 static void set_uplift(CoreBeam *c, double share)
 {
     const double moment = c->base.anchors * foundation_uplift_nm(&c->base, c->base.weight_n + GRAVITY * c->mass_kg);
+    const double whole = c->base.rotation / (1 - share), C = c->base.rotation_dashpot;
     if (c->base.anchors > 0)
-        c->uplift = (Uplift){moment / c->base.rotation, c->base.rotation, share / (1 - share)};
+        c->uplift = (Uplift){.theta_up = moment / c->base.rotation,
+                             .rotation = c->base.rotation,
+                             .whole = whole,
+                             .dashpot = C > DASHPOT_FELT_S * whole ? C : 0,
+                             .cone_s = c->base.cone_s};
 }
 
 static void set_base(CoreBeam *c, const double storey_m[])

@@ -5,7 +5,7 @@
  * F pulls them together. a = 1: a linear dashpot; else F = c |d'|^a but for rates below v_r = 1 mm/s, where that has no
  * slope; a = 0: friction of the force c, with v_r = 1 cm/s: what sticks creeps, at 1 mm/s under c / 10.
  *
- * The mat of a core that lifts is one more (scene/uplift.h), in the place of k d.
+ * The mat of a core that lifts is one more, F by scene/uplift.h.
  *
  * Energy  int F d' dt = k d^2 / 2 (held) + lost
  *
@@ -22,21 +22,6 @@ typedef struct {
     double stiffness;         /* [N/m] k; 0: none */
     double damping, exponent; /* [N (s/m)^a] c, [-] a */
 } Device;
-
-/* The part of d; *slope: dF/dd. */
-static inline double device_elastic(const Device *e, double d, double *slope)
-{
-    if (e->floor < 0)
-        return uplift_force(&e->lifts, d, slope);
-    *slope = e->stiffness;
-    return e->stiffness * d;
-}
-
-/* [J] */
-static inline double device_held(const Device *e, double d)
-{
-    return e->floor < 0 ? uplift_held(&e->lifts, d) : 0.5 * e->stiffness * d * d;
-}
 
 /* The part of the rate v [m/s]; *slope: dF/dv. */
 static inline double device_viscous(const Device *e, double v, double *slope)

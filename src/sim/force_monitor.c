@@ -17,7 +17,7 @@ enum { LANES8 = 8 };
 static const double SLOW_SPACING = 4e-3;
 
 typedef struct {
-    v8 lift;              /* of a unit of theta - d of the mat that lifts */
+    v8 mat;               /* of a unit of F of the mat that lifts */
     v8 last, first, peak; /* at the last point, the one before; over continuous time */
     int outputs;          /* of the eight */
     /* |output| is at most the sum of these times ForceReach.by */
@@ -41,9 +41,6 @@ struct ForceMonitor {
     int core_modes, nc, own_modes, has_residual, with_storeys, yields;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
-    int may_lift;   /* the mat of the core: */
-    double lifted;  /* [rad] theta - d at this point (scene/uplift.h) */
-    double *turned; /* (nb or n) d by the modes of the building the core is joined to, or of the core */
     SceneOptions options;
     double weight_n, thickness[2]; /* [N] of the floors; [m] at base and top */
     double end;                    /* [s] of the run: its last point is never left out */
@@ -88,7 +85,6 @@ static void layout(void *object, Carve *c)
     ForceMonitor *m = object;
     CARVE(c, m->group, m->n_groups);
     CARVE(c, m->due, m->n_groups);
-    CARVE(c, m->turned, m->nb > m->n ? m->nb : m->n);
     for (int i = 0; i < N_REACHES; i++)
         CARVE(c, m->limit[i], eights(m->n_groups) * LANES8);
     for (int i = 0; i < m->n_groups; i++)
@@ -214,37 +210,30 @@ static void set_core_rows(ForceMonitor *m, const CoreBeam *core, int modes, cons
     }
 }
 
-/* What the mat adds where it lifts, shears and moments of the forces Kc z (theta - d) on the nodes; `modes` of shape
- * phi. */
-static void set_lift(ForceMonitor *m, const CoreBeam *core, int modes, const double phi[])
+/* What the mat adds where it lifts, shears and moments of the forces -Kc z g = F e on the nodes. */
+static void set_mat(ForceMonitor *m, const CoreBeam *core)
 {
     const int n = m->n;
     double outputs[2 * FLOORS_MAX];
-    m->may_lift = core && core->uplift.theta_up > 0;
-    m->lifted = 0;
     for (int i = 0; i < m->n_groups; i++)
-        m->group[i].lift = (v8){0};
-    if (!m->may_lift)
+        m->group[i].mat = (v8){0};
+    if (!core || core->uplift.theta_up == 0)
         return;
     storey_forces(m, core->K, m->z + 1, 1, outputs, outputs + n);
-    for (int k = 0; k < 2 * n; k++) /* Kc z = (1 + a / K) K_lin z */
-        m->group[k / LANES8].lift[k % LANES8] = -(1 + core->uplift.ratio) * outputs[k];
+    for (int k = 0; k < 2 * n; k++) /* K z = K_theta e */
+        m->group[k / LANES8].mat[k % LANES8] = outputs[k] / core->base.rotation;
     for (int k = 0; k < 2; k++)
-        m->group[m->at_both].lift[k] = -(1 + core->uplift.ratio) * outputs[k * n];
-    for (int i = 0; i < modes; i++) {
-        m->turned[i] = 0;
-        for (int j = 0; j < n; j++)
-            m->turned[i] += core->base_rotation[j] * phi[j * modes + i];
-    }
+        m->group[m->at_both].mat[k] = outputs[k * n] / core->base.rotation;
+    for (int i = 0; i < m->at_slow; i++)
+        for (int k = 0; k < LANES8; k++)
+            m->group[i].reach[REACH_MAT][k] = fabs(m->group[i].mat[k]);
 }
 
-/* Squares of rows (n, 8) over those of omega, NULL: 1. turned: of a mat that may lift, |theta - d| <= |d| K / a. */
-static void set_squares(const ForceMonitor *m, int n, const double rows[], const double omega[], const double turned[],
-                        const v8 *lift, double squares[])
+/* Squares of rows (n, 8) over those of omega, NULL: 1. */
+static void set_squares(int n, const double rows[], const double omega[], double squares[])
 {
     for (int i = 0; i < n * LANES8; i++) {
-        const double more = turned ? fabs((*lift)[i % LANES8] * turned[i / LANES8]) / m->core->uplift.ratio : 0;
-        const double r = (fabs(rows[i]) + more) / (omega ? omega[i / LANES8] : 1);
+        const double r = rows[i] / (omega ? omega[i / LANES8] : 1);
         squares[i] = r * r;
     }
 }
@@ -254,10 +243,9 @@ static void set_reaches(ForceMonitor *m, const Building *b, const CoreBeam *core
     for (int i = 0; i < m->n_groups; i++) {
         Group *g = &m->group[i];
         if (g->building)
-            set_squares(m, m->nb, g->building, g->of_velocities ? NULL : b->model.omega,
-                        m->may_lift && m->own_modes == 0 ? m->turned : NULL, &g->lift, g->building_squares);
+            set_squares(m->nb, g->building, g->of_velocities ? NULL : b->model.omega, g->building_squares);
         if (g->core && m->own_modes > 0)
-            set_squares(m, m->n, g->core, core->omega, m->may_lift ? m->turned : NULL, &g->lift, g->core_squares);
+            set_squares(m->n, g->core, core->omega, g->core_squares);
     }
 }
 
@@ -282,9 +270,12 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->thickness[0] = core ? thickness[0] : 0;
     m->thickness[1] = core ? thickness[1] : 0;
     set_building_rows(m, b);
-    const double *const phi = joined ? b->model.phi : core ? core->phi : NULL;
-    set_core_rows(m, core, joined ? m->nb : n, phi, joined ? ROW_BUILDING : ROW_CORE);
-    set_lift(m, core, joined ? m->nb : n, phi);
+    set_core_rows(m, core, joined ? m->nb : n,
+                  joined ? b->model.phi
+                  : core ? core->phi
+                         : NULL,
+                  joined ? ROW_BUILDING : ROW_CORE);
+    set_mat(m, core);
     m->yields = b->yields;
     if (b->yields)
         set_plastic_rows(m, b);
@@ -405,20 +396,9 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
             more += ((const v8 *)g->force)[j] * p->force[j];
         }
     }
-    if (m->lifted != 0)
-        more += g->lift * m->lifted;
+    if (p->mat_nm != 0)
+        more += g->mat * p->mat_nm;
     *out = now + more;
-}
-
-/* theta - d. */
-static double lifted_at(const ForceMonitor *m, const ForcePoint *p)
-{
-    const Uplift *u = &m->core->uplift;
-    const int n = m->own_modes > 0 ? m->core_modes : m->nb;
-    double d = 0, slope;
-    for (int i = 0; i < n; i++)
-        d += m->turned[i] * (m->own_modes > 0 ? p->core_q : p->building_q)[i];
-    return -uplift_force(u, d, &slope) / (u->rotation * (1 + u->ratio));
 }
 
 CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
@@ -457,8 +437,6 @@ CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
 
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p)
 {
-    if (m->may_lift)
-        m->lifted = lifted_at(m, p);
     follow(m, p);
 }
 
@@ -658,9 +636,7 @@ static void report_foundation(const ForceMonitor *m, SimForces *out)
 {
     const Foundation f = m->nc > 0 ? m->core->base : (Foundation){0};
     const double weight = m->nc > 0 ? f.weight_n + GRAVITY * m->core->mass_kg : 0;
-    out->base_rotation_rad = f.rotation == 0 ? NAN
-                             : m->may_lift   ? uplift_rotation(&m->core->uplift, out->core_overturning_nm)
-                                             : out->core_overturning_nm / f.rotation;
+    out->base_rotation_rad = f.rotation > 0 ? out->core_overturning_nm / f.rotation : NAN;
     out->base_translation_m = f.translation > 0 ? out->core_base_shear_n / f.translation : NAN;
     out->uplift_ratio = f.radius_m > 0 ? out->core_overturning_nm / foundation_uplift_nm(&f, weight) : NAN;
 }

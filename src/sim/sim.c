@@ -301,17 +301,11 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
     for (int j = 0; j < model->n; j++)
         force[j] += (s->force ? s->force[j] : 0) + motion_force(motion, j, s->t);
     memset(out, 0, (size_t)model->n * sizeof *out);
-    const double *lifts = NULL; /* of the joined core, whose modes are the building's */
-    double lifted = 0, slope;
-    if (model->may_lift && model->nc == 0) {
-        lifts = model->B + (size_t)(model->n_devices - 1) * (size_t)model->m_pad;
-        for (int i = 0; i < model->nb; i++)
-            lifted += lifts[i] * s->q[i];
-        lifted = device_elastic(&model->device[model->n_devices - 1], lifted, &slope);
-    }
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
-        double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]) - lifted * (lifts ? lifts[i] : 0);
+        double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
+        if (model->may_lift) /* 0 but of a core that is joined */
+            pull -= s->mat_nm * model->B[(model->n_devices - 1) * model->m_pad + i];
         for (int j = 0; j < model->n; j++)
             pull += row[j] * force[j];
         for (int j = 0; j < model->n; j++)
@@ -577,6 +571,8 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(w->is_joined ? run_joined(w, d, result, err) : run_design(w, kind, *d, result, err));
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
+        if (result->mat_rotation_rad > 0)
+            result->forces.base_rotation_rad = result->mat_rotation_rad;
         result->forces_known = 1;
         if (w->is_joined) /* what connects them is not resolved */
             result->forces.contact_force_max_n = NAN;

@@ -12,6 +12,7 @@ typedef struct {
     const SimModel *model;
     PeakMonitor peaks;
     double damped[MODES_MAX], input, lost, clamp, devices; /* [J] */
+    double mat_turned;                                     /* [rad] most of the mat that lifts */
     DevicePeak device[FLOORS_MAX + 2];                     /* (n_devices) */
     long steps, evaluations;
 } EnergyAccount;

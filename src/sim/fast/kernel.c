@@ -551,12 +551,14 @@ static void report_energies(FastWork *k, SimResult *r)
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
-    const double held = held_by_devices(k), lifted = held_by_mat(k);
+    const double held = held_by_devices(k), of_mat = held_by_mat(k);
     r->device_loss_j = k->device_taken - held;
-    r->kinetic_strain_j += held + lifted;
+    r->kinetic_strain_j += held + of_mat;
+    *(k->nc > 0 ? &r->damped_core_j : &r->damped_building_j) += k->mat[MAT_WORK] - of_mat;
+    r->mat_rotation_rad = k->mat_turned;
     model_report_devices(k->model, k->device, r);
     const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
-                                k->device_taken - lifted - (yields(k) ? report_storeys(k, r) : 0);
+                                k->device_taken - k->mat[MAT_WORK] - (yields(k) ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
