@@ -376,10 +376,10 @@ TEST(the_mat_turns_as_its_moment_balances_and_its_energy_is_the_work_of_its_forc
     for (int kind = 0; kind < 3; kind++) {
         const double ratio = pow(10, kind - 1);
         const Uplift u = {.theta_up = 2e-4, .rotation = 5e11, .whole = 5e11 * (1 + ratio), .dashpot = 1, .cone_s = 1};
-        double work = 0, slope, before = 0;
+        double work = 0, before = 0;
         for (int i = 0; i <= 4000; i++) {
-            const double d = i * 1e-6, g = uplift_lifted(&u, -d, &slope);
-            double rate[MAT_STATES], other;
+            const double d = i * 1e-6, g = uplift_lifted(&u, -d);
+            double rate[MAT_STATES];
             assert_less(fabs(spring_moment(&u, g - d) + (u.whole - u.rotation) * (g - d) + u.whole * d),
                         1e-12 * u.whole * 4e-3);
             if (d < u.theta_up)
@@ -389,9 +389,6 @@ TEST(the_mat_turns_as_its_moment_balances_and_its_energy_is_the_work_of_its_forc
             work += 0.5 * (before - u.whole * g) * -1e-6 * (i > 0);
             before = -u.whole * g;
             assert_less(fabs(uplift_held(&u, -d, (double[]){g, 0, 0}) - work), 1e-5 * u.whole * 4e-3 * 4e-3);
-            assert_less(
-                fabs((uplift_lifted(&u, -d - 1e-9, &other) - uplift_lifted(&u, -d + 1e-9, &other)) / -2e-9 - slope),
-                1e-2 * (1 + slope));
         }
     }
 }

@@ -29,12 +29,11 @@ typedef struct {
 /* [rad], [rad/s] g and s; int F d' dt since the start [J]. Without a dashpot the first alone, and it follows from d. */
 enum { MAT_LIFTED, MAT_CONE, MAT_WORK, MAT_STATES };
 
-/* [rad] g where there is no dashpot, by Newton's method from below; *slope: dg/dd. */
-static inline double uplift_lifted(const Uplift *u, double d, double *slope)
+/* [rad] g where there is no dashpot, by Newton's method from below. */
+static inline double uplift_lifted(const Uplift *u, double d)
 {
     const double lambda = fabs(d) / u->theta_up, whole = u->whole / u->rotation, a = whole - 1;
     double x = lambda;
-    *slope = 0;
     if (!(lambda > 1))
         return 0;
     for (int i = 0; i < 60; i++) {
@@ -43,7 +42,6 @@ static inline double uplift_lifted(const Uplift *u, double d, double *slope)
         if (!(step > 1e-9 * x)) /* what is left is of its square */
             break;
     }
-    *slope = whole / (1 / (x * sqrt(x)) + a) - 1;
     return copysign((x - lambda) * u->theta_up, d);
 }
 

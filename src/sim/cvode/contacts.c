@@ -56,12 +56,11 @@ MatState contacts_mat(const Contacts *c, const double q[])
 {
     const int e = c->model->n_devices - 1;
     const Uplift *u = &c->model->device[e].lifts;
-    double slope;
     MatState s = {.d = apart(c->model, e, q)};
     if (c->mat)
         memcpy(s.y, c->mat, sizeof s.y);
     else
-        s.y[MAT_LIFTED] = uplift_lifted(u, s.d, &slope);
+        s.y[MAT_LIFTED] = uplift_lifted(u, s.d);
     s.held = uplift_held(u, s.d, s.y);
     s.taken = c->mat ? s.y[MAT_WORK] : s.held;
     return s;
