@@ -13,9 +13,9 @@
  *              all in every scene, the largest change that is left out is put back, until it is
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
- * core, a mat that lifts from it where its radius is given (behind the ground, whose setting it shares: where the ground
- * is left out, so is it), storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps:
- * the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
+ * core, a mat that lifts from it where its radius is given (behind the ground, whose setting it shares: it goes with
+ * the ground), storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the
+ * steps: the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
  * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The objectives
  * and limits of the settings have no part in it: some need an effect that is left out.
  *

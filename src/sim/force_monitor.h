@@ -4,8 +4,8 @@
  *
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
- * less Kc z g where the mat of the core lifts (scene/uplift.h), less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core; overturning
- * is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
+ * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core, with forces
+ * Kc v - Kc z g where its mat lifts (scene/uplift.h); overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
  * alone, also where the building's model has more degrees of freedom: what the others carry acts on the floors as
  * statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a +
  * sum_j R_ij f_j (mode acceleration method). Peaks are taken from points that the engine gives in the order of time,
@@ -81,7 +81,8 @@ enum {
     N_REACHES
 };
 typedef struct {
-    /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2]; [m] plastic drift; [N m] F of the mat */
+    /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2]; [m] plastic drift;
+     * [N m] F of the mat */
     double by[N_REACHES];
 } ForceReach;
 void force_monitor_energies(ForceMonitor *m, const double building[], const double core[]);

@@ -12,8 +12,8 @@
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
  * since sum_{i<nb} R_ij gamma_i = 1: the motion of the ground is in the span of the building's modes.
  *
- * A device e (sim/device.h) adds -B_ei F_e to mode i; the mat of a core that lifts is the last. The tuned mass is the last mode, of frequency 0, which moves no
- * floor: x = q / sqrt(mass) from the ground.
+ * A device e (sim/device.h) adds -B_ei F_e to mode i; the mat of a core that lifts is the last one. The tuned mass is
+ * the last mode, of frequency 0, which moves no floor: x = q / sqrt(mass) from the ground.
  *
  * A floor that may go right (u > v) by g_R and left by g_L has gap = (g_R + g_L) / 2 around middle = (g_R - g_L) / 2.
  *
