@@ -15,9 +15,9 @@
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
  * core, a mat that lifts from it where its radius is given (behind the ground, whose setting it shares: it goes with
  * the ground), storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the
- * steps: the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
- * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The objectives
- * and limits of the settings have no part in it: some need an effect that is left out.
+ * steps: the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and
+ * all modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The
+ * objectives and limits of the settings have no part in it: some need an effect that is left out.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
  * that (scene/yielding.h): where P-delta softens it, so that the change by P-delta has that in it as well.

@@ -5,12 +5,12 @@
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
  * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core, with forces
- * Kc v - Kc z g where its mat lifts (scene/uplift.h); overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
- * alone, also where the building's model has more degrees of freedom: what the others carry acts on the floors as
- * statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a +
- * sum_j R_ij f_j (mode acceleration method). Peaks are taken from points that the engine gives in the order of time,
- * with a parabola through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of
- * a component of frequency w.
+ * Kc v - Kc z g where its mat lifts (scene/uplift.h); overturning is M_1. Both are linear in the modal coordinates:
+ * row i of a table of outputs belongs to mode i. K is of the floors alone, also where the building's model has more
+ * degrees of freedom: what the others carry acts on the floors as statics distribute it. Core modes that an engine
+ * left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j (mode acceleration method). Peaks are
+ * taken from points that the engine gives in the order of time, with a parabola through three of them wherever the
+ * middle one is the largest: spaced by h they miss (w h)^4 / 400 of a component of frequency w.
  *
  *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
  *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
