@@ -55,7 +55,8 @@ static void set_anchors(const char *now, LadderEffect *e)
 {
     const char *word = strstr(now, "anchors=");
     e->is_set = word != NULL;
-    snprintf(e->with, sizeof e->with, "%s%s", now, word ? "" : " anchors=1");
+    const char *const weight = " anchors=1";
+    snprintf(e->with, sizeof e->with, "%.*s%s", (int)(sizeof e->with - strlen(weight) - 1), now, word ? "" : weight);
     if (word)
         snprintf(e->without, sizeof e->without, "%.*s%s", (int)(word - now), now, word + strcspn(word, " "));
 }
