@@ -14,6 +14,7 @@
 static const double SLOW_SPACING = 4e-3;
 
 typedef struct {
+    v8 mat;               /* of a unit of F of the mat that lifts */
     v8 last, first, peak; /* at the last point, the one before; over continuous time */
     int outputs;          /* of the eight */
     /* |output| is at most the sum of these times ForceReach.by */
@@ -194,6 +195,25 @@ static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, i
     }
 }
 
+/* What the mat adds where it lifts, shears and moments of the forces -Kc z g = F e on the nodes. */
+static void set_mat(ForceMonitor *m, const CoreBeam *core)
+{
+    const int n = m->n;
+    double outputs[2 * FLOORS_MAX];
+    for (int i = 0; i < m->n_groups; i++)
+        m->group[i].mat = (v8){0};
+    if (!core || core->uplift.theta_up == 0)
+        return;
+    storey_forces(m, core->K, m->z + 1, 1, outputs, outputs + n);
+    for (int k = 0; k < 2 * n; k++) /* K z = K_theta e */
+        m->group[k / LANES8].mat[k % LANES8] = outputs[k] / core->base.rotation;
+    for (int k = 0; k < 2; k++)
+        m->group[m->at_both].mat[k] = outputs[k * n] / core->base.rotation;
+    for (int i = 0; i < m->at_slow; i++)
+        for (int k = 0; k < LANES8; k++)
+            m->group[i].reach[REACH_MAT][k] = fabs(m->group[i].mat[k]);
+}
+
 /* Squares of rows (n, 8) over those of omega, NULL: 1. */
 static void set_squares(int n, const double rows[], const double omega[], double squares[])
 {
@@ -235,6 +255,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
         if (g->core && m->own_modes > 0)
             set_squares(n, g->core, core->omega, g->core_squares);
     }
+    set_mat(m, core);
 }
 
 /* -- points ----------------------------------------------------------------------------------------------------- */
@@ -332,6 +353,8 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
             more += ((const v8 *)g->force)[j] * p->force[j];
         }
     }
+    if (p->mat_nm != 0)
+        more += g->mat * p->mat_nm;
     *out = now + more;
 }
 

@@ -27,6 +27,7 @@ typedef struct {
     long impacts, floored;                                              /* contact onsets, those with v0 limited */
     OnsetLog *log;                                                      /* NULL: none */
     ForceMonitor *forces;                                               /* NULL: none */
+    const double *mat;                                                  /* (MAT_STATES); NULL: it has no dashpot */
     double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX]; /* [s], [N], [W] at the last record */
 } Contacts;
 
@@ -48,6 +49,12 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
 
 /* [J] In the springs of the devices. peak (n_devices; NULL: none) is raised to what each reaches here. */
 double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[]);
+
+/* The mat of a core that may lift: [rad] d; [J] held, taken from the modes so far. */
+typedef struct {
+    double d, y[MAT_STATES], held, taken;
+} MatState;
+MatState contacts_mat(const Contacts *c, const double q[]);
 
 /* By overlap: the approach speed that a force on floor j, touching on side s, is to be computed with. */
 double contacts_speed(const Contacts *c, int j, int s);

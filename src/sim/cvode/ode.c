@@ -19,9 +19,32 @@ static int storeys_at(const Ode *o)
     return o->with_energies ? 3 * o->model->m + 3 + (o->model->n_devices > 0) : 2 * o->model->m;
 }
 
-int ode_size(const Ode *o)
+/* Where the states of the mat stand that lifts and has a dashpot. */
+static int mat_at(const Ode *o)
 {
     return storeys_at(o) + (o->model->yields ? 2 * o->model->n : 0);
+}
+
+static const Uplift *mat_of(const Ode *o)
+{
+    return &o->model->device[o->model->n_devices - 1].lifts;
+}
+
+static int has_mat_states(const Ode *o)
+{
+    return o->with_energies && o->model->may_lift && mat_of(o)->dashpot > 0;
+}
+
+int ode_size(const Ode *o)
+{
+    return mat_at(o) + (has_mat_states(o) ? MAT_STATES : 0);
+}
+
+/* Contacts and devices at a state. */
+static ContactPower add_contacts(Ode *o, const double y[], double g[])
+{
+    o->contacts.mat = has_mat_states(o) ? y + mat_at(o) : NULL;
+    return contacts_add(&o->contacts, y, y + o->model->m, g);
 }
 
 int ode_n_roots(const Ode *o)
@@ -80,7 +103,7 @@ CLONED int ode_add_loads(Ode *o, double t, const double y[], double dv[], double
     const SimModel *model = o->model;
     double check = 0;
     *a = ground(o, t);
-    *power = contacts_add(&o->contacts, y, y + model->m, dv);
+    *power = add_contacts(o, y, dv);
     if (model->yields)
         storeys_add(model, y + storeys_at(o), dv);
     power->pushed = add_forces(o, t, y + model->m, dv);
@@ -111,6 +134,10 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
         rest[2] = power.clamp;
         if (model->n_devices > 0)
             rest[3] = power.devices;
+    }
+    if (has_mat_states(o)) {
+        const double *row = model->B + (model->n_devices - 1) * model->m_pad;
+        uplift_rates(mat_of(o), dot_product(m, row, y), dot_product(m, row, v), y + mat_at(o), dq + mat_at(o));
     }
     if (model->yields) {
         const double *p = y + storeys_at(o);
@@ -200,6 +227,8 @@ static void set_tolerances(const Ode *o, double level)
     }
     for (int i = 2 * m; i < ode_size(o); i++)
         tolerance[i] = level * momentum * momentum;
+    for (int i = MAT_LIFTED; has_mat_states(o) && i <= MAT_CONE; i++)
+        tolerance[mat_at(o) + i] = level * mat_of(o)->theta_up;
     for (int j = 0; model->yields && j < model->n; j++)
         if (model->yield_n_m[j] > 0)
             tolerance[storeys_at(o) + j] = level * model->yield_m[j];
@@ -241,6 +270,12 @@ void ode_release(Ode *o)
     SUNContext_Free(&o->context);
 }
 
+/* [N m] F of the mat. */
+static double mat_nm(const Ode *o, const double y[])
+{
+    return o->model->may_lift ? -mat_of(o)->whole * contacts_mat(&o->contacts, y).y[MAT_LIFTED] : 0;
+}
+
 /* Shows a state to who asked for samples. */
 static void send_sample(Ode *o, double t, double spacing, const double y[])
 {
@@ -248,6 +283,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
     const int m = model->m;
     double force[FLOORS_MAX];
     contacts_forces(&o->contacts, y, y + m, force);
+    o->contacts.mat = has_mat_states(o) ? y + mat_at(o) : NULL;
     SimSample s = {.t = t,
                    .spacing = spacing,
                    .ground = ground(o, t),
@@ -258,6 +294,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
                    .v = y + m,
                    .force = force,
                    .plastic = model->yields ? y + storeys_at(o) : NULL,
+                   .mat_nm = mat_nm(o, y),
                    .input_j = NAN,
                    .contacts_j = NAN};
     if (o->with_energies) {
@@ -272,6 +309,8 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
         s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken;
         if (model->n_devices > 0)
             s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, o->account.device);
+        if (model->may_lift)
+            s.contacts_j += contacts_mat(&o->contacts, y).taken;
     }
     o->options->sample(&s, o->options->sample_user);
 }
@@ -301,12 +340,17 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     const SimModel *model = o->model;
     double contact[MODES_MAX] = {0}, force[FLOORS_MAX] = {0};
     o->a_sampled = ground(o, t);
-    o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
+    o->power_sampled = add_contacts(o, y, contact);
     if (model->yields)
         storeys_add(model, y + storeys_at(o), contact);
     o->power_sampled.pushed = add_forces(o, t, y + model->m, contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
+    if (model->may_lift) {
+        const MatState mat = contacts_mat(&o->contacts, y);
+        o->account.mat_turned = mat.y[MAT_LIFTED] != 0 ? fmax(o->account.mat_turned, fabs(mat.d + mat.y[MAT_LIFTED]))
+                                                       : o->account.mat_turned;
+    }
     if (o->contacts.forces) {
         const FloorSet in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
         force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
@@ -316,6 +360,7 @@ static void sample(Ode *o, double t, const double y[], double seconds)
                                                               .core_q = y + model->nb,
                                                               .force = force,
                                                               .plastic = model->yields ? y + storeys_at(o) : NULL,
+                                                              .mat_nm = mat_nm(o, y),
                                                               .in_contact = in_contact});
     }
     if (!o->with_energies)
@@ -552,6 +597,7 @@ Status ode_run(Ode *o, SimResult *result)
         storeys_drifts(o->model, y, d);
         storeys_energies(o->model, d, p, p + o->model->n, result);
     }
+    o->contacts.mat = has_mat_states(o) ? y + mat_at(o) : NULL;
     energy_account_report(&o->account, &o->contacts, o->options, y, y + m, result);
     if (o->model->yields)
         model_report_plastic(o->model, p, result);
