@@ -162,16 +162,12 @@ double core_beam_dashpot_share(const CoreBeam *c)
 static const double DASHPOT_FELT_S = 1e-4;
 
 /* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
-static void set_uplift(CoreBeam *c, double share)
+static Uplift uplift_of(const CoreBeam *c, double share)
 {
-    const double moment = c->base.anchors * foundation_uplift_nm(&c->base, c->base.weight_n + GRAVITY * c->mass_kg);
-    const double whole = c->base.rotation / (1 - share), C = c->base.rotation_dashpot;
-    if (c->base.anchors > 0)
-        c->uplift = (Uplift){.theta_up = moment / c->base.rotation,
-                             .rotation = c->base.rotation,
-                             .whole = whole,
-                             .dashpot = C > DASHPOT_FELT_S * whole ? C : 0,
-                             .cone_s = c->base.cone_s};
+    const Foundation *f = &c->base;
+    const double K = f->rotation, whole = K / (1 - share), C = f->rotation_dashpot;
+    const double moment = f->anchors * foundation_uplift_nm(f, f->weight_n + GRAVITY * c->mass_kg);
+    return (Uplift){moment / K, K, whole, C > DASHPOT_FELT_S * whole ? C : 0, f->cone_s};
 }
 
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
@@ -210,7 +206,8 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     z = 0;
     for (int j = 0; j < n; j++)
         share += c->base_rotation[j] * (z += storey_m[j]);
-    set_uplift(c, share);
+    if (base->anchors > 0)
+        c->uplift = uplift_of(c, share);
     for (int i = 0; i < n; i++)
         c->zeta[i] = o->damping + core_beam_base_loss(c, c->omega[i], c->phi + i, n) / (2 * c->omega[i]);
     return STATUS_OK;

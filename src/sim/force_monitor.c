@@ -139,14 +139,17 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
     }
 }
 
-typedef enum { ROW_BUILDING, ROW_CORE, ROW_PLASTIC } RowKind;
+typedef enum { ROW_BUILDING, ROW_CORE, ROW_PLASTIC, ROW_MAT } RowKind;
 
 /* Row i of outputs (count) of groups from `at` on. */
 static void put_row(ForceMonitor *m, int at, int i, int count, const double outputs[], RowKind of)
 {
     for (int k = 0; k < count; k++) {
         Group *g = &m->group[at + k / LANES8];
-        double *rows = of == ROW_CORE ? g->core : of == ROW_BUILDING ? g->building : g->plastic;
+        double *rows = of == ROW_CORE       ? g->core
+                       : of == ROW_BUILDING ? g->building
+                       : of == ROW_MAT      ? (double *)&g->mat
+                                            : g->plastic;
         rows[i * LANES8 + k % LANES8] = outputs[k];
         g->outputs = k % LANES8 + 1;
     }
@@ -193,25 +196,15 @@ static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, i
         put_row(m, m->at_both, j, 2, outputs, ROW_PLASTIC);
         put_row(m, m->at_slow, j, n + 1, outputs, ROW_PLASTIC);
     }
-}
 
-/* What the mat adds where it lifts, shears and moments of the forces -Kc z g = F e on the nodes. */
-static void set_mat(ForceMonitor *m, const CoreBeam *core)
-{
-    const int n = m->n;
-    double outputs[2 * FLOORS_MAX];
-    for (int i = 0; i < m->n_groups; i++)
-        m->group[i].mat = (v8){0};
-    if (!core || core->uplift.theta_up == 0)
-        return;
-    storey_forces(m, core->K, m->z + 1, 1, outputs, outputs + n);
-    for (int k = 0; k < 2 * n; k++) /* K z = K_theta e */
-        m->group[k / LANES8].mat[k % LANES8] = outputs[k] / core->base.rotation;
-    for (int k = 0; k < 2; k++)
-        m->group[m->at_both].mat[k] = outputs[k * n] / core->base.rotation;
-    for (int i = 0; i < m->at_slow; i++)
-        for (int k = 0; k < LANES8; k++)
-            m->group[i].reach[REACH_MAT][k] = fabs(m->group[i].mat[k]);
+    /* The mat of the core, where it lifts: forces -Kc z g = K z F / K_theta on the nodes. */
+    memset(outputs, 0, sizeof outputs);
+    if (core && core->uplift.theta_up > 0)
+        storey_forces(m, core->K, m->z + 1, 1, outputs, outputs + n);
+    for (int k = 0; core && core->uplift.theta_up > 0 && k < 2 * n; k++)
+        outputs[k] /= core->base.rotation;
+    put_row(m, 0, 0, 2 * n + 1, outputs, ROW_MAT);
+    put_row(m, m->at_both, 0, 2, (double[]){outputs[0], outputs[n]}, ROW_MAT);
 }
 
 /* Squares of rows (n, 8) over those of omega, NULL: 1. */
@@ -248,6 +241,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     for (int i = 0; i < m->n_groups; i++) {
         Group *g = &m->group[i];
         memset(g->reach, 0, sizeof g->reach);
+        g->reach[REACH_MAT] = V8_ABS(g->mat);
         for (int k = 0; k < LANES8 * n && b->yields && i >= m->at_both && i < m->at_velocity; k++)
             g->reach[REACH_PLASTIC][k % LANES8] += fabs(g->plastic[k]);
         if (g->building)
@@ -255,7 +249,6 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
         if (g->core && m->own_modes > 0)
             set_squares(n, g->core, core->omega, g->core_squares);
     }
-    set_mat(m, core);
 }
 
 /* -- points ----------------------------------------------------------------------------------------------------- */

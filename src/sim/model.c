@@ -145,18 +145,18 @@ void model_add_device(SimModel *model, const Device *device, int on_mass)
         b[last] = -1 / model->gamma[last];
 }
 
-void model_add_uplift(SimModel *model, const CoreBeam *core, int joined)
+void model_add_uplift(SimModel *model, const CoreBeam *core)
 {
-    const int first = joined ? 0 : model->nb, end = joined ? model->nb : model->m;
+    const int own = model->nc > 0;
     double *b = model->B + (size_t)model->n_devices * (size_t)model->m_pad;
     if (core->uplift.theta_up == 0)
         return;
     model->may_lift = 1;
     model->device[model->n_devices++] = (Device){.floor = -1, .lifts = core->uplift, .exponent = 1};
     memset(b, 0, (size_t)model->m_pad * sizeof *b);
-    for (int i = first; i < end; i++)
-        for (int j = 0; j < core->n; j++) /* R is -phi of the core's own modes */
-            b[i] += (joined ? 1 : -1) * core->base_rotation[j] * model->R[i * model->n_pad + j];
+    for (int i = own ? model->nb : 0; i < model->m; i++)
+        for (int j = 0; j < core->n; j++) /* R is -phi of the core's own modes. */
+            b[i] += (own ? -1 : 1) * core->base_rotation[j] * model->R[i * model->n_pad + j];
 }
 
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result)

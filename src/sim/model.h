@@ -69,8 +69,8 @@ void model_add_mass(SimModel *model, double mass);
 /* A device between its floor and the core beside it, or the tuned mass. */
 void model_add_device(SimModel *model, const Device *device, int on_mass);
 
-/* The mat of a core that may lift, else nothing. joined: the core moves in the modes of the building (sim/joined.h). */
-void model_add_uplift(SimModel *model, const CoreBeam *core, int joined);
+/* The mat of a core that may lift, else nothing; the core of the model, or joined to its building (sim/joined.h). */
+void model_add_uplift(SimModel *model, const CoreBeam *core);
 
 /* What the devices reached, peak (n_devices). */
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result);

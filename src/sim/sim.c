@@ -427,7 +427,7 @@ static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, dou
                                    .exponent = 1},
                          1);
     if (core)
-        model_add_uplift(model, core, 0);
+        model_add_uplift(model, core);
     return STATUS_OK;
 }
 
@@ -442,7 +442,7 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
         force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
     THEN(status, model_set(&w->model, w->options, w->building, NULL, NULL, err));
     if (status == STATUS_OK)
-        model_add_uplift(&w->model, &w->core, 1);
+        model_add_uplift(&w->model, &w->core);
     THEN(status, run_engine(w, result, err));
     if (status == STATUS_OK)
         joined_book(&joined, result);

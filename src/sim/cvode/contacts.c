@@ -42,15 +42,13 @@ static double device_pull(const SimModel *model, int e, const double q[], const 
 MatState contacts_mat(const Contacts *c, const double q[])
 {
     const int e = c->model->n_devices - 1;
+    if (!c->model->may_lift)
+        return (MatState){0};
     const Uplift *u = &c->model->device[e].lifts;
-    MatState s = {.d = apart(c->model, e, q)};
-    if (c->mat)
-        memcpy(s.y, c->mat, sizeof s.y);
-    else
-        s.y[MAT_LIFTED] = uplift_lifted(u, s.d);
-    s.held = uplift_held(u, s.d, s.y);
-    s.taken = c->mat ? s.y[MAT_WORK] : s.held;
-    return s;
+    const double d = apart(c->model, e, q);
+    const double *y = c->mat_at ? q + c->mat_at : (double[MAT_STATES]){uplift_lifted(u, d)};
+    const double g = y[MAT_LIFTED], held = uplift_held(u, d, y);
+    return (MatState){-u->whole * g, g != 0 ? fabs(d + g) : 0, held, c->mat_at ? y[MAT_WORK] : held};
 }
 
 double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[])
@@ -104,8 +102,7 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
         push_modes(model->m, model->B + (size_t)e * (size_t)model->m_pad, -device_pull(model, e, q, v, &power.devices),
                    g);
     if (model->may_lift)
-        push_modes(model->m, model->B + (size_t)n * (size_t)model->m_pad,
-                   model->device[n].lifts.whole * contacts_mat(c, q).y[MAT_LIFTED], g);
+        push_modes(model->m, model->B + (size_t)n * (size_t)model->m_pad, -contacts_mat(c, q).force_nm, g);
     if (model->nc == 0)
         return power;
     double w[FLOORS_MAX];

@@ -61,7 +61,7 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
     result->device_loss_j = l->devices;
     model_report_devices(model, l->device, result);
     result->kinetic_strain_j += devices_look(model, q, v, NULL);
-    const MatState mat = model->may_lift ? contacts_mat(c, q) : (MatState){0};
+    const MatState mat = contacts_mat(c, q);
     result->kinetic_strain_j += mat.held;
     result->mat_rotation_rad = l->mat_turned;
     for (int j = 0; j < model->n && model->nc > 0; j++)
