@@ -90,13 +90,6 @@ Status foundation_parse(const char *text, double factor, Foundation *f, Err *err
     return STATUS_OK;
 }
 
-int foundation_may_lift(const char *text)
-{
-    Foundation f;
-    Err err;
-    return foundation_parse(text, 1, &f, &err) == STATUS_OK && f.anchors > 0;
-}
-
 double foundation_uplift_nm(const Foundation *f, double weight_n)
 {
     return weight_n * f->radius_m / 3;

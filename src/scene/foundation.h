@@ -37,9 +37,6 @@ typedef struct {
 /* factor: of the ground's stiffness; dashpots go with its root. */
 Status foundation_parse(const char *text, double factor, Foundation *out, Err *err);
 
-/* Is it one whose disc may lift? */
-int foundation_may_lift(const char *text);
-
 /* M_up [N m] under a weight [N]. */
 double foundation_uplift_nm(const Foundation *f, double weight_n);
 

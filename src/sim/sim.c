@@ -183,8 +183,7 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
 {
     const DesignSpace *s = &scene->design;
     /* A link or friction link on every floor, the tuned mass, the mat that lifts. */
-    const int devices_max = (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0) +
-                            foundation_may_lift(scene->options.core.foundation);
+    const int devices_max = (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0) + 1;
     SimWorker *w = *out = NULL;
     TRY_ROOM(w, 1, "a simulator", err);
     w->scene = scene;
