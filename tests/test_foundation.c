@@ -226,13 +226,16 @@ static SimResult simulated(const SceneOptions *o, const char *record, double gap
     SimResult r;
     Settings s;
     SceneOptions options = *o;
-    double x[N + 2] = {[N] = 0.03, [N + 1] = 0.0216};
-    for (int j = 0; j < N; j++)
+    const int n = strstr(o->building.model, "tower") ? 6 : N;
+    double x[N + 2] = {0};
+    for (int j = 0; j < n; j++)
         x[j] = gap * (j + 1);
+    x[n] = 0.03;
+    x[n + 1] = 0.0216;
     settings_defaults(&s);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
     s.motion.pga_g = 0.3;
-    s.motion.stretch = 3;
+    s.motion.stretch = n == N ? 3 : 1;
     options.sim.duration_s = duration_s;
     options.sim.forces = FORCES_YES;
     CHECK_OK(scenario_of(&w, &options, &s.motion, &err), &err);
@@ -349,6 +352,212 @@ TEST(dashpots_that_are_large_beside_their_springs_are_refused_with_the_figure)
     }
 }
 
+/* ---- a mat that lifts --------------------------------------------------------------------------------------------- */
+
+static double spring_moment(const Uplift *u, double theta)
+{
+    const double x = fabs(theta) / u->theta_up;
+    return x > 1 ? copysign(u->rotation * u->theta_up * (3 - 2 / sqrt(x)), theta) : u->rotation * theta;
+}
+
+/* Its energy is the integral of its force, the dashpot's law in the limit of slow motion the one without. */
+TEST(the_mat_turns_as_its_moment_balances_and_its_energy_is_the_work_of_its_force)
+{
+    for (int kind = 0; kind < 3; kind++) {
+        const double ratio = pow(10, kind - 1);
+        const Uplift u = {.theta_up = 2e-4, .rotation = 5e11, .whole = 5e11 * (1 + ratio), .dashpot = 1, .cone_s = 1};
+        double work = 0, before = 0;
+        for (int i = 0; i <= 4000; i++) {
+            const double d = i * 1e-6, g = uplift_lifted(&u, -d);
+            double rate[MAT_STATES];
+            assert_less(fabs(spring_moment(&u, g - d) + (u.whole - u.rotation) * (g - d) + u.whole * d),
+                        1e-12 * u.whole * 4e-3);
+            if (d < u.theta_up)
+                assert_same_number(g, 0);
+            uplift_rates(&u, -d, 0, (double[]){g, 0, 0}, rate);
+            assert_less(fabs(rate[MAT_LIFTED]), 1e-11 * u.whole * 4e-3);
+            work += 0.5 * (before - u.whole * g) * -1e-6 * (i > 0);
+            before = -u.whole * g;
+            assert_less(fabs(uplift_held(&u, -d, (double[]){g, 0, 0}) - work), 1e-5 * u.whole * 4e-3 * 4e-3);
+        }
+    }
+}
+
+typedef struct {
+    SimWorker *worker;
+    int n;
+    double t[4100], top[4100];
+} Rocking;
+
+static void note_top(const SimSample *s, void *user)
+{
+    Rocking *r = user;
+    FloorMotion m;
+    sim_worker_motion(r->worker, s, &m);
+    r->t[r->n] = s->t;
+    r->top[r->n++] = m.core[N - 1];
+}
+
+/* 4 int_0^top dtheta / sqrt(2 (U(top) - U(theta)) / J), theta = top sin phi, by the rule of the midpoint. */
+static double period(const Uplift *u, double J, double top)
+{
+    enum { PARTS = 2000, FINE = 40 };
+    double sum = 0, U = 0, theta = top;
+    for (int i = PARTS - 1; i >= 0; i--) {
+        const double phi = 0.5 * M_PI * (i + 0.5) / PARTS, next = top * sin(phi), step = (theta - next) / FINE;
+        for (int j = 0; j < FINE; j++)
+            U += step * spring_moment(u, theta - (j + 0.5) * step);
+        theta = next;
+        sum += top * cos(phi) / sqrt(2 * U / J);
+    }
+    return 4 * sum * 0.5 * M_PI / PARTS;
+}
+
+/* After a push it neither gains nor loses, and swings as slowly as the law of its mat lets it. */
+TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
+{
+    enum { SAMPLES = 4000 };
+    static double accel[SAMPLES];
+    const Motion motion = {.accel = accel, .n = SAMPLES, .dt_s = 0.02};
+    SceneOptions s = on_ground("rotation=1e9 radius=10 anchors=1");
+    Rocking *r = calloc(1, sizeof *r);
+    CoreBeam *core = calloc(1, sizeof *core);
+    double x[N + 2] = {[N] = 0.02, [N + 1] = 0.02}, z[N], J = 0;
+    Scene *scene;
+    SimResult result;
+    Err err = {0};
+    assert_true(r && core);
+    for (int i = 0; i < 100; i++)
+        accel[i] = 3 * pow(sin(M_PI * i / 100), 2);
+    for (int j = 0; j < N; j++)
+        x[j] = 50;
+    s.core.youngs_modulus_pa *= 30;
+    s.core.damping = 0;
+    s.core.theory = CORE_EULER_BERNOULLI;
+    s.sim.accuracy = ACCURACY_FINE;
+    CHECK_OK(make_core_of(core, &s, N, 0.02, 0.02, &err), &err);
+    CHECK_OK(scene_create(&scene, &s, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&r->worker, scene, &err), &err);
+    sim_worker_sample(r->worker, 0, note_top, r);
+    CHECK_OK(sim_run(r->worker, SCENE_IMPACT, x, &result, &err), &err);
+    assert_int_equal(result.outcome, RUN_OK);
+    assert_less(result.energy_balance_error, 1e-9);
+    for (int i = 0; i < N; i++)
+        z[i] = (i > 0 ? z[i - 1] : 0) + list_at(&s.building.heights_m, i);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            J += z[i] * z[j] * core->M[i * N + j];
+    double passed[40], tops[40] = {0};
+    int n = 0;
+    for (int i = 110; i + 1 < r->n && n < 40; i++) {
+        const double a = r->top[i - 1], b = r->top[i], c = r->top[i + 1];
+        if (n > 0 && fabs(b) >= fabs(a) && fabs(b) > fabs(c)) /* the parabola's vertex */
+            tops[n - 1] = fabs(b - 0.125 * (c - a) * (c - a) / (a + c - 2 * b));
+        if (b * c < 0)
+            passed[n++] = r->t[i] + 0.02 * b / (b - c);
+    }
+    assert_less(6, n);
+    const double theta = tops[0] / z[N - 1];
+    print_message("rocks to %.3g of theta_up, period %.5g s, linear %.5g\n", theta / core->uplift.theta_up,
+                  passed[4] - passed[2], 2 * M_PI / core->omega[0]);
+    assert_less(3, theta / core->uplift.theta_up);
+    assert_close(passed[n - 1 - (n - 1) % 2] - passed[0], (n - 1) / 2 * period(&core->uplift, J, theta), 2e-3);
+    for (int i = 1; i + 1 < n; i++)
+        assert_close(tops[i], tops[0], 1e-3);
+    sim_worker_free(r->worker);
+    scene_free(scene);
+    free(core);
+    free(r);
+}
+
+static SceneOptions small_tower(const char *foundation)
+{
+    SceneOptions s = on_ground(foundation);
+    six_floors(&s.building, &s.core);
+    s.sim.accuracy = ACCURACY_FINE;
+    return s;
+}
+
+/* With the dashpot of the half-space and without one; storeys that yield beside it; by impacts and joined. */
+TEST(both_engines_agree_where_the_mat_lifts_and_their_books_close)
+{
+    static const char *const GROUND[] = {"soil=C radius=6 anchors=1 weight=1e6", "rotation=3e11 radius=6 anchors=1.5"};
+    for (int i = 0; i < 2; i++)
+        for (SceneKind kind = SCENE_IMPACT; kind <= SCENE_RIGID; kind += SCENE_RIGID) {
+            SceneOptions s = small_tower(GROUND[i]);
+            s.building.yield_drift = 0.006;
+            const SimResult fast = simulated(&s, "builtin:sylmar-like", 0.004, 8, kind);
+            s.sim.engine = ENGINE_CVODE;
+            const SimResult cvode = simulated(&s, "builtin:sylmar-like", 0.004, 8, kind);
+            print_message("%s, %d: J1 %.6g m, uplift %.3g, rotation %.4g, impacts %ld, core %.4g %%\n", GROUND[i], kind,
+                          fast.j1_m, fast.forces.uplift_ratio, fast.forces.base_rotation_rad, fast.impacts,
+                          fast.edcs_pct);
+            assert_less(1.2, fast.forces.uplift_ratio);
+            assert_close(fast.j1_m, cvode.j1_m, 1e-5);
+            assert_close(fast.j3_g, cvode.j3_g, 1e-3);
+            assert_close(fast.edcs_pct, cvode.edcs_pct, 1e-3);
+            assert_close(fast.forces.base_rotation_rad, cvode.forces.base_rotation_rad, 2e-3);
+            assert_close(fast.forces.core_overturning_nm, cvode.forces.core_overturning_nm, 1e-3);
+            assert_less(fast.energy_balance_error, 1e-6);
+            assert_less(cvode.energy_balance_error, 1e-6);
+        }
+}
+
+TEST(anchors_that_hold_everything_leave_the_springs)
+{
+    for (SceneKind kind = SCENE_IMPACT; kind <= SCENE_RIGID; kind += SCENE_RIGID) {
+        SceneOptions s = small_tower("soil=C radius=6");
+        const SimResult springs = simulated(&s, "builtin:sylmar-like", 0.004, 6, kind);
+        s = small_tower("soil=C radius=6 anchors=1e9");
+        const SimResult held = simulated(&s, "builtin:sylmar-like", 0.004, 6, kind);
+        assert_close(held.j1_m, springs.j1_m, 1e-7);
+        assert_close(held.j3_g, springs.j3_g, 1e-4);
+        assert_close(held.edcs_pct, springs.edcs_pct, 1e-5);
+        assert_close(held.forces.base_rotation_rad, springs.forces.base_rotation_rad, 1e-3);
+    }
+}
+
+/* Design of a search with configs/engineer.ini under Kobe (0.3 g, stretch 3.1): an independent integrator. */
+TEST(a_mat_that_lifts_has_its_known_response)
+{
+    static const struct {
+        const char *anchors;
+        double j1, drift, j3;
+    } CASES[] = {{" anchors=1", 1.787, 0.0294, 1.49}, {" anchors=5", 0.665, 0.0213, 1.31}, {"", 0.655, 0.0212, 1.25}};
+    static const double X[] = {0.062620906,  0.49638428,  0.0075756700, 0.49967802, 0.053314538, 0.45756536,
+                               0.0010002436, 0.18170539,  0.40825994,   0.45607738, 0.37509996,  0.0083128154,
+                               0.20994399,   0.35243200,  0.39644089,   0.49323430, 0.40733242,  0.027483092,
+                               0.0066243711, 0.060373916, 0.018777814,  0.010004510};
+    const char *record = "../shared/records/kobe_jma_ns.csv";
+    if (access(record, R_OK) != 0) {
+        print_message("skipped: there are no records in ../shared/records\n");
+        return;
+    }
+    for (size_t i = 0; i < N_OF(CASES); i++) {
+        Scenario w = {0};
+        SimWorker *worker;
+        SimResult r;
+        Settings s;
+        Err err = {0};
+        settings_defaults(&s);
+        CHECK_OK(settings_read(&s, "configs/engineer.ini", NULL, NULL, &err), &err);
+        snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
+        s.sim.duration_s = 80;
+        snprintf(s.core.foundation + strlen(s.core.foundation), sizeof s.core.foundation - strlen(s.core.foundation),
+                 "%s", CASES[i].anchors);
+        const SceneOptions options = settings_scene(&s);
+        CHECK_OK(scenario_of(&w, &options, &s.motion, &err), &err);
+        CHECK_OK(sim_worker_create(&worker, w.scene, &err), &err);
+        CHECK_OK(sim_run(worker, SCENE_IMPACT, X, &r, &err), &err);
+        assert_int_equal(r.outcome, RUN_OK);
+        assert_close(r.j1_m, CASES[i].j1, 1e-2);
+        assert_close(r.drift_ratio_max, CASES[i].drift, 1e-2);
+        assert_close(r.j3_g, CASES[i].j3, 3e-2);
+        sim_worker_free(worker);
+        scenario_close(&w);
+    }
+}
+
 TEST(what_is_no_foundation_is_refused_in_words)
 {
     static const struct {
@@ -363,6 +572,9 @@ TEST(what_is_no_foundation_is_refused_in_words)
                {"rotation=-1", "is no number from 10000 to"},
                {"rotation=1e9 rotation=2e9", "stands twice"},
                {"rotation=1e9 translation_dashpot=1e6", "needs the spring beside it"},
+               {"soil=C radius=10 anchors=0.5", "'anchors=0.5' is no number from 1 to"},
+               {"rotation=1e9 anchors=1", "anchors= needs radius="},
+               {"translation=1e9 radius=10 anchors=1", "a spring against rotation"},
                {"depth=3", "'depth=3' is none of soil=A..D g="}};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         Foundation f;

@@ -56,7 +56,8 @@ static void add_devices(SimModel *m, SceneKind kind, double mass, LinearDevice d
 {
     const double w = 2 * M_PI * d.tmd_hz;
     if (kind == SCENE_TMD) {
-        const Device device = {m->n - 1, mass * w * w, 2 * d.tmd_damping * mass * w, 1};
+        const Device device = {
+            .floor = m->n - 1, .stiffness = mass * w * w, .damping = 2 * d.tmd_damping * mass * w, .exponent = 1};
         model_add_mass(m, mass);
         model_add_device(m, &device, 1);
     }

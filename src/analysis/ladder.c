@@ -16,12 +16,13 @@ static const struct {
     {"shear of the core", "core.theory", "timoshenko", "euler_bernoulli"},
     {"P-delta", "building.p_delta", "on", "off"},
     {"ground under the core", "core.foundation", NULL, "fixed"},
+    {"core that lifts", "core.foundation", NULL, NULL},
     {"storeys that yield", "building.yield_drift", "0.01", "0"},
     {"flexibility at contacts", "contact.bumper_stiffness_n_m", "5e8", "0"},
     {"weak end of the record", "sim.duration_s", NULL, NULL},
     {"steps, modes of the core", "sim.accuracy", "fine", NULL},
 };
-enum { BETWEEN, SHEAR, P_DELTA, GROUND, YIELDING, FLEXIBILITY, END, STEPS, KINDS };
+enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, YIELDING, FLEXIBILITY, END, STEPS, KINDS };
 
 typedef struct {
     Settings s; /* as given, but for objectives and limits */
@@ -49,6 +50,17 @@ static void take_value(const char *key, const char *value, void *user)
 
 /* -- effects ------------------------------------------------------------------------------------------------------- */
 
+/* Those of the settings, else weight alone; and without them. */
+static void set_anchors(const char *now, LadderEffect *e)
+{
+    const char *word = strstr(now, "anchors=");
+    e->is_set = word != NULL;
+    const char *const weight = " anchors=1";
+    snprintf(e->with, sizeof e->with, "%.*s%s", (int)(sizeof e->with - strlen(weight) - 1), now, word ? "" : weight);
+    if (word)
+        snprintf(e->without, sizeof e->without, "%.*s%s", (int)(word - now), now, word + strcspn(word, " "));
+}
+
 static void set_values(const Job *job, int kind, const char *now, LadderEffect *e)
 {
     const char *with = EFFECTS[kind].with ? EFFECTS[kind].with : now;
@@ -61,17 +73,24 @@ static void set_values(const Job *job, int kind, const char *now, LadderEffect *
         snprintf(e->without, sizeof e->without, "%.6g", job->strong_s);
     if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core */
         snprintf(e->with, sizeof e->with, "soil=C radius=%g", job->s.core.width_m);
+    if (kind == LIFT)
+        set_anchors(now, e);
 }
 
 static int is_there(const Job *job, int kind)
 {
     const Settings *s = &job->s;
+    Foundation f;
+    Err err;
     switch (kind) {
     case BETWEEN:
         return frame_is(s->building.model);
     case SHEAR:
     case GROUND:
         return !neighbour_is_given(&s->core);
+    case LIFT:
+        return !neighbour_is_given(&s->core) && foundation_parse(s->core.foundation, 1, &f, &err) == STATUS_OK &&
+               f.radius_m > 0 && f.rotation > 0;
     case END:
         return s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
     case STEPS:
@@ -99,7 +118,7 @@ static Status list_effects(Job *job, Err *err)
         LadderEffect *e = &l->effect[l->n];
         if (!is_there(job, kind))
             continue;
-        settings_each(&job->s, take_value, &(Wanted){EFFECTS[kind].key, now});
+        settings_each(&job->all, take_value, &(Wanted){EFFECTS[kind].key, now});
         set_values(job, kind, now, e);
         job->kind[l->n++] = kind;
         TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
@@ -164,6 +183,8 @@ static void conclude(Job *job, const ReplicateSummary *as_built)
                 e->change[c][k] = change(&job->scene[without][c], &job->scene[with][c], k);
         e->cost_s = least_seconds(job, job->parts[with]) - least_seconds(job, job->parts[without]);
         e->is_needed = e->is_kept = largest(l, e->change, &e->decided_in) > 1;
+        if (job->kind[i] == LIFT && e->is_kept)
+            l->effect[i - 1].is_kept = 1;
     }
 }
 
@@ -217,7 +238,9 @@ static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err
     SimTask task[LADDER_SCENES];
     s.sim.replicates = 1;
     for (size_t i = 0; i < l->n; i++)
-        TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without, err));
+        if (ladder_says(l, i))
+            TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without,
+                             err));
     for (int i = 0; i < LADDER_SCENES; i++)
         task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
     TRY(find_hardening(&s, &l->hardening, err));

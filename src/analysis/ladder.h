@@ -13,10 +13,11 @@
  *              all in every scene, the largest change that is left out is put back, until it is
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
- * core, storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the steps:
- * the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and all
- * modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The objectives
- * and limits of the settings have no part in it: some need an effect that is left out.
+ * core, a mat that lifts from it where its radius is given (behind the ground, whose setting it shares: it goes with
+ * the ground), storeys that yield, flexibility at a contact, the weak end of the record (behind `strong_s`), and the
+ * steps: the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per contact and
+ * all modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts. The
+ * objectives and limits of the settings have no part in it: some need an effect that is left out.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
  * that (scene/building.h): where P-delta softens it, so that the change by P-delta has that in it as well.
@@ -26,7 +27,7 @@
 
 #include "evaluate/tower.h"
 
-enum { LADDER_MAX = 8, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
+enum { LADDER_MAX = 9, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
 static const MeasureId LADDER_MEASURE[LADDER_MEASURES] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
 
 static const SceneKind LADDER_SCENE[LADDER_SCENES] = {SCENE_IMPACT, SCENE_RIGID, SCENE_NO_CORE};
@@ -61,6 +62,12 @@ typedef struct {
     double hardening, all_hardening;
     char yielding[YIELDING_KEYS][OPTION_TEXT_MAX]; /* values of the settings */
 } Ladder;
+
+/* Does effect i have a say in its setting? Not a mat that lifts from a ground that is left out. */
+static inline int ladder_says(const Ladder *l, size_t i)
+{
+    return i == 0 || strcmp(l->effect[i].key, l->effect[i - 1].key) != 0 || l->effect[i - 1].is_kept;
+}
 
 /* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect
  * is left out once, so that no costs are known (NAN). */

@@ -380,9 +380,12 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
 
 const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
 {
-    snprintf(text, NOTE_MAX,
-             "the core's moment is %.3g times that at which its foundation begins to lift%s: anchors must hold it",
-             r->forces.uplift_ratio, r->forces.uplift_ratio > LIFTED ? ", more than weight can hold" : "");
+    if (r->mat_rotation_rad > 0)
+        snprintf(text, NOTE_MAX, "the mat lifts: it turns by %.3g rad", r->mat_rotation_rad);
+    else
+        snprintf(text, NOTE_MAX,
+                 "the core's moment is %.3g times that at which its foundation begins to lift%s: anchors must hold it",
+                 r->forces.uplift_ratio, r->forces.uplift_ratio > LIFTED ? ", more than weight can hold" : "");
     return text;
 }
 

@@ -108,7 +108,8 @@ json_t *ladder_json(const Ladder *l)
                  SCENES[LADDER_SCENE[e->decided_in]].key, 1e3 * e->cost_s, e->is_needed ? "needed" : "not",
                  e->is_set ? "yes" : "no", e->key, e->with, e->without);
         json_array_append_new(effects, row);
-        json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
+        if (ladder_says(l, i))
+            json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
     }
     if (l->hardening > 0)
         json_put(settings, "building.hardening=%g", l->hardening);

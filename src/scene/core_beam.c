@@ -1,6 +1,7 @@
 #include "scene/core_beam.h"
 
 #include "base/linalg.h"
+#include "base/units.h"
 
 /* ---- beams ---------------------------------------------------------------------------------------------------- */
 
@@ -157,6 +158,18 @@ double core_beam_dashpot_share(const CoreBeam *c)
     return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
 }
 
+/* [s] A dashpot that gives way sooner than this is none. */
+static const double DASHPOT_FELT_S = 1e-4;
+
+/* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
+static Uplift uplift_of(const CoreBeam *c, double share)
+{
+    const Foundation *f = &c->base;
+    const double K = f->rotation, whole = K / (1 - share), C = f->rotation_dashpot;
+    const double moment = f->anchors * foundation_uplift_nm(f, f->weight_n + GRAVITY * c->mass_kg);
+    return (Uplift){moment / K, K, whole, C > DASHPOT_FELT_S * whole ? C : 0, f->cone_s};
+}
+
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err)
 {
@@ -164,7 +177,7 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     const int shears = o->theory == CORE_TIMOSHENKO;
     const Foundation *base = &c->base;
     Beam beam[FLOORS_MAX];
-    double z = 0;
+    double z = 0, share = 0;
     TRY(check(o, n, t_base_m, t_top_m, err));
     memset(c, 0, sizeof *c);
     c->n = c->top = n;
@@ -190,6 +203,11 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
             c->base_translation[i] += base->translation > 0 ? c->K[j * n + i] / base->translation : 0;
         }
     }
+    z = 0;
+    for (int j = 0; j < n; j++)
+        share += c->base_rotation[j] * (z += storey_m[j]);
+    if (base->anchors > 0)
+        c->uplift = uplift_of(c, share);
     for (int i = 0; i < n; i++)
         c->zeta[i] = o->damping + core_beam_base_loss(c, c->omega[i], c->phi + i, n) / (2 * c->omega[i]);
     return STATUS_OK;

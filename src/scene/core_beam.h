@@ -36,6 +36,7 @@
 #include "base/status.h"
 #include "scene/foundation.h"
 #include "scene/options.h"
+#include "scene/uplift.h"
 
 typedef struct {
     double EI;          /* [N m2] */
@@ -60,6 +61,7 @@ typedef struct {
     Foundation base;
     double base_rotation[FLOORS_MAX], base_translation[FLOORS_MAX]; /* (n) [rad/m], [-] of the base by a unit deflection
                                                                      * of a node; 0 where it is fixed */
+    Uplift uplift;
 } CoreBeam;
 
 /* storey_m (n): heights. */

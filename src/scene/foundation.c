@@ -2,7 +2,20 @@
 
 #include "base/keyed.h"
 
-enum { SOIL, SHEAR, RADIUS, NU, DENSITY, ROTATION, TRANSLATION, ROTATION_DASHPOT, TRANSLATION_DASHPOT, WEIGHT, N_KEYS };
+enum {
+    SOIL,
+    SHEAR,
+    RADIUS,
+    NU,
+    DENSITY,
+    ROTATION,
+    TRANSLATION,
+    ROTATION_DASHPOT,
+    TRANSLATION_DASHPOT,
+    WEIGHT,
+    ANCHORS,
+    N_KEYS
+};
 static const KeyedNumber KEYS[N_KEYS] = {
     {"soil", 1, 1, 4, 1},
     {"g", 1, 1e3, 1e12, 0},
@@ -14,6 +27,7 @@ static const KeyedNumber KEYS[N_KEYS] = {
     {"rotation_dashpot", 1, 1e-6, 1e30, 0},
     {"translation_dashpot", 1, 1e-6, 1e30, 0},
     {"weight", 1, 1e-6, 1e12, 0},
+    {"anchors", 1, 1, 1e12, 0},
 };
 static const double NU_OTHERWISE = 0.3, DENSITY_OTHERWISE = 2000; /* [-], [kg/m3] */
 
@@ -63,9 +77,13 @@ Status foundation_parse(const char *text, double factor, Foundation *f, Err *err
         f->translation_dashpot = sqrt(factor) * x[TRANSLATION_DASHPOT];
     f->radius_m = r;
     f->weight_n = x[WEIGHT];
+    f->anchors = x[ANCHORS];
     if (f->rotation == 0 && f->translation == 0)
         return bad_data(err, "core.foundation: nothing gives way: it needs soil=A..D or g= [Pa] with "
                              "radius= [m], or rotation= [N m/rad] or translation= [N/m]; or fixed");
+    if (f->anchors > 0 && (f->radius_m == 0 || f->rotation == 0))
+        return bad_data(err, "core.foundation: anchors= needs radius= of the foundation [m] and a spring against "
+                             "rotation: soil=, g= or rotation=");
     if ((f->rotation == 0 && f->rotation_dashpot > 0) || (f->translation == 0 && f->translation_dashpot > 0))
         return bad_data(err, "core.foundation: a dashpot needs the spring beside it: rotation= [N m/rad], "
                              "translation= [N/m]");

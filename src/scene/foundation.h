@@ -5,6 +5,8 @@
  *   rotation=N m/rad translation=N/m                  springs as they are, 0: fixed; also in the place of the disc's
  *   rotation_dashpot=N m s/rad translation_dashpot=N s/m   likewise
  *   weight=N                                          that rests on the disc beside the core's, for the uplift
+ *   anchors=FACTOR                                    the disc lifts from so many times M_up on (scene/uplift.h): 1,
+ *                                                     where weight alone holds it; left out, it never lifts
  *
  *   K_theta = 8 G r^3 / (3 (1 - nu)),   K_x = 8 G r / (2 - nu)                            statics of the disc
  *   C_x = rho v_s pi r^2,   C_theta = rho c I b^2 / (1 + b^2),  I = pi r^4 / 4,  b = w z / c        radiation (cones)
@@ -29,6 +31,7 @@ typedef struct {
     double rotation_dashpot, translation_dashpot; /* [N m s/rad] at high frequencies, [N s/m] */
     double cone_s;                                /* [s] z / c; 0: rotation_dashpot acts at every frequency */
     double radius_m, weight_n;                    /* [m] 0: not known; [N] beside the core's */
+    double anchors;                               /* [-] 0: it never lifts */
 } Foundation;
 
 /* factor: of the ground's stiffness; dashpots go with its root. */

@@ -121,7 +121,8 @@ static const Option OPTIONS[] = {
     TEXT(core.foundation, "fixed",
          "ground under the core: fixed, or a rigid disc on soil=A..D (site class of ASCE 7) or g=PA with radius=M "
          "[nu=0.3 density=2000 weight=N], or springs rotation=N_m_rad translation=N_m with rotation_dashpot= "
-         "translation_dashpot= (docs/theory.md)"),
+         "translation_dashpot=; anchors=FACTOR: the disc lifts from so many times the moment on that the weight holds "
+         "(docs/theory.md)"),
     REAL(core.foundation_factor, "-", "1", 1e-6, 1e6, "the stiffness of that ground times this, to bound it"),
     LIST(core.areas_m2, "m2", "1.567, 0.811", 1e-9, 1e4,
          "effective: areas, in the first and the last storey, or storey by storey from the bottom"),

@@ -5,6 +5,8 @@
  * F pulls them together. a = 1: a linear dashpot; else F = c |d'|^a but for rates below v_r = 1 mm/s, where that has no
  * slope; a = 0: friction of the force c, with v_r = 1 cm/s: what sticks creeps, at 1 mm/s under c / 10.
  *
+ * The mat of a core that lifts is one more, F by scene/uplift.h.
+ *
  * Energy  int F d' dt = k d^2 / 2 (held) + lost
  *
  * Threads  pure functions
@@ -12,10 +14,11 @@
  *          Engineering (1994) */
 #pragma once
 
-#include <math.h>
+#include "scene/uplift.h"
 
 typedef struct {
-    int floor;                /* from 0, on which it acts */
+    int floor;                /* from 0, on which it acts; -1: the foundation, whose mat lifts: */
+    Uplift lifts;             /* d [rad], F [N m] */
     double stiffness;         /* [N/m] k; 0: none */
     double damping, exponent; /* [N (s/m)^a] c, [-] a */
 } Device;

@@ -30,10 +30,11 @@ static inline void energy_balance_sum_shares(SimResult *result)
 }
 
 /* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first, their
- * shares booked as like[nb] says. */
-static inline void energy_balance_close(SimResult *result, int nb, const int like[], int nc, const double damped[])
+ * shares booked as like[nb] says. by_ground: of a mat that lifts, beside them. */
+static inline void energy_balance_close(SimResult *result, int nb, const int like[], int nc, const double damped[],
+                                        double by_ground)
 {
-    double building = 0, core = 0;
+    double building = nc > 0 ? 0 : by_ground, core = nc > 0 ? by_ground : 0;
     const double input = result->input_energy_j;
     for (int i = 0; i < nb; i++) {
         building += damped[i];

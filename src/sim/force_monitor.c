@@ -14,6 +14,7 @@
 static const double SLOW_SPACING = 4e-3;
 
 typedef struct {
+    v8 mat;               /* of a unit of F of the mat that lifts */
     v8 last, first, peak; /* at the last point, the one before; over continuous time */
     int outputs;          /* of the eight */
     /* |output| is at most the sum of these times ForceReach.by */
@@ -138,14 +139,17 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
     }
 }
 
-typedef enum { ROW_BUILDING, ROW_CORE, ROW_PLASTIC } RowKind;
+typedef enum { ROW_BUILDING, ROW_CORE, ROW_PLASTIC, ROW_MAT } RowKind;
 
 /* Row i of outputs (count) of groups from `at` on. */
 static void put_row(ForceMonitor *m, int at, int i, int count, const double outputs[], RowKind of)
 {
     for (int k = 0; k < count; k++) {
         Group *g = &m->group[at + k / LANES8];
-        double *rows = of == ROW_CORE ? g->core : of == ROW_BUILDING ? g->building : g->plastic;
+        double *rows = of == ROW_CORE       ? g->core
+                       : of == ROW_BUILDING ? g->building
+                       : of == ROW_MAT      ? (double *)&g->mat
+                                            : g->plastic;
         rows[i * LANES8 + k % LANES8] = outputs[k];
         g->outputs = k % LANES8 + 1;
     }
@@ -192,6 +196,15 @@ static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, i
         put_row(m, m->at_both, j, 2, outputs, ROW_PLASTIC);
         put_row(m, m->at_slow, j, n + 1, outputs, ROW_PLASTIC);
     }
+
+    /* The mat of the core, where it lifts: forces -Kc z g = K z F / K_theta on the nodes. */
+    memset(outputs, 0, sizeof outputs);
+    if (core && core->uplift.theta_up > 0)
+        storey_forces(m, core->K, m->z + 1, 1, outputs, outputs + n);
+    for (int k = 0; core && core->uplift.theta_up > 0 && k < 2 * n; k++)
+        outputs[k] /= core->base.rotation;
+    put_row(m, 0, 0, 2 * n + 1, outputs, ROW_MAT);
+    put_row(m, m->at_both, 0, 2, (double[]){outputs[0], outputs[n]}, ROW_MAT);
 }
 
 /* Squares of rows (n, 8) over those of omega, NULL: 1. */
@@ -228,6 +241,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     for (int i = 0; i < m->n_groups; i++) {
         Group *g = &m->group[i];
         memset(g->reach, 0, sizeof g->reach);
+        g->reach[REACH_MAT] = V8_ABS(g->mat);
         for (int k = 0; k < LANES8 * n && b->yields && i >= m->at_both && i < m->at_velocity; k++)
             g->reach[REACH_PLASTIC][k % LANES8] += fabs(g->plastic[k]);
         if (g->building)
@@ -332,6 +346,8 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
             more += ((const v8 *)g->force)[j] * p->force[j];
         }
     }
+    if (p->mat_nm != 0)
+        more += g->mat * p->mat_nm;
     *out = now + more;
 }
 

@@ -4,13 +4,13 @@
  *
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
- * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core; overturning
- * is M_1. Both are linear in the modal coordinates: row i of a table of outputs belongs to mode i. K is of the floors
- * alone, also where the building's model has more degrees of freedom: what the others carry acts on the floors as
- * statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a +
- * sum_j R_ij f_j (mode acceleration method). Peaks are taken from points that the engine gives in the order of time,
- * with a parabola through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of
- * a component of frequency w.
+ * less k_j p_j of the plastic drift p_j of a storey that yields (sim/storey.h), and likewise of the core, with forces
+ * Kc v - Kc z g where its mat lifts (scene/uplift.h); overturning is M_1. Both are linear in the modal coordinates:
+ * row i of a table of outputs belongs to mode i. K is of the floors alone, also where the building's model has more
+ * degrees of freedom: what the others carry acts on the floors as statics distribute it. Core modes that an engine
+ * left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j (mode acceleration method). Peaks are
+ * taken from points that the engine gives in the order of time, with a parabola through three of them wherever the
+ * middle one is the largest: spaced by h they miss (w h)^4 / 400 of a component of frequency w.
  *
  *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
  *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
@@ -56,6 +56,7 @@ typedef struct {
     double t, ground;
     const double *building_q, *building_v, *core_q, *force;
     const double *plastic; /* (n) [m] drifts of storeys that yield; NULL: none does */
+    double mat_nm;         /* [N m] F of a mat that lifts (scene/uplift.h) */
     FloorSet in_contact;
 } ForcePoint;
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
@@ -76,10 +77,12 @@ enum {
     REACH_FORCE,
     REACH_GROUND,
     REACH_PLASTIC,
+    REACH_MAT,
     N_REACHES
 };
 typedef struct {
-    /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2]; [m] plastic drift */
+    /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2]; [m] plastic drift;
+     * [N m] F of the mat */
     double by[N_REACHES];
 } ForceReach;
 void force_monitor_energies(ForceMonitor *m, const double building[], const double core[]);

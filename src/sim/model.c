@@ -15,7 +15,7 @@ static void layout(void *object, Carve *c)
     SimModel *m = object;
     CARVE(c, m->R, m->m_pad * m->n_pad);
     CARVE(c, m->RT, m->m_pad * m->n_pad);
-    CARVE(c, m->B, m->m_pad * (m->n + 1));
+    CARVE(c, m->B, m->m_pad * (m->n + 2));
     CARVE(c, m->omega, m->m_pad);
     CARVE(c, m->zeta, m->m_pad);
     CARVE(c, m->gamma, m->m_pad);
@@ -63,7 +63,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     model->nb = building->n;
     model->nc = core ? n : 0;
     model->m = model->nb + model->nc;
-    model->n_devices = model->has_mass = 0;
+    model->n_devices = model->has_mass = model->may_lift = 0;
     model->m_pad = padded(model->m);
     model->core_mass_kg = core ? core->mass_kg : 0;
 
@@ -145,10 +145,25 @@ void model_add_device(SimModel *model, const Device *device, int on_mass)
         b[last] = -1 / model->gamma[last];
 }
 
+void model_add_uplift(SimModel *model, const CoreBeam *core)
+{
+    const int own = model->nc > 0;
+    double *b = model->B + (size_t)model->n_devices * (size_t)model->m_pad;
+    if (core->uplift.theta_up == 0)
+        return;
+    model->may_lift = 1;
+    model->device[model->n_devices++] = (Device){.floor = -1, .lifts = core->uplift, .exponent = 1};
+    memset(b, 0, (size_t)model->m_pad * sizeof *b);
+    for (int i = own ? model->nb : 0; i < model->m; i++)
+        for (int j = 0; j < core->n; j++) /* R is -phi of the core's own modes. */
+            b[i] += (own ? -1 : 1) * core->base_rotation[j] * model->R[i * model->n_pad + j];
+}
+
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result)
 {
-    for (int e = 0; e < model->n_devices; e++) {
-        result->device[model->has_mass && e + 1 == model->n_devices ? FLOORS_MAX : model->device[e].floor] = peak[e];
+    const int n = model->n_devices - model->may_lift;
+    for (int e = 0; e < n; e++) {
+        result->device[model->has_mass && e + 1 == n ? FLOORS_MAX : model->device[e].floor] = peak[e];
         result->stroke_m = fmax(result->stroke_m, peak[e].stroke);
         result->dashpot_n = fmax(result->dashpot_n, peak[e].force);
     }

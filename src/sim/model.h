@@ -12,8 +12,8 @@
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
  * since sum_{i<nb} R_ij gamma_i = 1: the motion of the ground is in the span of the building's modes.
  *
- * A device e (sim/device.h) adds -B_ei F_e to mode i. The tuned mass is the last mode, of frequency 0, which moves no
- * floor: x = q / sqrt(mass) from the ground.
+ * A device e (sim/device.h) adds -B_ei F_e to mode i; the mat of a core that lifts is the last one. The tuned mass is
+ * the last mode, of frequency 0, which moves no floor: x = q / sqrt(mass) from the ground.
  *
  * A floor that may go right (u > v) by g_R and left by g_L has gap = (g_R + g_L) / 2 around middle = (g_R - g_L) / 2.
  *
@@ -46,9 +46,9 @@ typedef struct {
     int yields;                  /* any storey does: */
     StoreyLaw storey_law;
     double yield_m[FLOORS_MAX], yield_n_m[FLOORS_MAX]; /* (n) [m], [N/m]; of a storey that stays elastic 1e300, 0 */
-    int n_devices, has_mass;
-    Device device[FLOORS_MAX + 1]; /* (n_devices) */
-    double *B;                     /* (n + 1, m_pad) [1/sqrt(kg)] a row per device */
+    int n_devices, has_mass, may_lift;
+    Device device[FLOORS_MAX + 2]; /* (n_devices) */
+    double *B;                     /* (n + 2, m_pad) [1/sqrt(kg)] a row per device */
     void *store;
 } SimModel;
 
@@ -68,6 +68,9 @@ void model_add_mass(SimModel *model, double mass);
 
 /* A device between its floor and the core beside it, or the tuned mass. */
 void model_add_device(SimModel *model, const Device *device, int on_mass);
+
+/* The mat of a core that may lift, else nothing; the core of the model, or joined to its building (sim/joined.h). */
+void model_add_uplift(SimModel *model, const CoreBeam *core);
 
 /* What the devices reached, peak (n_devices). */
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result);

@@ -96,6 +96,7 @@ typedef struct {
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
     double stroke_m, dashpot_n;                 /* largest distance across a device, largest force of one */
+    double mat_rotation_rad;                    /* largest, of the mat of a core that lifted; 0: it did not */
     DevicePeak device[FLOORS_MAX + 1];          /* of every floor's link; the last: of the tuned mass */
     int n_devices;                              /* stops, links of both kinds, tuned masses */
     double cost;                                /* of these and of the core, by DesignOptions.prices */
@@ -166,6 +167,7 @@ typedef struct {
     const double *omega, *q, *v; /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
     const double *force;         /* (n_floors) [N] of the contacts on the floors; NULL: not known */
     const double *plastic;       /* (n_floors) [m] plastic drifts of the storeys; NULL: none yields */
+    double mat_nm;               /* [N m] F of the mat of a core that lifts (scene/uplift.h) */
     const double *u; /* (n_floors) displacements, of a sample for peaks, which has no q, v and force; else NULL */
     const double *damped_j;     /* (n_modes) */
     double input_j, contacts_j; /* by the ground; taken by the contacts: lost, stored, clamped; and by storeys

@@ -182,8 +182,8 @@ Status scene_frequencies(const Scene *scene, const double x[], SceneModes *out, 
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
 {
     const DesignSpace *s = &scene->design;
-    /* A link or friction link on every floor, the tuned mass. */
-    const int devices_max = (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0);
+    /* A link or friction link on every floor, the tuned mass, the mat that lifts. */
+    const int devices_max = (s->n_links + s->n_slips > 0 ? s->n_floors : 0) + (s->n_mass > 0) + 1;
     SimWorker *w = *out = NULL;
     TRY_ROOM(w, 1, "a simulator", err);
     w->scene = scene;
@@ -288,6 +288,8 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
         double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
+        if (model->may_lift) /* 0 but of a core that is joined */
+            pull -= s->mat_nm * model->B[(model->n_devices - 1) * model->m_pad + i];
         for (int j = 0; j < model->n; j++)
             pull += row[j] * force[j];
         for (int j = 0; j < model->n; j++)
@@ -423,6 +425,8 @@ static Status set_model(SimWorker *w, const CoreBeam *core, const Design *d, dou
                                    .damping = 2 * d->mass_damping * d->mass_kg * omega,
                                    .exponent = 1},
                          1);
+    if (core)
+        model_add_uplift(model, core);
     return STATUS_OK;
 }
 
@@ -436,6 +440,8 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
     if (status == STATUS_OK && w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, &w->core, 1, (double[]){d->t_base, d->t_top});
     THEN(status, model_set(&w->model, w->options, w->building, NULL, NULL, err));
+    if (status == STATUS_OK)
+        model_add_uplift(&w->model, &w->core);
     THEN(status, run_engine(w, result, err));
     if (status == STATUS_OK)
         joined_book(&joined, result);
@@ -531,6 +537,8 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(w->is_joined ? run_joined(w, d, result, err) : run_design(w, kind, *d, result, err));
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
+        if (result->mat_rotation_rad > 0)
+            result->forces.base_rotation_rad = result->mat_rotation_rad;
         result->forces_known = 1;
         if (w->is_joined) /* what connects them is not resolved */
             result->forces.contact_force_max_n = NAN;

@@ -39,10 +39,22 @@ static double device_pull(const SimModel *model, int e, const double q[], const 
     return viscous + model->device[e].stiffness * apart(model, e, q);
 }
 
+MatState contacts_mat(const Contacts *c, const double q[])
+{
+    const int e = c->model->n_devices - 1;
+    if (!c->model->may_lift)
+        return (MatState){0};
+    const Uplift *u = &c->model->device[e].lifts;
+    const double d = apart(c->model, e, q);
+    const double *y = c->mat_at ? q + c->mat_at : (double[MAT_STATES]){uplift_lifted(u, d)};
+    const double g = y[MAT_LIFTED], held = uplift_held(u, d, y);
+    return (MatState){-u->whole * g, g != 0 ? fabs(d + g) : 0, held, c->mat_at ? y[MAT_WORK] : held};
+}
+
 double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[])
 {
     double held = 0, power = 0;
-    for (int e = 0; e < model->n_devices; e++) {
+    for (int e = 0; e < model->n_devices - model->may_lift; e++) {
         const double d = apart(model, e, q);
         if (peak)
             peak[e] = (DevicePeak){fmax(peak[e].stroke, fabs(d)),
@@ -84,10 +96,13 @@ static void add_contact(const Contacts *c, int j, int s, double p, const double 
 ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[])
 {
     const SimModel *model = c->model;
+    const int n = model->n_devices - model->may_lift;
     ContactPower power = {0};
-    for (int e = 0; e < model->n_devices; e++)
+    for (int e = 0; e < n; e++)
         push_modes(model->m, model->B + (size_t)e * (size_t)model->m_pad, -device_pull(model, e, q, v, &power.devices),
                    g);
+    if (model->may_lift)
+        push_modes(model->m, model->B + (size_t)n * (size_t)model->m_pad, -contacts_mat(c, q).force_nm, g);
     if (model->nc == 0)
         return power;
     double w[FLOORS_MAX];
@@ -194,7 +209,7 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
         const int touches = s && p > 0;
         force[j] = touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
     }
-    for (int e = 0; e < model->n_devices; e++) {
+    for (int e = 0; e < model->n_devices - model->may_lift; e++) {
         double power = 0;
         force[model->device[e].floor] -= device_pull(model, e, q, v, &power);
     }

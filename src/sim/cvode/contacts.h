@@ -24,9 +24,10 @@ typedef struct {
     double t_before;       /* [s] by overlap only: the start of the step */
     double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
     long closings[FLOORS_MAX];
-    long impacts, floored;                                              /* contact onsets, those with v0 limited */
-    OnsetLog *log;                                                      /* NULL: none */
-    ForceMonitor *forces;                                               /* NULL: none */
+    long impacts, floored; /* contact onsets, those with v0 limited */
+    OnsetLog *log;         /* NULL: none */
+    ForceMonitor *forces;  /* NULL: none */
+    int mat_at;            /* where the states of the mat stand behind q, 0: it has no dashpot */
     double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX]; /* [s], [N], [W] at the last record */
 } Contacts;
 
@@ -48,6 +49,13 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
 
 /* [J] In the springs of the devices. peak (n_devices; NULL: none) is raised to what each reaches here. */
 double devices_look(const SimModel *model, const double q[], const double v[], DevicePeak peak[]);
+
+/* The mat of a core that may lift, else 0: F; [rad] by which it is turned while it is up; [J] held, taken from the
+ * modes so far. */
+typedef struct {
+    double force_nm, turned, held, taken;
+} MatState;
+MatState contacts_mat(const Contacts *c, const double q[]);
 
 /* By overlap: the approach speed that a force on floor j, touching on side s, is to be computed with. */
 double contacts_speed(const Contacts *c, int j, int s);

@@ -61,10 +61,13 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
     result->device_loss_j = l->devices;
     model_report_devices(model, l->device, result);
     result->kinetic_strain_j += devices_look(model, q, v, NULL);
+    const MatState mat = contacts_mat(c, q);
+    result->kinetic_strain_j += mat.held;
+    result->mat_rotation_rad = l->mat_turned;
     for (int j = 0; j < model->n && model->nc > 0; j++)
         result_add_approach(result, &model->contact[j], l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
     peak_monitor_report(&l->peaks, result);
-    energy_balance_close(result, model->nb, model->like, model->nc, l->damped);
+    energy_balance_close(result, model->nb, model->like, model->nc, l->damped, mat.taken - mat.held);
     if (options->end_state) {
         memcpy(options->end_state, q, sizeof *q * (size_t)model->m);
         memcpy(options->end_state + model->m, v, sizeof *v * (size_t)model->m);

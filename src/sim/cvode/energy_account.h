@@ -12,7 +12,8 @@ typedef struct {
     const SimModel *model;
     PeakMonitor peaks;
     double damped[MODES_MAX], input, lost, clamp, devices; /* [J] */
-    DevicePeak device[FLOORS_MAX + 1];                     /* (n_devices) */
+    double mat_turned;                                     /* [rad] most of the mat that lifts */
+    DevicePeak device[FLOORS_MAX + 2];                     /* (n_devices) */
     long steps, evaluations;
 } EnergyAccount;
 

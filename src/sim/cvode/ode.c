@@ -19,9 +19,15 @@ static int storeys_at(const Ode *o)
     return o->with_energies ? 3 * o->model->m + 3 + (o->model->n_devices > 0) : 2 * o->model->m;
 }
 
+static const Uplift *mat_of(const Ode *o)
+{
+    return &o->model->device[o->model->n_devices - 1].lifts;
+}
+
 int ode_size(const Ode *o)
 {
-    return storeys_at(o) + (o->model->yields ? 2 * o->model->n : 0);
+    return o->contacts.mat_at ? o->contacts.mat_at + MAT_STATES
+                              : storeys_at(o) + (o->model->yields ? 2 * o->model->n : 0);
 }
 
 int ode_n_roots(const Ode *o)
@@ -112,6 +118,11 @@ int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector,
         if (model->n_devices > 0)
             rest[3] = power.devices;
     }
+    if (o->contacts.mat_at) {
+        const double *row = model->B + (model->n_devices - 1) * model->m_pad;
+        const int at = o->contacts.mat_at;
+        uplift_rates(mat_of(o), dot_product(m, row, y), dot_product(m, row, v), y + at, dq + at);
+    }
     if (model->yields) {
         const double *p = y + storeys_at(o);
         double d[FLOORS_MAX], d_dot[FLOORS_MAX], *rate = dq + storeys_at(o);
@@ -200,6 +211,8 @@ static void set_tolerances(const Ode *o, double level)
     }
     for (int i = 2 * m; i < ode_size(o); i++)
         tolerance[i] = level * momentum * momentum;
+    for (int i = MAT_LIFTED; o->contacts.mat_at && i <= MAT_CONE; i++)
+        tolerance[o->contacts.mat_at + i] = level * mat_of(o)->theta_up;
     for (int j = 0; model->yields && j < model->n; j++)
         if (model->yield_n_m[j] > 0)
             tolerance[storeys_at(o) + j] = level * model->yield_m[j];
@@ -214,6 +227,8 @@ int ode_prepare(Ode *o, const double rtol[3])
     o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
     o->storeys.model = model;
     o->contacts = (Contacts){.model = model, .log = o->options->onsets, .forces = o->options->forces};
+    if (o->with_energies && model->may_lift && mat_of(o)->dashpot > 0)
+        o->contacts.mat_at = ode_size(o);
     if (o->contacts.forces)
         force_monitor_start(o->contacts.forces, model->nc - model->has_mass, o->options->duration);
     energy_account_start(&o->account, model);
@@ -248,6 +263,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
     const int m = model->m;
     double force[FLOORS_MAX];
     contacts_forces(&o->contacts, y, y + m, force);
+    const MatState mat = contacts_mat(&o->contacts, y);
     SimSample s = {.t = t,
                    .spacing = spacing,
                    .ground = ground(o, t),
@@ -258,6 +274,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
                    .v = y + m,
                    .force = force,
                    .plastic = model->yields ? y + storeys_at(o) : NULL,
+                   .mat_nm = mat.force_nm,
                    .input_j = NAN,
                    .contacts_j = NAN};
     if (o->with_energies) {
@@ -272,6 +289,7 @@ static void send_sample(Ode *o, double t, double spacing, const double y[])
         s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y) + taken;
         if (model->n_devices > 0)
             s.contacts_j += y[3 * m + 3] + devices_look(model, y, y + m, o->account.device);
+        s.contacts_j += mat.taken;
     }
     o->options->sample(&s, o->options->sample_user);
 }
@@ -307,6 +325,8 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     o->power_sampled.pushed = add_forces(o, t, y + model->m, contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
+    const MatState mat = contacts_mat(&o->contacts, y);
+    o->account.mat_turned = fmax(o->account.mat_turned, mat.turned);
     if (o->contacts.forces) {
         const FloorSet in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
         force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
@@ -316,6 +336,7 @@ static void sample(Ode *o, double t, const double y[], double seconds)
                                                               .core_q = y + model->nb,
                                                               .force = force,
                                                               .plastic = model->yields ? y + storeys_at(o) : NULL,
+                                                              .mat_nm = mat.force_nm,
                                                               .in_contact = in_contact});
     }
     if (!o->with_energies)

@@ -3,6 +3,7 @@
  *   y = [q (m), q' (m)]                                      energies by Gauss-Lobatto quadrature of dense output
  *   y = [q (m), q' (m), damped (m), input, lost, clamp]      with_energies: integrated beside the motion
  *       [by devices]                                       after them, where there are devices
+ *       [g, s, W]                                            at the end, of a mat that lifts and has a dashpot: as well
  *       [p (n), W (n)]                                       after them, of storeys that yield: with_energies alone
  *
  * Located contacts and yielding: one root per floor, then one per storey that yields; at a root a flag flips and the

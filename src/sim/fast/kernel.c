@@ -21,6 +21,18 @@ static inline int n_devices(const FastWork *k)
     return PLAIN ? 0 : k->n_devices;
 }
 
+/* Is the last device the mat of a core that lifts? */
+static inline int may_lift(const FastWork *k)
+{
+    return !PLAIN && k->model->may_lift;
+}
+
+/* Do devices act, so that nothing is a free flight? A mat acts while it is up. */
+static inline int devices_act(const FastWork *k)
+{
+    return n_devices(k) > may_lift(k) || (may_lift(k) && k->lifting);
+}
+
 static inline int is_pushed(const FastWork *k)
 {
     return !PLAIN && k->has_push;
@@ -208,7 +220,8 @@ static int interval(FastWork *k, double start, double a0, double a1)
                                     : yields(k) || n_devices(k) > 0 ? 0
                                                                     : LEVEL_MAX,
                                     k->yielding_level);
-        if (!(!k->in_contact && !k->yielding && n_devices(k) == 0 && fly_on(k, &in, resolving)) &&
+        const int longest = has_core || yields(k) ? resolving : LEVEL_MAX;
+        if (!(!k->in_contact && !k->yielding && !devices_act(k) && fly_on(k, &in, longest)) &&
             !step_on(k, &in, resolving))
             return 0;
         if (k->options->sample && in.at < TICKS && in.at % (TICKS >> k->sample_level) == 0)
@@ -286,7 +299,7 @@ static void enter_forces(FastWork *k, const Motion *motion, long i, double share
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->oscillatory || k->in_contact || k->yielding || n_devices(k) > 0 || first < k->free_from ||
+    if (!k->oscillatory || k->in_contact || k->yielding || devices_act(k) || first < k->free_from ||
         end - first < FREE_INTERVALS_MIN)
         return 0;
     const long n = k->free_count < end - first ? k->free_count : end - first;
@@ -391,6 +404,15 @@ static int storeys_may_yield(FastWork *k, double energy)
     return 0;
 }
 
+/* Can the mat lift with so much energy [J]? */
+static int mat_may_lift(const FastWork *k, double energy)
+{
+    double soft = 0;
+    for (int i = 0; may_lift(k) && i < k->m_pad; i++)
+        soft += pow(scalars_const(mat_row(k))[i], 2) * scalars_const(k->flexibility)[i];
+    return may_lift(k) && sqrt(2 * energy * soft) > mat_of(k)->theta_up;
+}
+
 /* Is so little energy left, and to come from sample i of the motion on, that contacts can change no result? Notes how
  * calm it is. */
 static int is_settled(FastWork *k, const Motion *motion, long i)
@@ -402,7 +424,7 @@ static int is_settled(FastWork *k, const Motion *motion, long i)
     k->most_energy = larger(energy, k->most_energy);
     const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
     k->calm = calm_of(k, left);
-    return !k->in_contact && n_devices(k) == 0 && !storeys_may_yield(k, left) &&
+    return !k->in_contact && !devices_act(k) && !storeys_may_yield(k, left) && !mat_may_lift(k, left) &&
            left <= k->tolerances->tail_tolerance * energy_scale(k) && left <= PEAK_ENERGY * k->most_energy &&
            (k->tolerances->tail_share == 0 || left <= k->tolerances->tail_share * smallest_share(k));
 }
@@ -529,12 +551,14 @@ static void report_energies(FastWork *k, SimResult *r)
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
-    const double held = held_by_devices(k);
+    const double held = held_by_devices(k), of_mat = held_by_mat(k);
     r->device_loss_j = k->device_taken - held;
-    r->kinetic_strain_j += held;
+    r->kinetic_strain_j += held + of_mat;
+    *(k->nc > 0 ? &r->damped_core_j : &r->damped_building_j) += k->mat[MAT_WORK] - of_mat;
+    r->mat_rotation_rad = k->mat_turned;
     model_report_devices(k->model, k->device, r);
     const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j -
-                                k->device_taken - (yields(k) ? report_storeys(k, r) : 0);
+                                k->device_taken - k->mat[MAT_WORK] - (yields(k) ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)

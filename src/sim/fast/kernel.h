@@ -161,19 +161,21 @@ typedef struct FastWork {
 
     /* the motion so far */
     State now, next;
-    vec *held;                 /* (m_pad) modal load of the plastic drifts at the start of the step */
-    vec *rest;                 /* (n_pad) [m] |z| of the storeys at rest under it */
-    int yielding_level;        /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
-    double storey_rate;        /* [1/s2] times the square of a step: what the other storeys change of one, at most */
-    int yielding;              /* some storey did in the last step */
-    double hysteresis;         /* [J] */
-    m22 *newton_g, *newton_LU; /* (rows, rows) of Active */
-    double LU_of;              /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
-    int are_linear;            /* all devices */
-    vec *bubble;               /* (c_pad) [N] of the contact forces over the step under way */
-    vec *peak_u, *peak_d, *peak_a;                              /* (n_pad) */
-    double v0[FLOORS_PAD_MAX];                                  /* [m/s] of the open contact */
-    int side[FLOORS_PAD_MAX];                                   /* 0 no contact, +1 or -1 */
+    vec *held;          /* (m_pad) modal load of the plastic drifts at the start of the step */
+    vec *rest;          /* (n_pad) [m] |z| of the storeys at rest under it */
+    int yielding_level; /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
+    double storey_rate; /* [1/s2] times the square of a step: what the other storeys change of one, at most */
+    int yielding;       /* some storey did in the last step */
+    int lifting;        /* the mat of the core was up, or its cone moved, at the end of the last step: */
+    double mat[MAT_STATES], mat_turned; /* there; [rad] the most so far */
+    double hysteresis;                  /* [J] */
+    m22 *newton_g, *newton_LU;          /* (rows, rows) of Active */
+    double LU_of;                  /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
+    int are_linear;                /* all devices */
+    vec *bubble;                   /* (c_pad) [N] of the contact forces over the step under way */
+    vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
+    double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
+    int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
     double force_slope[CHANNELS_MAX], force_bend[CHANNELS_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
     FloorSet in_contact;
     int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
@@ -205,7 +207,7 @@ typedef struct FastWork {
     /* energy account and counts */
     double contact_lost, contact_clamped;
     double device_taken;                 /* [J] */
-    DevicePeak device[FLOORS_MAX + 1];   /* (n_devices) */
+    DevicePeak device[FLOORS_MAX + 2];   /* (n_devices) */
     double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
     long closings[FLOORS_PAD_MAX];
     long impacts, v0_limited, steps, flights, forces;
