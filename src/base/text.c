@@ -70,6 +70,18 @@ int text_ends(const char *text, const char *end)
     return n >= own && strcmp(text + n - own, end) == 0;
 }
 
+char *text_shell(const char *word, char *to)
+{
+    const int is_plain = *word && !strpbrk(word, " \t\n\"'`$&;()*?<>|\\!#~[]{}");
+    char *end = to;
+    if (!is_plain)
+        *end++ = '\'';
+    for (; *word; word++)
+        end += *word == '\'' ? sprintf(end, "'\\''") : sprintf(end, "%c", *word);
+    sprintf(end, "%s", is_plain ? "" : "'");
+    return to;
+}
+
 void text_html(FILE *out, const char *words)
 {
     for (; *words; words++)

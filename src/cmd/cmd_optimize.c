@@ -2,6 +2,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/improve.h"
@@ -241,8 +242,8 @@ static Status report_json(const Run *run, const StudySummary *summary, Err *err)
 
 static void tell_how_to_resume(const StudySummary *summary)
 {
-    const char *quote = strpbrk(summary->folder, " '\"$&;()*?<>|") ? "'" : "";
-    fprintf(stderr, "Resume it with:  %s optimize %s%s%s\n", program_invocation_name, quote, summary->folder, quote);
+    char folder[4 * PATH_MAX + 3];
+    fprintf(stderr, "Resume it with:  %s optimize %s\n", program_invocation_name, text_shell(summary->folder, folder));
 }
 
 /* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */

@@ -723,9 +723,11 @@ static void write_provenance(const Dossier *o)
     settings_compare(&none, o->r->run->settings, put_setting, settings);
     say(o, "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
     figures_html(o->out, settings);
-    say(o, "The same figures again:");
-    put(o, "code", "imtet simulate %s/settings.ini --design %s:%ld --set sim.accuracy=fine --json", o->r->run->folder,
-        o->r->run->folder, o->r->run->table.row[o->r->chosen].id);
+    char path[PATH_MAX], used[4 * PATH_MAX + 3], folder[4 * PATH_MAX + 3];
+    folder_path(o->r->run->folder, "settings.ini", path);
+    say(o, "The row of accuracy fine again:");
+    put(o, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json", text_shell(path, used),
+        text_shell(o->r->run->folder, folder), o->r->run->table.row[o->r->chosen].id);
     json_decref(from);
 }
 

@@ -9,9 +9,15 @@ static Status take_detail(Report *r, const DetailOptions *options, Err *err)
     Settings s = *r->run->settings;
     TRY(record_paths_find(&s, r->run->provenance, &options->moved, err));
     run_steps(r->run, r->chosen, &s.sim);
-    return r->has_detail
-               ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), options, &r->detail, err)
-               : STATUS_OK;
+    if (!r->has_detail)
+        return STATUS_OK;
+    TRY(detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), options, &r->detail, err));
+    /* A design that the study named has errors of its own, which are better known: one figure has one error. */
+    const double *known = r->is_robust ? NULL : r->run->table.row[r->chosen].err;
+    for (size_t k = 0; known && k < r->run->schema.n_obj + r->run->schema.n_extra; k++)
+        if (isfinite(known[k]))
+            r->detail.error[r->run->schema.order.of[k]] = known[k];
+    return STATUS_OK;
 }
 
 Report report_brief(const Run *run)
