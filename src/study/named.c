@@ -4,9 +4,9 @@
 #include "base/stat.h"
 
 /* Times that the steps are doubled, the last ones at once; copies of a design, first and where those disagree; designs
- * looked at together, before the front is formed again; how often, so that names which move again and again come to an
- * end. */
-enum { LEVELS = TOWER_LEVELS, ONE_BY_ONE = 2, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 16, ROUNDS = 32 };
+ * looked at together, before the front is formed again; how many in all, so that names which move again and again come to
+ * an end, the same one after a kill. */
+enum { LEVELS = TOWER_LEVELS, ONE_BY_ONE = 2, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 16, NAMED_MAX = 64 };
 
 /* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
 static const double PROMISE[N_MEASURES] = {[MEASURE_J1] = 1e-3,  [MEASURE_J2] = 3e-3,     [MEASURE_J3] = 1e-2,
@@ -69,7 +69,7 @@ static void find(Work *w)
     const Run *run = &w->run;
     size_t rows[NAMED_SPREAD];
     w->n = 0;
-    if (run->n_front == 0)
+    if (run->n_front == 0 || run->finer.n >= NAMED_MAX)
         return;
     add(w, run_knee(run));
     for (size_t k = 0; k < run->schema.n_obj; k++)
@@ -241,7 +241,7 @@ Status named_simulate(RunStore *store, const Settings *used, const Problem *prob
     w->problem.observer = (Observer){.go_on = may_go_on, .user = w};
     w->problem.order = NULL;
     Status status = queue_open(&w->queue, &w->problem, err);
-    for (int round = 0; round < ROUNDS && status == STATUS_OK && w->n > 0; round++) {
+    while (status == STATUS_OK && w->n > 0) {
         status = store_read(w->store, &w->run, err);
         if (status != STATUS_OK)
             break;
