@@ -4,8 +4,8 @@
 #include "base/stat.h"
 
 /* Times that the steps are doubled, the last ones at once; copies of a design, first and where those disagree; designs
- * looked at together, before the front is formed again; how many in all, so that names which move again and again come to
- * an end, the same one after a kill. */
+ * looked at together, before the front is formed again; how many in all, so that names which move again and again come
+ * to an end, the same one after a kill. */
 enum { LEVELS = TOWER_LEVELS, ONE_BY_ONE = 2, COPIES_FIRST = 2, COPIES = 6, TOGETHER = 16, NAMED_MAX = 64 };
 
 /* What sim.accuracy = standard promises of a measure, relative (docs/promise.md); shares below SHARE_MIN as of that. */
