@@ -146,8 +146,7 @@ static imtet_status ask(imtet_scene *s, Status answer(Question *q, Err *err), Qu
         return api_status(status, &err, error);
     q.tower = tower_of(&q.problem);
     status = check_question(&q, &s->settings.sim, tower_design(q.tower), &err);
-    if (status == STATUS_OK)
-        status = result_create(out, &err);
+    THEN(status, result_create(out, &err));
     if (status == STATUS_OK) {
         q.result = *out;
         status = result_finish(out, answer(&q, &err), &err);
@@ -211,15 +210,13 @@ imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_
 static Status find_device(const Question *q, LinearDevice *device, Err *err)
 {
     DeviceSearch search = {.kind = q->kind, .x = q->x};
-    if (SCENES[q->kind].has & HAS_DEVICE)
+    const char *name;
+    double value;
+    if (case_has_device(q->kind))
         TRY(devices_find(&q->problem, 1, &search, err));
     *device = search.device;
-    if (q->kind == SCENE_TMD) {
-        result_numbers(q->result, "tmd_hz", 1, &device->tmd_hz);
-        result_numbers(q->result, "tmd_damping", 1, &device->tmd_damping);
-    }
-    if (q->kind == SCENE_LINKS)
-        result_numbers(q->result, "link_ns_m", 1, &device->link_ns_m);
+    for (int i = 0; (name = case_device_number(q->kind, device, i, &value)); i++)
+        result_numbers(q->result, name, 1, &value);
     return STATUS_OK;
 }
 
@@ -306,8 +303,7 @@ static Status read_motion(const char *path, const char *const list[], imtet_resu
     TRY(settings_check(&s, err));
     TRY(motion_open(&m, &s.motion, err));
     Status status = motion_scale(&m, &s.motion, err);
-    if (status == STATUS_OK)
-        status = result_create(out, err);
+    THEN(status, result_create(out, err));
     if (status == STATUS_OK) {
         imtet_result *r = *out;
         result_numbers(r, "acceleration", m.n, m.accel);

@@ -32,7 +32,7 @@ typedef struct {
 
 /* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
 
-enum { IDA_SHOWN = 3, IDA_CASES = SCENE_RIGID + 1 }; /* objectives; cases without a device, which stand first */
+enum { IDA_SHOWN = 3 }; /* objectives; of the cases those without a device */
 static const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
 
 static int is_spectral(const Evaluations *e)
@@ -42,7 +42,9 @@ static int is_spectral(const Evaluations *e)
 
 static void ida_print(const Evaluations *e, const MeasureOrder *order)
 {
-    for (int c = 0; c < IDA_CASES; c++) {
+    for (SceneKind c = 0; c < N_SCENES; c++) {
+        if (case_has_device(c))
+            continue;
         json_t *table = json_array();
         printf(e->n_read == 1 ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", SCENES[c].words,
                e->n_read);
@@ -74,7 +76,9 @@ static json_t *ida_json(const Evaluations *e)
     static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
     json_t *o = json_object();
     json_object_set_new(o, e->intensity, json_numbers(e->n_levels, e->level));
-    for (int c = 0; c < IDA_CASES; c++) {
+    for (SceneKind c = 0; c < N_SCENES; c++) {
+        if (case_has_device(c))
+            continue;
         json_t *one = json_object();
         for (int i = 0; i < IDA_FRACTILES; i++)
             json_object_set_new(one, KEYS[i], json_fractiles(e, c, IDA_FRACTILE[i]));
@@ -106,14 +110,16 @@ static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const ch
         for (size_t r = 0; r < e->n_records; r++)
             if (e->record[r].readable == STATUS_OK)
                 json_array_append_new(lines, ida_line(e, order->of[k], r, SCENE_IMPACT, -1));
-        for (int c = 0; c < IDA_CASES; c++)
-            for (int i = 0; i < IDA_FRACTILES; i++)
+        for (SceneKind c = 0; c < N_SCENES; c++)
+            for (int i = 0; i < IDA_FRACTILES && !case_has_device(c); i++)
                 json_array_append_new(lines, ida_line(e, order->of[k], 0, c, i));
         snprintf(text, sizeof text, "%s [%s]", of->what, of->unit);
         json_t *x = json_of("label=%s zero=%c ticks=%d", text, 1, 5);
         json_array_append_new(columns, json_pack("[o]", panel("", x, intensity_axis(e), lines)));
     }
-    for (int c = 0; c < IDA_CASES; c++) {
+    for (SceneKind c = 0; c < N_SCENES; c++) {
+        if (case_has_device(c))
+            continue;
         snprintf(text, sizeof text, "%s: median, 16 and 84 %%", SCENES[c].words);
         json_array_append_new(names, name_of(text, CASE_LOOK[c].colour, "\u25a0"));
     }
@@ -127,13 +133,6 @@ static double level_of(const Evaluations *e, const EvaluatedRun *run)
     return e->level[(size_t)(run - e->run) % e->n_levels];
 }
 
-static json_t *json_put_device(json_t *o, SceneKind kind, const LinearDevice *d)
-{
-    if (kind == SCENE_TMD)
-        json_put(o, "tmd_hz=%g tmd_damping=%g", d->tmd_hz, d->tmd_damping);
-    return kind == SCENE_LINKS ? json_put(o, "link_ns_m=%g", d->link_ns_m) : o;
-}
-
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     const MeasureOrder *order = tower_measures(tower_of(&e->tower));
@@ -144,7 +143,7 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
     for (SceneKind c = 0; c < N_SCENES; c++)
         if (evaluated_has(e, run, c))
             json_object_set_new(o, SCENES[c].key,
-                                json_put_device(json_result(order, c, &run->result[c]), c, &run->device[c]));
+                                put_device(json_result(order, c, &run->result[c]), c, &run->device[c]));
     if (run->error_known)
         put_errors(json_object_get(o, SCENES[SCENE_IMPACT].key), run->error, run->sd);
     if (e->replicates > 0)
@@ -218,8 +217,9 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         add_rows(table, e, i);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
-        for (int c = 0; c < IDA_CASES; c++)
-            add_fractiles(table, e, l, c);
+        for (SceneKind c = 0; c < N_SCENES; c++)
+            if (!case_has_device(c))
+                add_fractiles(table, e, l, c);
     return figures_csv(table, path, err);
 }
 
@@ -235,12 +235,10 @@ static void print_motion(const Evaluations *e, size_t i)
 }
 
 /* name: of the record, empty where there is one. With the device that was found for it. */
-static void add_case(json_t *table, const char *name, const MeasureOrder *order, const EvaluatedRun *run, size_t c)
+static void add_case(json_t *table, const char *name, const MeasureOrder *order, const EvaluatedRun *run, SceneKind c)
 {
-    char label[400], device[DEVICE_TEXT_MAX];
-    case_device_text((SceneKind)c, &run->device[c], device);
-    snprintf(label, sizeof label, "%s%s%s%s%s%s", name, *name ? "  " : "", SCENES[c].words, *device ? " (" : "", device,
-             *device ? ")" : "");
+    char label[400], words[CASE_TEXT_MAX];
+    snprintf(label, sizeof label, "%s%s%s", name, *name ? "  " : "", case_text(c, &run->device[c], words));
     const int is_known = c == SCENE_IMPACT && run->error_known;
     figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
     if (c == SCENE_IMPACT && run->replicates.n_replicates > 0)

@@ -4,7 +4,6 @@
 #include "cmd/show.h"
 #include "report/pictures.h"
 
-static const SceneKind CASES[] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID, SCENE_LINKS};
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
 static const double YEARS = 50;
 static const double CUT_OFF_NOTICEABLE = 0.01; /* of the probability where a hazard curve begins */
@@ -122,8 +121,10 @@ static void each_curve(const Fragilities *f, const Evaluations *e, CurveFn *take
 {
     Curve c;
     for (size_t i = 0; i < f->limits.n; i++)
-        for (size_t k = 0; k < N_OF(CASES); k++) {
-            find_curve(f, e, i, CASES[k], &c);
+        for (SceneKind k = 0; k < N_SCENES; k++) {
+            if (!evaluated_has(e, e->run, k))
+                continue;
+            find_curve(f, e, i, k, &c);
             take(f, e, &c, user);
         }
 }
@@ -208,8 +209,7 @@ static void add_object(const Fragilities *f, const Evaluations *e, const Curve *
     if (f->hazard)
         json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
                  -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
-    if (c->which == SCENE_LINKS)
-        json_put(o, "link_ns_m=%g", e->run[0].device[SCENE_LINKS].link_ns_m);
+    put_device(o, c->which, &e->run[0].device[c->which]);
     json_array_append_new(list, o);
 }
 
@@ -242,10 +242,11 @@ static json_t *describe_loss(const Fragilities *f, const Evaluations *e, const c
 json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people)
 {
     json_t *list = json_array();
-    for (size_t k = 0; k < N_OF(CASES); k++) {
-        const AnnualLoss y = ida_annual_loss(e, CASES[k], f->n_hazard, f->hazard);
-        const SceneCase *scene = &SCENES[CASES[k]];
-        json_array_append_new(list, describe_loss(f, e, for_people ? scene->words : scene->key, &y));
+    for (SceneKind k = 0; k < N_SCENES; k++) {
+        if (!evaluated_has(e, e->run, k))
+            continue;
+        const AnnualLoss y = ida_annual_loss(e, k, f->n_hazard, f->hazard);
+        json_array_append_new(list, describe_loss(f, e, for_people ? SCENES[k].words : SCENES[k].key, &y));
     }
     return list;
 }
@@ -269,7 +270,7 @@ static void draw_curve(const Fragilities *f, const Evaluations *e, const Curve *
     char title[200];
     (void)f;
     snprintf(title, sizeof title, "%s %s %g", c->name, relation(c), c->limit->bound);
-    if (c->which == CASES[0])
+    if (c->which == SCENE_IMPACT)
         json_array_append_new(panels,
                               panel(title, intensity_axis(e),
                                     json_of("label=%s domain=%p", "probability", json_numbers(2, (double[]){0, 1})),
@@ -298,9 +299,9 @@ Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *
             json_array_append_new(columns, json_array());
         json_array_append(json_array_get(columns, i % across), json_array_get(panels, i));
     }
-    for (size_t k = 0; k < N_OF(CASES); k++)
-        json_array_append_new(names,
-                              name_of(SCENES[CASES[k]].words, CASE_LOOK[CASES[k]].colour, CASE_LOOK[CASES[k]].mark));
+    for (SceneKind k = 0; k < N_SCENES; k++)
+        if (evaluated_has(e, e->run, k))
+            json_array_append_new(names, name_of(SCENES[k].words, CASE_LOOK[k].colour, CASE_LOOK[k].mark));
     json_decref(panels);
     const int rows = (int)((n + across - 1) / across);
     return drawing_save(drawing("", names, 380 * rows, columns), 30 + 400 * (int)across, path, err);

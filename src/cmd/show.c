@@ -297,6 +297,15 @@ json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *
     return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
 }
 
+json_t *put_device(json_t *o, SceneKind kind, const LinearDevice *device)
+{
+    const char *name;
+    double value;
+    for (int i = 0; (name = case_device_number(kind, device, i, &value)); i++)
+        json_object_set_new(o, name, json_number(value));
+    return o;
+}
+
 void put_measures(json_t *o, const MeasureOrder *order, const char *end, const double values[], const char *other,
                   const double others[])
 {
@@ -501,15 +510,14 @@ static void print_better(FILE *out, const char *verb, const Schema *schema, doub
 void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_SCENES])
 {
     double error[OBJECTIVES_MAX];
-    char device[DEVICE_TEXT_MAX], has[PROTECTION_MAX];
+    char words[CASE_TEXT_MAX], has[PROTECTION_MAX];
     Design design;
     const Schema *schema = &run->schema;
     const double *natural = run_f(run, row);
     run_likely(run, row, error);
     design_of(&schema->design, run_x(run, row), &design);
     for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
-        case_device_text(k, &baseline[k].device, device);
-        fprintf(out, "against %s%s%s%s: with %s ", SCENES[k].words, *device ? " (" : "", device, *device ? ")" : "",
+        fprintf(out, "against %s: with %s ", case_text(k, &baseline[k].device, words),
                 design_protection(&schema->design, &design, has));
         print_better(out, "better in ", schema, 1, natural, error, &baseline[k]);
         print_better(out, "; worse in ", schema, -1, natural, error, &baseline[k]);

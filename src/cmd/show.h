@@ -35,6 +35,9 @@ Status show_json(json_t *all, Err *err);
 
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r);
 
+/* The numbers of the device that was found for the case; returns o. */
+json_t *put_device(json_t *o, SceneKind kind, const LinearDevice *device);
+
 /* A cell for every measure, and for the chances of `order` unless that is NULL, its name before `end`, and behind each
  * the one of `others` before `other`, unless that is NULL. Values NULL: empty ones. */
 void put_measures(json_t *o, const MeasureOrder *order, const char *end, const double values[], const char *other,

@@ -21,6 +21,23 @@ void case_design(SceneKind kind, const LinearDevice *device, double core_kg, int
     }
 }
 
+const char *case_device_number(SceneKind kind, const LinearDevice *device, int i, double *value)
+{
+    const struct {
+        SceneKind kind;
+        const char *name;
+        double value;
+    } all[] = {{SCENE_TMD, "tmd_hz", device->tmd_hz},
+               {SCENE_TMD, "tmd_damping", device->tmd_damping},
+               {SCENE_LINKS, "link_ns_m", device->link_ns_m}};
+    for (size_t k = 0; k < N_OF(all); k++)
+        if (all[k].kind == kind && i-- == 0) {
+            *value = all[k].value;
+            return all[k].name;
+        }
+    return NULL;
+}
+
 const char *case_device_text(SceneKind kind, const LinearDevice *d, char text[DEVICE_TEXT_MAX])
 {
     text[0] = 0;
@@ -28,5 +45,13 @@ const char *case_device_text(SceneKind kind, const LinearDevice *d, char text[DE
         snprintf(text, DEVICE_TEXT_MAX, "%.3g Hz, damping %.2g", d->tmd_hz, d->tmd_damping);
     if (kind == SCENE_LINKS)
         snprintf(text, DEVICE_TEXT_MAX, "%.3g MN s/m per floor", 1e-6 * d->link_ns_m);
+    return text;
+}
+
+const char *case_text(SceneKind kind, const LinearDevice *device, char text[CASE_TEXT_MAX])
+{
+    char has[DEVICE_TEXT_MAX];
+    case_device_text(kind, device, has);
+    snprintf(text, CASE_TEXT_MAX, *has ? "%s (%s)" : "%s", SCENES[kind].words, has);
     return text;
 }

@@ -41,9 +41,20 @@ typedef struct {
 
 extern const SceneCase SCENES[N_SCENES];
 
+static inline int case_has_device(SceneKind kind)
+{
+    return (SCENES[kind].has & HAS_DEVICE) != 0;
+}
+
 /* Of a design with a core of core_kg, which has n floors: nothing to meet but the device. */
 void case_design(SceneKind kind, const LinearDevice *device, double core_kg, int n, Design *design);
 
+/* Number i of the device, by its name in files; NULL: it has no more. */
+const char *case_device_number(SceneKind kind, const LinearDevice *device, int i, double *value);
+
 /* The device in words, "0.241 Hz, damping 0.13"; empty where the case has none. Returns text. */
-enum { DEVICE_TEXT_MAX = 64 };
+enum { DEVICE_TEXT_MAX = 64, CASE_TEXT_MAX = 128 };
 const char *case_device_text(SceneKind kind, const LinearDevice *device, char text[DEVICE_TEXT_MAX]);
+
+/* The case and its device: "tuned mass damper (0.241 Hz, damping 0.13)". Returns text. */
+const char *case_text(SceneKind kind, const LinearDevice *device, char text[CASE_TEXT_MAX]);
