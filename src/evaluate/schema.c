@@ -152,14 +152,6 @@ double schema_value(const Schema *schema, int m, const double f[], const double 
     return NAN;
 }
 
-size_t schema_find_objective(const Schema *schema, const char *name)
-{
-    size_t k = 0;
-    while (k < schema->n_obj && strcmp(schema_objective(schema, k)->name, name) != 0)
-        k++;
-    return k;
-}
-
 Status schema_pick(const Schema *schema, size_t n, const char *where, const char *name, size_t *k, Err *err)
 {
     const char *names[OBJECTIVES_MAX + EXTRA_MAX];

@@ -54,9 +54,6 @@ int schema_word(const Schema *schema, size_t j, double x, char word[KIND_WORD_MA
 /* Variable j of a row of a table of words and numbers; STATUS_BAD_DATA: no word of its choice, no whole number. */
 Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, double *x, Err *err);
 
-/* Objective of that name, or n_obj. */
-size_t schema_find_objective(const Schema *schema, const char *name);
-
 /* *k: the one of that name among the first n of objectives and further results. Else "WHERE: NAME is no objective (of
  * more than n_obj: no result); did you mean ...?"; where: an option, "--NAME", for STATUS_USAGE, or what else it was
  * read from, for STATUS_BAD_DATA. */

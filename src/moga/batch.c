@@ -1,15 +1,12 @@
 #include "moga/batch.h"
 
-size_t batch_size_max(const SearchConfig *c)
-{
-    return c->surrogate == SURROGATE_OFF ? c->population / 2 : c->population;
-}
-
 size_t batch_size(const Common *c)
 {
-    const size_t least = c->config->population / BATCH_POPULATION_SHARE + 1, most = batch_size_max(c->config),
-                 grown = c->archive.n / BATCH_ARCHIVE_SHARE, wanted = MAX_OF(grown, least), size = MIN_OF(wanted, most);
-    return c->config->ahead < 0 ? size : MIN_OF(size, (size_t)c->config->ahead + 1);
+    const SearchConfig *o = c->config;
+    const size_t least = o->population / BATCH_POPULATION_SHARE + 1, grown = c->archive.n / BATCH_ARCHIVE_SHARE,
+                 most = o->surrogate == SURROGATE_OFF ? o->population / 2 : o->population,
+                 wanted = MAX_OF(grown, least), size = MIN_OF(wanted, most);
+    return o->ahead < 0 ? size : MIN_OF(size, (size_t)o->ahead + 1);
 }
 
 static int is_there(const Batch *b, size_t n_var, const double x[])

@@ -16,7 +16,6 @@ typedef struct {
 /* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates; no more
  * than a look-ahead that is given, and one. */
 size_t batch_size(const Common *c);
-size_t batch_size_max(const SearchConfig *c);
 
 /* Appends x unless it is known, the batch is full or all evaluations are spent; criterion: that picked it. */
 void batch_add(Batch *b, const Common *c, const double x[], EvaluationKind kind, InfillKind criterion);
