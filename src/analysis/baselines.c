@@ -19,14 +19,14 @@ Status baselines_find(const Problem *p, const double x[], int with_devices, Base
     for (SceneKind k = 0; k < N_SCENES; k++) {
         out[k] = (Baseline){.outcome = OUTCOME_ERROR,
                             .first = {.outcome = RUN_ENGINE_FAILED, .reason = "it was not asked for"}};
-        if (SCENES[k].has & HAS_DEVICE && with_devices)
+        if (case_has_device(k) && with_devices)
             found[n_found++] = (DeviceSearch){.kind = k, .x = x};
     }
     TRY(n_found > 0 ? devices_find(p, n_found, found, err) : STATUS_OK);
     for (size_t i = 0; i < n_found; i++)
         device[found[i].kind] = found[i].device;
     for (SceneKind k = SCENE_IMPACT + 1; k < N_SCENES; k++)
-        if (with_devices || !(SCENES[k].has & HAS_DEVICE))
+        if (with_devices || !case_has_device(k))
             task[n++] = (SimTask){.kind = k,
                                   .x = x,
                                   .device = device[k],

@@ -107,13 +107,13 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
 
 int evaluated_has(const Evaluations *e, const EvaluatedRun *run, SceneKind which)
 {
-    return !(SCENES[which].has & HAS_DEVICE) || (!e->level && !run->record->from_folder) ||
+    return !case_has_device(which) || (!e->level && !run->record->from_folder) ||
            (which == SCENE_LINKS && e->has_links);
 }
 
 static int finds_device(const Evaluations *e, size_t i, SceneKind which)
 {
-    return SCENES[which].has & HAS_DEVICE && evaluated_has(e, &e->run[i], which) &&
+    return case_has_device(which) && evaluated_has(e, &e->run[i], which) &&
            (!e->level || i % e->n_levels == e->n_levels / 2);
 }
 
@@ -122,7 +122,7 @@ static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask ta
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
     for (SceneKind c = 0; c < N_SCENES; c++)
-        if (!(SCENES[c].has & HAS_DEVICE))
+        if (!case_has_device(c))
             task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .result = &run->result[c]};
     run->error_known = e->is_estimated && !e->level;
     if (run->error_known && run->record->from_folder)
@@ -171,7 +171,7 @@ static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask t
     EvaluatedRun *run = &e->run[i];
     size_t n = 0;
     for (SceneKind c = 0; c < N_SCENES; c++)
-        if (SCENES[c].has & HAS_DEVICE && evaluated_has(e, run, c))
+        if (case_has_device(c) && evaluated_has(e, run, c))
             task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .device = run->device[c], .result = &run->result[c]};
     return n;
 }

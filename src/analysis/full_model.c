@@ -36,8 +36,7 @@ static Status find(const Settings *s, SceneKind kind, size_t n, const double X[]
         tasks[i] = (SimTask){
             .kind = kind, .x = X ? X + i % n * p.n_var : NULL, .scene = i / n, .result = &m->result[i / n][i % n]};
     Status status = tower_motion(&p, REDUCED, &m->motion, err);
-    if (status == STATUS_OK)
-        status = tower_run(&p, MODELS * n, tasks, NULL, NULL, err);
+    THEN(status, tower_run(&p, MODELS * n, tasks, NULL, NULL, err));
     if (status == STATUS_OK && m->error)
         status = estimate_designs(&p, n, tasks, m->result[REDUCED], m->error, NULL, err);
     problem_close(&p);

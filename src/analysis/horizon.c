@@ -77,8 +77,7 @@ Status horizon_find(const Scenario *scenario, const double x[], double change, H
     for (int j = 0; j < design->n_var; j++)
         changed[j] = x[j] * (j < design->n_gaps ? 1 + change : 1);
     Status status = follow(scenario, x, &one, err);
-    if (status == STATUS_OK)
-        status = follow(scenario, changed, &other, err);
+    THEN(status, follow(scenario, changed, &other, err));
     if (status == STATUS_OK)
         compare(&one, &other, out);
     free(one.t);

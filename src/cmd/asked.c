@@ -32,8 +32,7 @@ static Status ask(Adapter *a, size_t n, const double X[], EvaluationTable *out, 
         status = queue_ask(q, &(Asked){.x = X + i * p.n_var}, err);
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
         status = queue_next(q, &done, err);
-        if (status == STATUS_OK)
-            status = evaluation_table_append(out, done.evaluation, err);
+        THEN(status, evaluation_table_append(out, done.evaluation, err));
     }
     queue_close(q);
     return status == STATUS_OK ? adapter_constrain(a, count_constraints(out), err) : status;
@@ -77,10 +76,8 @@ static Status simulate(const Args *args, Adapter *a, Err *err)
     Designs d;
     EvaluationTable t = {0};
     Status status = designs_of_problem(&d, args_value(args, "--design"), adapter_schema(a), err);
-    if (status == STATUS_OK)
-        status = ask(a, d.n, d.x, &t, err);
-    if (status == STATUS_OK)
-        status = show(args, adapter_schema(a), &d, &t, err);
+    THEN(status, ask(a, d.n, d.x, &t, err));
+    THEN(status, show(args, adapter_schema(a), &d, &t, err));
     evaluation_table_free(&t);
     design_free(&d);
     return status;

@@ -240,8 +240,7 @@ static Status run(const Args *args, Err *err)
     Model *m;
     TRY_ROOM(m, 1, "a building", err);
     Status status = open_model(args, m, err);
-    if (status == STATUS_OK)
-        status = show(args, m, err);
+    THEN(status, show(args, m, err));
     building_free(&m->b);
     frame_free(&m->frame);
     free(m);

@@ -98,10 +98,9 @@ static Status report(const Args *args, const Run *run, Err *err)
         : args_has(args, "--pictures") && run->n_front > 0 ? browser_check(path, err)
                                                            : STATUS_OK);
     status = open_report(args, run, &records, &r, err);
-    if (status == STATUS_OK)
-        status = is_dossier                     ? dossier(args, run, &r, &records, path, err)
+    THEN(status, is_dossier                     ? dossier(args, run, &r, &records, path, err)
                  : args_has(args, "--pictures") ? report_pictures(&r, path, err)
-                                                : report_page(&r, path, err);
+                                                : report_page(&r, path, err));
     report_close(&r);
     if (status == STATUS_OK && strcmp(path, "-") != 0)
         printf("%s\n", path);

@@ -371,10 +371,9 @@ static Status run(const Args *args, Err *err)
     if (s.problem.kind != PROBLEM_TOWER)
         return asked_simulate(args, &s, err);
     Status status = take_designs(args, &s, &job, err);
-    if (status == STATUS_OK)
-        status = args_has(args, "--horizon")       ? show_horizon(args, &s, job.designs.x, err)
+    THEN(status, args_has(args, "--horizon")       ? show_horizon(args, &s, job.designs.x, err)
                  : args_has(args, "--sensitivity") ? show_sensitivities(args, &s, job.designs.x, err)
-                                                   : show_responses(args, &s, &job, err);
+                                                   : show_responses(args, &s, &job, err));
     free(job.tasks);
     free(job.results);
     free(job.error);

@@ -461,8 +461,7 @@ static Status run(const Args *args, Err *err)
     Curve *c = calloc(n + 3, sizeof *c);
     all.s = calloc(n, sizeof *all.s);
     Status status = all.s && c ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
-    if (status == STATUS_OK)
-        status = n == 1 ? give_one(args, all.s, err) : give_all(args, n, all.s, c, err);
+    THEN(status, n == 1 ? give_one(args, all.s, err) : give_all(args, n, all.s, c, err));
     for (size_t k = 0; all.s && k < n; k++)
         spectrum_close(&all.s[k]);
     free(all.s);

@@ -101,8 +101,7 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
     Status status = take_ids(&t, &ids, err);
     if (status == STATUS_OK && ids)
         status = drop_results(&t, path, space, err);
-    if (status == STATUS_OK)
-        status = design_of_table(d, &t, path, space, err);
+    THEN(status, design_of_table(d, &t, path, space, err));
     table_free(&t);
     if (status != STATUS_OK) {
         free(ids);
@@ -180,10 +179,8 @@ static Status take_from_run(Designs *d, const char *folder, const char *choice, 
     size_t row;
     TRY(run_read(&run, folder, err));
     Status status = run_pick(&run, choice ? choice : "knee", &row, err);
-    if (status == STATUS_OK)
-        status = check_space(&run, folder, space, err);
-    if (status == STATUS_OK)
-        status = copy_row(d, &run, row, err);
+    THEN(status, check_space(&run, folder, space, err));
+    THEN(status, copy_row(d, &run, row, err));
     if (status == STATUS_OK && s)
         tell_changed(s, &run);
     if (status == STATUS_OK && as_known)
@@ -259,10 +256,8 @@ static Status take_row(Designs *d, const char *folder, const char *choice, const
     size_t row;
     TRY(run_read(&run, folder, err));
     Status status = run_pick(&run, choice ? choice : "knee", &row, err);
-    if (status == STATUS_OK)
-        status = initial_designs_fit(&run, "--design", schema, err);
-    if (status == STATUS_OK)
-        status = copy_row(d, &run, row, err);
+    THEN(status, initial_designs_fit(&run, "--design", schema, err));
+    THEN(status, copy_row(d, &run, row, err));
     d->space.n_var = (int)schema->n_var;
     run_free(&run);
     return status;

@@ -259,8 +259,7 @@ static void write_building(const Dossier *o)
     Status status = building_load(&b, &o->s->building, &e);
     if (status == STATUS_OK && has_frame)
         status = frame_read(&frame, &o->s->building, &e);
-    if (status == STATUS_OK)
-        status = building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e);
+    THEN(status, building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e));
     if (status == STATUS_OK) {
         put_lines(table, "floors", "%.0f", b.n);
         put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));

@@ -20,8 +20,7 @@ Status improve_run(const Args *args, const char *word, Status (*work)(const Args
 {
     Improve m = {0};
     Status status = open_run(&m, args, word, err);
-    if (status == STATUS_OK)
-        status = work(args, &m, err);
+    THEN(status, work(args, &m, err));
     improved_free(&m.result);
     run_free(&m.run);
     store_free(m.store);

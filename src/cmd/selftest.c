@@ -249,10 +249,8 @@ Status selftest(int as_json, Err *err)
     Selftest t = {.as_json = as_json, .checks = json_array()};
     const double begun = clock_seconds();
     Status status = check_tower(&t, err);
-    if (status == STATUS_OK)
-        status = check_search(&t, err);
-    if (status == STATUS_OK)
-        status = verdict(&t, clock_seconds() - begun, err);
+    THEN(status, check_search(&t, err));
+    THEN(status, verdict(&t, clock_seconds() - begun, err));
     json_decref(t.checks);
     return status;
 }

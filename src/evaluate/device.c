@@ -195,12 +195,10 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
     }
 
     /* The building alone, the first grid, and finer ones, the first of them by all records where few were chosen. */
-    if (status == STATUS_OK)
-        status = simulate(p, n, tuning, err);
+    THEN(status, simulate(p, n, tuning, err));
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         status = begin(&tuning[i], err);
-    if (status == STATUS_OK)
-        status = simulate(p, n, tuning, err);
+    THEN(status, simulate(p, n, tuning, err));
     for (int grid = -by_few; grid < FINER && status == STATUS_OK; grid++) {
         for (size_t i = 0; i < n; i++)
             surround(&tuning[i], grid < 0);

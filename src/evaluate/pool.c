@@ -176,8 +176,7 @@ Status pool_do(Pool *p, size_t worker, size_t n, const Task tasks[], size_t *n_d
     for (*n_done = 0; status == STATUS_OK && *n_done < n; *n_done += w->n_done) {
         const size_t asked = MIN_OF(MIN_OF(most, w->batch), n - *n_done);
         status = pool_ask(w, asked, tasks + *n_done, err);
-        if (status == STATUS_OK)
-            status = pool_wait(w, err);
+        THEN(status, pool_wait(w, err));
         most = w->n_done < asked ? 1 : most;
     }
     return status;

@@ -97,8 +97,7 @@ Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
 {
     Settings *s;
     Status status = read_scene(p->self, scene, &s, err);
-    if (status == STATUS_OK)
-        status = motion_scale_copy(out, &record_of(p->self, scene)->motion, &s->motion, err);
+    THEN(status, motion_scale_copy(out, &record_of(p->self, scene)->motion, &s->motion, err));
     free(s);
     return status;
 }
@@ -509,8 +508,7 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
     Recipe *r;
     TRY_ROOM(list, 1, "a list of records", err);
     Status status = list_records(s, use, list, err);
-    if (status == STATUS_OK)
-        status = make_recipe(&r, s, list->n, list->n, err);
+    THEN(status, make_recipe(&r, s, list->n, list->n, err));
     if (status == STATUS_OK) {
         memcpy(recipe_record(r, 0), list->path, list->n * sizeof list->path[0]);
         for (size_t i = 0; i < list->n; i++)

@@ -262,8 +262,7 @@ static Status fit_levels(const Screening *q, const Archive *a, Levels **out, Err
             cheap[(n + j) * m + k] = whole_value(q, a, i, k);
         }
     }
-    if (status == STATUS_OK)
-        status = levels_fit(out, q->problem, q->is_biased, n, m, x, cheap, cheap + n * m, err);
+    THEN(status, levels_fit(out, q->problem, q->is_biased, n, m, x, cheap, cheap + n * m, err));
     free(x);
     free(cheap);
     return status;

@@ -62,8 +62,7 @@ Status forces_read(Motion *m, const char *path, Err *err)
     Table t = {0};
     Err why = {0};
     Status status = table_read(&t, path, TABLE_HEADED, &why);
-    if (status == STATUS_OK)
-        status = read_rows(m, &t, &why);
+    THEN(status, read_rows(m, &t, &why));
     table_free(&t);
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "motion.forces: %s", why.text);
 }

@@ -103,8 +103,7 @@ static Status each_of_folder(const char *folder, SourceFn take, void *user, Err 
     while (length > 1 && folder[length - 1] == '/')
         length--;
     for (int i = 0; i < n; i++) {
-        if (status == STATUS_OK)
-            status = put_inside(path, folder, length, names[i]->d_name, err);
+        THEN(status, put_inside(path, folder, length, names[i]->d_name, err));
         if (status == STATUS_OK && !is_folder(path)) {
             n_files++;
             status = take(path, user, err);

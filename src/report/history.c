@@ -27,8 +27,7 @@ Status history_run(const Scenario *scenario, SceneKind kind, const double x[], i
     *out = (History){.dt_s = scenario->motion.dt_s};
     TRY(scene_create(&scene, &s, &scenario->motion, err));
     Status status = track_run(scene, kind, x, &(LinearDevice){0}, 0, &track, err);
-    if (status == STATUS_OK)
-        status = take_columns(&track, (size_t)floor, out, err);
+    THEN(status, take_columns(&track, (size_t)floor, out, err));
     track_free(&track);
     scene_free(scene);
     return status;

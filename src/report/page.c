@@ -121,8 +121,7 @@ Status report_page(const Report *r, const char *path, Err *err)
 {
     Report whole = *r;
     Status status = importance_of(r->run, &whole.importance, err);
-    if (status == STATUS_OK)
-        status = with_shown(whole, write_whole, path, err);
+    THEN(status, with_shown(whole, write_whole, path, err));
     importance_free(&whole.importance);
     return status;
 }

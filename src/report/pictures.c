@@ -95,8 +95,7 @@ static Status draw(json_t *run, const Report *rows, const char *body, const char
         json_decref(run);
     if (file && fclose(file) != 0 && status == STATUS_OK)
         status = fail_errno(err, page, "cannot be written");
-    if (status == STATUS_OK)
-        status = have_opened(realpath(page, whole), path, drawn, out, faults, err);
+    THEN(status, have_opened(realpath(page, whole), path, drawn, out, faults, err));
     if (fd >= 0)
         unlink(page);
     if (out)
@@ -143,8 +142,7 @@ Status drawing_save(json_t *drawing, int width, const char *path, Err *err)
     json_t *run = json_of("schema=%p drawings=%p paper=%p", none, json_of("panels=%p", drawing),
                           json_pack("[[si]]", "panels", width));
     Status status = draw(run, NULL, "", path, &drawn, err);
-    if (status == STATUS_OK)
-        status = save(drawn, "panels.svg", path, 0, err);
+    THEN(status, save(drawn, "panels.svg", path, 0, err));
     free(drawn);
     return status;
 }
@@ -208,8 +206,7 @@ Status pictures_of(const Report *r, const char *folder, Err *err)
     }
     snprintf(path, sizeof path, "%.4000s/page", folder);
     Status status = draw(json_put(report_json(r), "paper=%p", names), r, "", path, &drawn, err);
-    if (status == STATUS_OK)
-        status = save_all(drawn, r, folder, err);
+    THEN(status, save_all(drawn, r, folder, err));
     free(drawn);
     return status;
 }

@@ -196,8 +196,7 @@ static Status find_yielding(Building *b, const double of_file[], const double K[
     /* The largest eigenvalue of B' diag(k) B x = lambda K x says how much of that may yield. */
     for (int j = 0; j < n && status == STATUS_OK; j++)
         storey_spring(n, j, k[j], yields);
-    if (status == STATUS_OK)
-        status = linalg_modes(n, yields, b->K, omega, phi, err);
+    THEN(status, linalg_modes(n, yields, b->K, omega, phi, err));
     const double c = fmin(1 - b->hardening, STANDS / (omega[n - 1] * omega[n - 1]));
     free(phi);
     TRY(status);
@@ -255,10 +254,8 @@ static Status make_building(Building *b, const BuildingFiles *files, const Build
         FrameFull reduced = {0};
         const int reduces = o->modes > 0 && o->modes < full->n - b->n;
         Status status = reduces ? reduction_craig_bampton(full, b->n, o->modes, &reduced, err) : STATUS_OK;
-        if (status == STATUS_OK)
-            status = copy_matrices(&b->model, &b->model_store, reduces ? &reduced : full, err);
-        if (status == STATUS_OK)
-            status = find_modes(b, &b->model, reduces ? reduced.influence : full->influence, o, err);
+        THEN(status, copy_matrices(&b->model, &b->model_store, reduces ? &reduced : full, err));
+        THEN(status, find_modes(b, &b->model, reduces ? reduced.influence : full->influence, o, err));
         frame_full_free(&reduced);
         TRY(status);
     }

@@ -161,8 +161,7 @@ Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
     for (int i = 0; i < N_SHEETS && !text_ends(model, ".tcl") && status == STATUS_OK; i++)
         if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
             status = sheet_read(&SHEETS[i], model, f, err);
-    if (status == STATUS_OK)
-        status = frame_find_floors(f, model, o->rigid_floors, err);
+    THEN(status, frame_find_floors(f, model, o->rigid_floors, err));
     if (status != STATUS_OK)
         frame_free(f);
     return status;

@@ -356,8 +356,7 @@ Status frame_reduce(const Frame *f, FrameKept kept, FrameFull *out, Err *err)
     Condensation c = {.frame = f};
     *out = (FrameFull){0};
     Status status = number_unknowns(&c, kept == FRAME_FULL, err);
-    if (status == STATUS_OK)
-        status = frame_full_make(out, c.n_shapes, err);
+    THEN(status, frame_full_make(out, c.n_shapes, err));
     if (status == STATUS_OK) {
         const size_t band = c.n_slaves * ((size_t)c.band + 1), shapes = c.n_shapes * (c.rows = (size_t)c.n + 1);
         c.Kss = calloc(band + 2 * shapes + c.rows, sizeof *c.Kss);

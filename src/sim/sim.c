@@ -457,7 +457,7 @@ static Status run_design(SimWorker *w, SceneKind kind, Design d, SimResult *resu
     void *const work = w->run.work;
     if (kind != SCENE_IMPACT)
         case_design(kind, &w->device, w->core.mass_kg, w->model.n, &d);
-    if (SCENES[kind].has & HAS_DEVICE)
+    if (case_has_device(kind))
         w->run.work = NULL;
     if (w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building, core, 0, (double[]){d.t_base, d.t_top});

@@ -87,8 +87,7 @@ static Status append_read(const char *where, const char *start, const Schema *sc
         return fail(err, STATUS_MISSING, "%s: %s: is not there", where, start);
     Status status = S_ISDIR(there.st_mode) ? read_front(where, start, schema, &more, &n_more, err)
                                            : read_table(where, start, schema, &more, &n_more, err);
-    if (status == STATUS_OK)
-        status = append(schema->n_var, more, n_more, X, n, err);
+    THEN(status, append(schema->n_var, more, n_more, X, n, err));
     free(more);
     return status;
 }

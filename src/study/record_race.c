@@ -58,10 +58,8 @@ Status record_race(Adapter *a, const Settings *s, Err *err)
     w.some = w.parts + PILOT * w.n_records;
     Status status = X && order && w.parts ? evaluation_table_add(&table, &w.combined, err)
                                           : fail_memory(err, PILOT * w.n_records, "simulations");
-    if (status == STATUS_OK)
-        status = evaluation_table_give_room(w.combined, err);
-    if (status == STATUS_OK)
-        status = choose(&w, a, (uint32_t)s->search.seed, X, order, err);
+    THEN(status, evaluation_table_give_room(w.combined, err));
+    THEN(status, choose(&w, a, (uint32_t)s->search.seed, X, order, err));
     evaluation_table_free(&table);
     free(w.parts);
     free(order);

@@ -80,8 +80,7 @@ Status search_resume(const Problem *problem, const SearchConfig *config, const S
         l.known = start->row + (start->each ? 0 : start->n);
     }
     Status status = queue_open(&l.queue, problem, err);
-    if (status == STATUS_OK)
-        status = run(&l, observe, user, reason, err);
+    THEN(status, run(&l, observe, user, reason, err));
     queue_close(l.queue);
     search_free(l.search);
     return status;

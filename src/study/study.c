@@ -516,8 +516,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
         const int is_over = run && !study.has_new_limits && came_to_its_end(run, &summary->stopped);
         status = is_over ? take_finished(&study, err) : work(&study, err);
     }
-    if (status == STATUS_OK)
-        status = find_baselines(&study, err);
+    THEN(status, find_baselines(&study, err));
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what is returned */
         store_flush(study.store, &ignored);
