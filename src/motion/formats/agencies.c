@@ -500,6 +500,8 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
 
     /* The first number of a block stands at the right end of its column. */
     const Lines ahead = lines_ahead(l);
+    if (!ahead.from)
+        return fail_too_short(l, "samples", err);
     const char *p = ahead.from;
     while (p < ahead.to && !strchr("EeDd ", *p))
         p++;
