@@ -587,7 +587,7 @@ TEST(the_step_of_a_bare_column_can_be_given_and_of_no_other)
     assert_close(m.dt_s, 0.02, 0);
     assert_string_equal(m.warning, "");
     motion_free(&m);
-    static const char timed[] = "t,a_g\n0,1\n0.01,2\n";
+    static const char timed[] = "t,a_g\n0,1\n0.01,-1\n";
     m = there(timed, &(MotionHow){.dt_s = 0.02});
     assert_close(m.dt_s, 0.01, 0);
     assert_string_equal(m.warning, "motion.dt_s = 0.02 is not used: the file says 0.01 s");
@@ -1016,7 +1016,7 @@ TEST(marks_of_thousands_and_commas_of_two_meanings_are_refused)
     expect_refusal(
         "# dt = 0.01, units: m/s2\n3,1\n0,5\n1,2\n0,3\n",
         "there:2: has 4 rows of 2 columns without names: choose one by motion.channel (--channel 1 to 2); if "
-        "they are one motion written row by row, put '# npts = 8' above them; if they are one column with "
+        "they are one motion written row by row, --text per_line=2; if they are one column with "
         "decimal commas, put its name above it");
 }
 

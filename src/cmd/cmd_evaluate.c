@@ -527,6 +527,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--hazard", "FILE",
           "CSV of sa_g (or pga_g) and rate_per_year: how often they then are, and what is lost in a year"),
     OPTION_UNIT,
+    OPTION_TEXT,
     OPTION_SET,
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
     SETTING(

@@ -120,6 +120,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_CHANNEL,
     OPTION_PGA,
     OPTION_UNIT,
+    OPTION_TEXT,
     OPTION_END,
 };
 

@@ -472,6 +472,7 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     OPTION_CHANNEL,
     OPTION_UNIT,
+    OPTION_TEXT,
     OPTION_PGA,
     OPTION_SET,
     OPTION_JSON,

@@ -14,6 +14,9 @@ static const double LARGEST_PEAK_G = 20.0;
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_SIMCENTER};
 enum { ARCHIVES_DEEP = 2 };
 
+/* An earthquake ends where it began: a mean above this share of the peak is the zero of the recorder. */
+static const double OFFSET_MAX = 0.2;
+
 static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
 /* A peak that misses the header's by more belongs to other samples; by a fifth of it: rounded, or filtered once
@@ -302,24 +305,48 @@ static Status check_peak(Motion *m, const Series *s, double offset, double to_m_
     return STATUS_OK;
 }
 
+/* The mean of the samples, which must be finite; in a bare table of nothing below zero the second column is a spectrum
+ * over its periods. */
+static Status find_mean(const Series *s, double *mean, Err *err)
+{
+    int n_negative = 0;
+    *mean = 0;
+    for (size_t i = 0; i < s->c->n; i++) {
+        const double a = row_at(s, i)->a;
+        if (!isfinite(a))
+            return bad_data(err, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
+        *mean += a / (double)s->c->n;
+        n_negative += a < 0;
+    }
+    if (s->c->is_bare && n_negative == 0)
+        return bad_data(err,
+                        "%s:%d: no value is negative, as in a spectrum over its periods; if these are times and an "
+                        "acceleration, say so: --text columns=time:1,value:2 (motion.text), or names above the columns",
+                        s->path, row_at(s, 0)->line);
+    return STATUS_OK;
+}
+
 /* The samples in m/s2 become the motion's; uneven ones are resampled by straight lines, at begin + k dt up to the end.
  * A step so short that it would multiply the file many times is a mistake. */
 static Status convert_samples(Motion *m, const Series *s, const MotionHow *how, Err *err)
 {
     const Channel *c = s->c;
     MotionUnit unit;
-    double dt, to_m_s2 = 1, offset = 0, n = (double)c->n;
+    double dt, to_m_s2 = 1, mean, n = (double)c->n;
     TRY(find_step(s, how, &dt, err));
     const int is_even = dt > 0;
     TRY(settle_unit(s->path, c, how, &unit, &to_m_s2, err));
-    for (size_t i = 0; i < c->n; i++) {
-        if (!isfinite(row_at(s, i)->a))
-            return bad_data(err, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
-        offset += c->subtract_mean ? row_at(s, i)->a : 0;
-    }
-    offset /= n;
+    TRY(find_mean(s, &mean, err));
+    const int is_offset = fabs(mean) > OFFSET_MAX * fabs(peak_from(s, 0)->a);
+    const double offset = c->subtract_mean || (is_offset && unit == UNIT_COUNTS) ? mean : 0;
     TRY(check_peak(m, s, offset, to_m_s2, unit, err));
-    if (c->subtract_mean)
+    if (is_offset && offset == 0 && !m->warning[0])
+        snprintf(
+            m->warning, sizeof m->warning,
+            "its mean of %.4g %s is %.0f %% of its peak: if that is the zero of the recorder, motion.baseline = mean "
+            "removes it",
+            c->scale * mean, UNIT_NAMES[unit], 100 * fabs(mean / peak_from(s, 0)->a));
+    if (offset != 0)
         snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
     const double begin = row_at(s, 0)->t, span = row_at(s, c->n - 1)->t - begin;
     if (!is_even) {
@@ -428,6 +455,7 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
     memset(m, 0, sizeof *m);
     TRY_ROOM(r, 1, "a record", err);
     r->hints.dt_s = how->dt_s;
+    r->hints.text = how->text;
     r->hints.channel = how->channel && strcmp(how->channel, "auto") != 0 ? how->channel : NULL;
     Status s = read_content(r, path, text, length, err);
     if (s == STATUS_OK)
@@ -435,9 +463,10 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
     if (s == STATUS_OK)
         s = convert_samples(m, &(Series){path, c, r->row + c->first}, how, err);
     if (s == STATUS_OK) {
-        if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
-            snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
-                     m->dt_s);
+        const size_t used = strlen(m->warning);
+        if (how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
+            snprintf(m->warning + used, sizeof m->warning - used,
+                     "%smotion.dt_s = %g is not used: the file says %.6g s", used ? "; " : "", how->dt_s, m->dt_s);
         m->is_corrected = c->is_corrected;
         snprintf(m->name, sizeof m->name, "%s", path);
         snprintf(m->format, sizeof m->format, "%s", c->format);

@@ -23,6 +23,7 @@
 
 #include "motion/motion.h"
 #include "motion/options.h"
+#include "motion/text_form.h"
 
 typedef struct {
     MotionUnit unit;     /* of the acceleration; must not contradict the file */
@@ -30,6 +31,7 @@ typedef struct {
     double dt_s;         /* step of a file that has neither step nor times, or of unequal times, which are
                                resampled to it by straight lines; 0: such files are refused */
     double counts_per_m_s2; /* UNIT_COUNTS: gain of the instrument */
+    TextForm text;
 } MotionHow;
 
 /* motion.unit: a word of MOTION_UNIT_LIST, counts with "=" and their number per m/s2. */

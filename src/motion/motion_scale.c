@@ -316,6 +316,7 @@ Status motion_open(Motion *m, const MotionOptions *o, Err *err)
     TRY(source_read(o->record, &source, err));
     MotionHow how = {.channel = source.channel[0] ? source.channel : o->channel, .dt_s = o->dt_s};
     TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
+    TRY(text_form_parse(o->text, &how.text, err));
     if (is_still(o)) {
         if (!list_is_given(o->forces))
             return bad_data(err, "motion.record = none: then nothing moves but by motion.forces");

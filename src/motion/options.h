@@ -28,5 +28,6 @@ typedef struct {
     char unit[OPTION_TEXT_MAX];    /* from_file or what motion_unit_parse reads */
     char channel[OPTION_TEXT_MAX]; /* name, number or auto */
     double dt_s;                   /* 0: from the file */
+    char text[OPTION_TEXT_MAX];    /* where the numbers of a plain text stand (motion/text_form.h) or auto */
     char forces[OPTION_TEXT_MAX];  /* a CSV file (motion/forces.h) or none */
 } MotionOptions;

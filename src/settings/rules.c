@@ -42,6 +42,8 @@ static void check_structure(const Settings *s, const Rules *r)
         break_rule(r, "%s", err.text);
     if (motion_unit_parse(m->unit, &(MotionUnit){0}, &(double){0}, &err) != STATUS_OK)
         break_rule(r, "%s", err.text);
+    if (text_form_parse(m->text, &(TextForm){0}, &err) != STATUS_OK)
+        break_rule(r, "%s", err.text);
     if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
         break_rule(r, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 

@@ -183,6 +183,10 @@ static const Option OPTIONS[] = {
          "time step of a file that has neither step nor times; unequal times are resampled to it by straight lines; 0: "
          "as in the file"),
 
+    TEXT(motion.text, "auto",
+         "where the numbers of a plain text stand that is not understood: skip=LINES, columns=time:1,value:3, "
+         "per_line=8 (one motion row by row), pairs=yes (t a t a ...), factor=9.81 (docs/motions.md)"),
+
     PATH(motion.forces, "none", NULL,
          "forces on floors over time, beside the ground motion or with motion.record = none: a CSV with time_s and a "
          "column floor_01_n, ... per floor, in N (docs/motions.md)",

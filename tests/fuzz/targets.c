@@ -123,6 +123,8 @@ void fuzz_motion(const uint8_t *data, size_t size)
     read_motion(data, size, &(MotionHow){0}, 0);
     read_motion(data, size, &(MotionHow){.unit = UNIT_G, .channel = "1", .dt_s = 0.01}, 0);
     read_motion(data, size, &(MotionHow){.channel = "2", .dt_s = 0.5}, 0);
+    read_motion(data, size, &(MotionHow){.text = {.is_given = 1, .skip = 1, .pairs = 1}, .unit = UNIT_G}, 0);
+    read_motion(data, size, &(MotionHow){.text = {.is_given = 1, .time = 1, .value = 3, .factor = 2}}, 0);
 }
 
 void fuzz_instrument(const uint8_t *data, size_t size)

@@ -756,7 +756,7 @@ static Status find_next(Lines *l, const Format **next, Err *err)
 Status text_read(Record *r, Lines *l, Err *err)
 {
     const Lines first = lines_ahead(l);
-    const Format *f = first.from ? format_at(first) : NULL;
+    const Format *f = first.from && !r->hints.text.is_given ? format_at(first) : NULL;
     if (!f)
         return columns_read(r, l, err);
     if (f->refused)

@@ -5,14 +5,16 @@
  *             ("npts = 4000"); what is stated twice must agree. Anything else in them is passed over
  *   names     the last line of words names the columns, else a comment that begins with the name of times or periods;
  *             a unit in a name, "acc [m/s2]" or "acc_m_s2", wins
+ *   signs     a line of signs alone (-----, =====) above the numbers is passed over, one of * not right above a number
  *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of
- *             samples or rows that follow; npts alone in the first row
+ *             samples or rows that follow; npts alone in the first row; "300 points, 0.01 s" in a line of words
  *   times     the column that is named so, else the first where it has no other name; with another name, which may be
  *             that of a period or of a frequency, the step must be known. 0, 1, 2, ... without such a name are numbers
  *             of samples
  *   rows      numbers without names are read row by row as one long column where their number is the one that is
  *             stated, or where the step is known and the last of rows too wide for the components of a station is
  *             shorter
+ *   asked     motion.text says which lines and columns to take (TextForm), and that counts before what is found above
  *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
  *             digits, and where the names name one column and no number has a point */
 #include <ctype.h>
@@ -148,21 +150,60 @@ static void read_pairs(Plain *t, const Lines *l)
     }
 }
 
+/* "300 points, 0.01 s" at the beginning of a line, "acceleration in g" at its end or before a comma. */
+static void read_phrases(Plain *t, const Lines *l)
+{
+    const char *p = l->from, *in = find_word(p, l->to, "acceleration in "),
+               *comma = in ? memchr(in, ',', l->to - in) : NULL;
+    double x;
+    while (p < l->to && isdigit((unsigned char)*p))
+        p++;
+    if (text_is(BEGINS, p, l->to, " points,| samples,") && number_behind(l->from, p, "", &x)) {
+        state_number(t, &t->count, x, "number of samples", l);
+        if (quantity_behind(p, l->to, ",", 0, &x) > 0 && x <= MOTION_STEP_MAX_S)
+            state_number(t, &t->dt, x, "step", l);
+    }
+    if (in && !t->all.unit)
+        t->all.unit = unit_of(in + strlen("acceleration in "), comma ? comma : l->to);
+}
+
+static const char SIGNS[] = "-=_~+* ";
+
+/* Three or more of these signs and nothing else. */
+static int is_rule(const Lines *l, const char *signs)
+{
+    const char *p = l->from;
+    while (p < l->to && strchr(signs, *p))
+        p++;
+    return p == l->to && l->to - l->from >= 3;
+}
+
 static int is_comment(const Lines *l)
 {
     return (strchr("#%!", *l->from) && !csv_is_error(l->from, l->to)) || line_begins(l, "//");
 }
 
 /* A line of words begins like a word, or with the empty name of a column of numbers, and is no number (nan and inf
- * are). */
+ * are); or two letters stand side by side in it. */
 static int is_words(const Lines *l)
 {
     double x;
     const char *p = l->from;
-    if (!isalpha((unsigned char)*p) && (unsigned char)*p < 128 && !strchr("\"'[(,", *p))
-        return 0;
+    if (!isalpha((unsigned char)*p) && (unsigned char)*p < 128 && !strchr("\"'[(,", *p)) {
+        while (p + 1 < l->to && !(isalpha((unsigned char)p[0]) && isalpha((unsigned char)p[1])))
+            p++;
+        return p + 1 < l->to && !text_is(BEGINS, p, l->to, "nan|inf");
+    }
     const Cell c = cell_next(&p, l->to, " ,;");
     return cell_number(c, c.is_quoted, &x) == NO_NUMBER && !number_behind(c.from, c.to, "", &x);
+}
+
+/* A rule between header and numbers. Stars right above a number may be one too large for its field. */
+static int is_rule_above(const Lines *l)
+{
+    Lines ahead = lines_ahead(l);
+    return is_rule(l, SIGNS) &&
+           (!memchr(l->from, '*', l->to - l->from) || (ahead.from && (is_words(&ahead) || is_rule(&ahead, SIGNS))));
 }
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */
@@ -208,9 +249,14 @@ static Cell name_at(const Plain *t, size_t k)
     return c;
 }
 
+/* Behind "components:" stand the names alone. */
 static void set_names(Plain *t, const Lines *l)
 {
     t->names = *l;
+    if (line_begins(l, "components:"))
+        for (t->names.from += strlen("components:"); t->names.from < l->to && *t->names.from == ' ';)
+            t->names.from++;
+    l = &t->names;
     t->n_names = 0;
     for (const char *p = l->from; p <= l->to && t->n_names <= CHANNELS_MAX + 1; t->n_names++)
         next_name(l, &p);
@@ -303,15 +349,19 @@ static int has_decimal_commas(const Plain *t)
                                        csv_has_decimal_commas(l->from, l->to));
 }
 
-/* Refuses a text that is no table either, with its first line, by which people see what they have. */
+/* Refuses a text that is no table either, with its first lines, by which people see what they have, and what they might
+ * ask for. */
 static Status fail_unknown(const Plain *t, Err *err)
 {
-    Lines start = t->start;
-    lines_next_filled(&start);
+    char form[TEXT_FORM_MAX];
+    Lines first = lines_ahead(&t->start), second = first;
+    lines_next_filled(&second);
+    text_form_suggest(&t->start, form);
     return fail_at(err, t->l,
                    "in no format that is known here (docs/motions.md lists them), and no plain columns of "
-                   "numbers (a list of motions has a name that ends in list.txt); the first line is '%.*s'",
-                   line_shown(&start), start.from);
+                   "numbers (a list of motions has a name that ends in list.txt); the first line is '%.*s'%s%.*s%s%s%s",
+                   line_shown(&first), first.from, second.from ? ", then '" : "", second.from ? line_shown(&second) : 0,
+                   second.from, second.from ? "'" : "", form[0] ? "; perhaps --text " : "", form);
 }
 
 /* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one
@@ -340,9 +390,15 @@ static Status read_rows(Plain *t, Err *err)
         size_t n;
         while (p < l->to && strchr(",; \t", *p)) /* spreadsheets write rows of empty cells */
             p++;
-        if (p == l->to)
+        if (p == l->to || (before == 0 && is_rule_above(l)))
             continue;
+        if (l->number <= t->r->hints.text.skip) {
+            read_pairs(t, l);
+            continue;
+        }
         const int is_above = before == 0 && is_words(l);
+        if (is_above)
+            read_phrases(t, l);
         if (is_comment(l) || (is_above && memchr(l->from, '=', l->to - l->from))) {
             read_pairs(t, l);
             if (before > 0)
@@ -372,7 +428,7 @@ static Status read_rows(Plain *t, Err *err)
             if (s == STATUS_OK)
                 continue;
             t->r->n = before;
-            if (before && is_words(l) && !has_marks(l) && !lines_ahead(l).from) /* "end" */
+            if (before && ((is_words(l) && !has_marks(l)) || is_rule(l, SIGNS)) && !lines_ahead(l).from) /* "end" */
                 return STATUS_OK;
             return err->sub != SUB_NO_NUMBER || is_table(t) ? s : fail_unknown(t, err);
         }
@@ -448,9 +504,9 @@ static Status check_rows(const Plain *t, Err *err)
             t->l->path, t->odd_line, t->odd_width, s, t->width, t->n_rows - 1);
     return fail_sub(
         err, STATUS_BAD_DATA, SUB_RAGGED,
-        "%s:%d: has %zu column%s where the lines above have %zu; one motion written row by row has its number "
-        "of samples above it, '# npts = %zu', and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)",
-        t->l->path, t->odd_line, t->odd_width, s, t->width, t->r->n);
+        "%s:%d: has %zu column%s where the lines above have %zu; one motion written row by row is read by --text "
+        "per_line=%zu, and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)",
+        t->l->path, t->odd_line, t->odd_width, s, t->width, t->width);
 }
 
 /* ---- which column is what ---------------------------------------------------------------------------------------- */
@@ -469,6 +525,7 @@ static Status name_channels(const Plain *t, size_t skipped, int timed, double st
         *c = (Channel){.scale = 1,
                        .other_dt = timed ? stated_dt : 0,
                        .is_timed = timed && t->is_timed,
+                       .is_bare = timed && !is_named(t),
                        .dt = timed ? 0 : t->dt,
                        .first = k,
                        .stride = t->width,
@@ -505,8 +562,8 @@ static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
                        t->width);
     return fail_at(err, first,
                    "has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
-                   "if they are one motion written row by row, put '# npts = %zu' above them%s",
-                   t->n_rows, t->width, t->width, t->r->n,
+                   "if they are one motion written row by row, --text per_line=%zu%s",
+                   t->n_rows, t->width, t->width, t->width,
                    t->width == 2 && !t->l->point_line
                        ? "; if they are one column with decimal commas, put its name above it"
                        : "");
@@ -522,16 +579,98 @@ static int counts_samples(const Plain *t)
     return t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a) && k == t->n_rows;
 }
 
-Status columns_read(Record *r, Lines *l, Err *err)
+/* ---- as asked ---------------------------------------------------------------------------------------------------- */
+
+/* One channel of all numbers, or of every second one behind its time, or of one column beside its times. */
+static Status take_form(Plain *t, Err *err)
+{
+    Record *r = t->r;
+    const TextForm *form = &r->hints.text;
+    size_t time = form->time, value = form->value ? form->value : 1 + (time == 1);
+    Channel *c;
+    const int is_short = t->odd_row + 1 == t->n_rows && t->odd_width < t->width; /* the last line */
+    if (form->per_line && (t->width != form->per_line || (t->odd_line && !is_short)))
+        return bad_data(err, "%s:%d: has %zu numbers where motion.text says per_line=%zu", t->l->path,
+                        t->width != form->per_line ? r->row[0].line : t->odd_line,
+                        t->width != form->per_line ? t->width : t->odd_width, form->per_line);
+    if (form->per_line || form->pairs) {
+        time = form->pairs;
+        value = t->width = 1 + time;
+        t->n_rows = r->n / t->width;
+    } else {
+        TRY(check_rows(t, err));
+    }
+    if (MAX_OF(time, value) > t->width || t->n_rows < 2 || r->n % t->width || (!time && !(t->dt > 0)))
+        return bad_data(err, "%s: has %zu lines of %zu numbers%s; it has not what motion.text asks for", t->l->path,
+                        t->n_rows, t->width, time || t->dt > 0 ? "" : " and no step (set motion.dt_s)");
+    TRY(record_channel(r, t->l, &c, err));
+    *c = t->all;
+    c->scale = 1;
+    c->is_timed = time > 0;
+    c->dt = time ? 0 : t->dt;
+    c->first = value - 1;
+    c->stride = t->width;
+    c->n = t->n_rows;
+    c->format = "csv";
+    if (time)
+        record_set_times(r, 0, t->width, time - 1);
+    return STATUS_OK;
+}
+
+/* ---- what is no motion as it stands ------------------------------------------------------------------------------ */
+
+/* t a t a ...: the numbers at odd places rise all through the file. */
+static int is_paired(const Plain *t)
+{
+    const Record *r = t->r;
+    size_t i = 2;
+    while (i < r->n && r->row[i].a > r->row[i - 2].a)
+        i += 2;
+    return t->width >= 4 && t->width % 2 == 0 && r->n >= 8 && i >= r->n;
+}
+
+/* Does a bare column begin with a factor, its step or both? The first number is larger than all others, or the second
+ * is the step that was given, or both are printed with fewer digits than the samples. */
+static int begins_with_factor(const Plain *t)
+{
+    enum { SAMPLES_MIN = 10 };
+    const Row *row = t->r->row;
+    size_t i = 1, k = 2;
+    if (t->width != 1 || t->r->n < SAMPLES_MIN || row[0].a == 0)
+        return 0;
+    while (i < t->r->n && fabs(row[i].a) < fabs(row[0].a))
+        i++;
+    while (k < SAMPLES_MIN && MAX_OF(row[0].decimals, row[1].decimals) + 2 <= row[k].decimals)
+        k++;
+    return i == t->r->n || row[1].a == t->r->hints.dt_s || (k == SAMPLES_MIN && row[1].a > 0);
+}
+
+/* Refuses what would be read as another motion than it is. */
+static Status check_motion(const Plain *t, Err *err)
+{
+    const Row *row = t->r->row;
+    const Lines first = {.path = t->l->path, .number = row[0].line};
+    if (is_paired(t))
+        return fail_at(err, &first,
+                       "its rows hold pairs of time and value (times %g, %g, %g ...); read them by --text pairs=yes "
+                       "(motion.text)",
+                       row[0].a, row[2].a, row[4].a);
+    if (!t->r->hints.text.is_given && begins_with_factor(t))
+        return fail_at(err, &first,
+                       "begins with %g and %g, which look like a factor, a number or a step and no samples: say how "
+                       "many lines are none, --text skip=%d,factor=%g (motion.text; skip=0: both are samples)",
+                       row[0].a, row[1].a, row[1].line, row[0].a);
+    return STATUS_OK;
+}
+
+/* Which columns are times and channels, by their names, their numbers and what the header says. */
+static Status columns_as_found(Plain *t, double stated_dt, Err *err)
 {
     enum { COMPONENTS_MAX = 4 };
-    Plain plain = {.r = r, .l = l, .start = *l}, *t = &plain;
+    Record *r = t->r;
     size_t times = 0, rises = 0;
-    TRY(read_table(t, err));
-    const double stated_dt = t->dt;
     const Row *row = r->row;
-    const Lines first = {.path = l->path, .number = row[0].line};
-    t->dt = stated_dt > 0 ? stated_dt : r->hints.dt_s;
+    const Lines first = {.path = t->l->path, .number = row[0].line};
 
     /* Times stand in the column that is named so, or in the first, where none is. */
     for (size_t k = 0; is_named(t) && k < t->width && !t->is_timed; k++)
@@ -567,7 +706,7 @@ Status columns_read(Record *r, Lines *l, Err *err)
     }
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
-        return bad_data(err, "%s: announces %g samples, but has %zu rows", l->path, t->count, t->n_rows);
+        return bad_data(err, "%s: announces %g samples, but has %zu rows", t->l->path, t->count, t->n_rows);
     t->is_counted = counts_samples(t);
     if (!t->is_timed && t->is_counted && !(t->dt > 0))
         return fail_at(err, &first,
@@ -580,4 +719,20 @@ Status columns_read(Record *r, Lines *l, Err *err)
     if (timed)
         record_set_times(r, 0, t->width, times);
     return name_channels(t, timed ? times : t->width, timed, stated_dt, err);
+}
+
+Status columns_read(Record *r, Lines *l, Err *err)
+{
+    Plain plain = {.r = r, .l = l, .start = *l}, *t = &plain;
+    const TextForm *form = &r->hints.text;
+    const int is_laid_out = form->pairs || form->per_line || form->value || form->time;
+    TRY(read_table(t, err));
+    const double stated_dt = t->dt;
+    t->dt = stated_dt > 0 ? stated_dt : r->hints.dt_s;
+    if (!is_laid_out)
+        TRY(check_motion(t, err));
+    TRY(is_laid_out ? take_form(t, err) : columns_as_found(t, stated_dt, err));
+    for (size_t k = 0; k < r->n_channels && form->factor > 0; k++)
+        r->channel[k].scale *= form->factor;
+    return STATUS_OK;
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "motion/formats/text.h"
+#include "motion/text_form.h"
 
 #define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
 
@@ -30,6 +31,7 @@ typedef struct {
     int subtract_mean;   /* the agency's own peak is that of the record without its mean */
     int digitized;       /* from film, its steps are not equal */
     int is_timed;        /* the column of its times is named so */
+    int is_bare;         /* its times stand in a column without a name */
     int is_corrected;    /* the agency has corrected its base line */
     const char *format;  /* static; of the file, or of the member of an archive, that holds it */
     const char *warning; /* static; NULL: none */
@@ -39,6 +41,7 @@ typedef struct {
 typedef struct {
     double dt_s;         /* of a file that has neither times nor a step; 0: none was given */
     const char *channel; /* the one that is wanted; NULL: none was named */
+    TextForm text;
 } ReadHints;
 
 typedef struct {
@@ -57,6 +60,10 @@ Status text_read(Record *r, Lines *l, Err *err);
 
 /* The last resort of it: plain columns. */
 Status columns_read(Record *r, Lines *l, Err *err);
+
+/* What motion.text might read the text by, its first numbers being samples; empty: there are no numbers. */
+enum { TEXT_FORM_MAX = 64 };
+void text_form_suggest(const Lines *start, char form[TEXT_FORM_MAX]);
 
 /* Files that are no text, and JSON; the first that recognises the bytes reads them. */
 typedef struct {
