@@ -34,7 +34,7 @@ TEST(optimize_and_polish_answer_as_json)
     assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
     assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
     assert_true(json_object_get(json_object_get(study, "baselines"), "links") != NULL);
-    json_t *polished = json_of("polish @/spoken --design knee --improve j2_m --evals 24 --json");
+    json_t *polished = json_of("polish @/spoken --design knee --improve j2_m --max-evals 24 --json");
     json_t *row = json_array_get(json_object_get(polished, "polished"), 0);
     assert_close(number(row, "j1_m_before"), number(knee, "j1_m"), 1e-2);
     assert_non_null(json_string_value(json_object_get(polished, "verdict")));

@@ -95,7 +95,7 @@ TEST(designs_off_the_front_stay_addressable)
     json_decref(o);
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
     free(output_of("%s", word));
-    snprintf(word, sizeof word, "polish @/run --design %ld --evals 24", known.off);
+    snprintf(word, sizeof word, "polish @/run --design %ld --max-evals 24", known.off);
     char *said = output_of("%s", word);
     assert_int_equal(strstr(said, "No improvement was found") != NULL, strstr(said, "\npolished") == NULL);
     free(said);

@@ -200,7 +200,7 @@ TEST(a_run_that_goes_on_names_anew)
 
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
 {
-    free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --evals 60"));
+    free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --max-evals 60"));
     Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t n = named_of(&run, rows);

@@ -97,7 +97,7 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     assert_int_equal(objectives, 3);
     json_decref(o);
     free(output_of("report @/other"));
-    free(output_of("polish @/other --design knee --improve core_stress_pa --evals 30 --csv @/polished.csv"));
+    free(output_of("polish @/other --design knee --improve core_stress_pa --max-evals 30 --csv @/polished.csv"));
     Table polished = table_of("polished.csv");
     assert_int_equal(polished.n_cols, 1 + N_VAR + 5 * 3);
     assert_string_equal(polished.names[1 + N_VAR + 3], "core_stress_pa_before");

@@ -469,7 +469,7 @@ TEST(a_command_opens_the_database_of_a_run_once)
     expect_openings(1, "run.sqlite\"", "evaluate @/tower --design knee --record builtin:elcentro-like");
     expect_openings(1, "run.sqlite\"", "export @/tower --csv /dev/null");
     expect_openings(1, "run.sqlite\"", "status @/tower");
-    expect_openings(1, "run.sqlite\"", "polish @/tower --design knee --evals 24");
+    expect_openings(1, "run.sqlite\"", "polish @/tower --design knee --max-evals 24");
     expect_openings(1, "run.sqlite\"", "optimize @/tower");
 }
 

@@ -205,7 +205,7 @@ TEST(every_command_follows_the_variables_of_a_run)
         "simulate configs/quick.ini " SHORT WIDE "--design @/run/front.csv",
         "simulate configs/quick.ini " SHORT WIDE "--replicates 2 --design @/run:knee",
         "evaluate @/run --design knee",
-        "polish @/run --design knee --evals 24",
+        "polish @/run --design knee --max-evals 24",
         "building configs/quick.ini " WIDE "--design @/run:knee",
         "check configs/quick.ini " WIDE SHORT,
         "optimize configs/quick.ini --out @/again --max-evals 20 --set search.polish=0 --set search.start=@/run " WIDE

@@ -19,13 +19,13 @@ static Status take_options(const Args *args, Improve *m, Err *err)
         TRY(pairs_take(schema, "--keep", keep, -1.0, c->slack, err));
     TRY(weights_check(schema, "--improve", c->weight, err));
     long evals;
-    TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
+    TRY(args_whole(args, "--max-evals", 1, 1000000, 300, &evals, err));
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &c->replicates, err));
     const size_t needed = polish_evals_min(m->run.settings, c->replicates);
     if ((size_t)evals < needed)
         return misused(
             err,
-            "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
+            "--max-evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
             "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
             "fewer --replicates",
             evals, needed);
@@ -127,7 +127,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--improve", "NAME[=W],...", "objectives to improve, with weights in ranges of the front, or all; the first"),
     VALUE("--keep", "NAME[=S],...",
           "these may lose no more than their deviation, or the share S of their value; all if not given"),
-    VALUE("--evals", "N", "simulate at most so often; 300 if not given"),
+    VALUE("--max-evals", "N", "simulate at most so often; 300 if not given"),
     VALUE("--replicates", "N", "simulations of a noisy design (the tower's), whose mean counts; 4"),
     VALUE("--csv", "FILE",
           "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard "

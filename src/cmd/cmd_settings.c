@@ -9,18 +9,16 @@
 
 static Status run(const Args *args, Err *err)
 {
-    const int is_basic = args_has(args, "--basic");
     Settings s;
+    (void)args;
     (void)err;
     settings_defaults(&s);
-    printf("; %s with its default. A setting that is left out of a file keeps this value.\n\n",
-           is_basic ? "What a first study touches, each" : "Every setting of imtet");
-    settings_write(&s, stdout, is_basic ? SETTINGS_BASIC : SETTINGS_DESCRIBED);
+    printf("; Every setting of imtet with its default. A setting that is left out of a file keeps this value.\n\n");
+    settings_write(&s, stdout, SETTINGS_DESCRIBED);
     return STATUS_OK;
 }
 
 static const ArgOption OPTIONS[] = {
-    SWITCH("--basic", "only those that a first study touches"),
     OPTION_END,
 };
 
