@@ -163,11 +163,11 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
     snprintf(name, sizeof name, "many/%s", NAME);
     write_in_place(name, "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
     write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
-    char *table = output_of("evaluate @/run --design knee --records @/many");
+    char *table = output_of("evaluate @/run --design knee --record @/many");
     assert_non_null(strstr(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core"));
     assert_non_null(strstr(table, "not read: "));
     free(table);
-    free(output_of("evaluate @/run --design knee --records @/many --csv @/rows.csv"));
+    free(output_of("evaluate @/run --design knee --record @/many --csv @/rows.csv"));
     char *rows = read_in_place("rows.csv");
     assert_non_null(strstr(rows, NAME));
     assert_non_null(strstr(rows, ",no_core,ok,"));
@@ -200,7 +200,7 @@ TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
     assert_less(20, n);
     free(text);
     json_decref(o);
-    expect_output("  mean of 3, sd as built", REPLICATED "--replicates 3 --records @/many");
+    expect_output("  mean of 3, sd as built", REPLICATED "--replicates 3 --record @/many");
     expect(2, "without replicates", RANGE "--set sim.replicates=3");
 }
 

@@ -293,7 +293,7 @@ TEST(the_loss_lies_between_nothing_and_the_whole_building)
 
 /* -- as a command -------------------------------------------------------------------------------------------------- */
 
-#define SUITE_LIST "evaluate @/tower.ini --design @/chance:knee --records @/three_list.txt "
+#define SUITE_LIST "evaluate @/tower.ini --design @/chance:knee --record @/three_list.txt "
 #define CURVES     SUITE_LIST "--sa 0.1:0.1:0.6 --fragility 'drift_ratio=0.012,drift_ratio<=0.02,j3_g=0.5' "
 
 static const json_t *curve_of(const json_t *o, const char *of, const char *scene)
@@ -421,7 +421,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
         expect_key_above_the_panels();
 }
 
-#define ON_TWO "evaluate @/tower.ini --design @/chance:knee --records @/two_list.txt "
+#define ON_TWO "evaluate @/tower.ini --design @/chance:knee --record @/two_list.txt "
 
 /* So begins the row of the building alone, whose rate is not known. */
 static void expect_alone(const char *words, const char *range, const char *limit)
@@ -485,7 +485,7 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     expect(65, "up.csv:3: intensities must rise, and their rates fall", CURVES "--hazard @/up.csv");
 }
 
-#define FOLDER "evaluate @/tower.ini --design @/chance:knee --records @/some --sa 0.1:0.1:0.2 "
+#define FOLDER "evaluate @/tower.ini --design @/chance:knee --record @/some --sa 0.1:0.1:0.2 "
 
 TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_others)
 {

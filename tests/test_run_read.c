@@ -186,7 +186,7 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     char path[2][PATH_MAX];
     write_in_place("plain.ini", DTLZ2_INI(4, 2));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/first"));
-    free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --seed 2 --set search.start=@/first"));
+    free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --set search.seed=2 --set search.start=@/first"));
     const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
     CHECK_OK(run_read(&a, folders[0], &err), &err);
     CHECK_OK(run_read(&b, folders[1], &err), &err);

@@ -31,7 +31,7 @@ TEST(several_starts_are_taken_one_behind_the_other)
     write_in_place("begin.ini", BEGIN);
     write_in_place("given.csv", GIVEN);
     write_in_place("more.csv", "x1,x2,x3,x4\n0.9,0.8,0.7,0.6\n0.1,0.2,0.3,0.4\n");
-    free(output_of("optimize @/begin.ini --out @/earlier --seed 2"));
+    free(output_of("optimize @/begin.ini --out @/earlier --set search.seed=2"));
     free(output_of("optimize @/begin.ini --out @/both --set search.start=%s/given.csv,%s/more.csv", place.folder,
                    place.folder));
     Run h = run_in("both");

@@ -154,7 +154,7 @@ static size_t n_files(const char *folder)
 
 TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 {
-    json_t *o = json_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1 --pga 0.3 --json");
+    json_t *o = json_of("evaluate @/threads-1 --design knee --record tests/motion --channel 1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
     for (size_t i = 0; i + 1 < json_array_size(records); i++)
@@ -170,24 +170,24 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
     const json_t *one = json_array_get(unreadable, at);
     assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
     json_decref(o);
-    char *table = output_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1");
+    char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --channel 1");
     assert_non_null(strstr(table, "\none.knet "));
     assert_non_null(strstr(table, "  no core "));
     assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
     free(table);
-    expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --records configs/sac20");
+    expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --record configs/sac20");
     expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
-           "evaluate @/threads-1 --design knee --records tests/motion --channel 99");
+           "evaluate @/threads-1 --design knee --record tests/motion --channel 99");
     char *empty = in_place("empty");
     assert_int_equal(mkdir(empty, 0777), 0);
     free(empty);
     Said s;
-    run(&s, "evaluate @/threads-1 --design knee --records @/empty");
+    run(&s, "evaluate @/threads-1 --design knee --record @/empty");
     assert_int_equal(s.code, 65);
     assert_non_null(strstr(s.err, "empty: is empty"));
     assert_string_equal(s.out, ""); /* no title above an error */
     forget(&s);
-    run(&s, "evaluate @/threads-1 --design knee --records nowhere");
+    run(&s, "evaluate @/threads-1 --design knee --record nowhere");
     assert_int_equal(s.code, 66);
     assert_non_null(strstr(s.err, "nowhere"));
     assert_string_equal(s.out, "");

@@ -44,7 +44,7 @@ Status evaluations_add_suite(Evaluations *e, const char *suite, Err *err)
 {
     Err why = {0};
     const Status status = suite_each(suite, add_of_suite, &(Added){e, suite}, &why);
-    return status == STATUS_OK ? STATUS_OK : fail(err, status, "--records %s", why.text);
+    return status == STATUS_OK ? STATUS_OK : fail(err, status, "--record %s", why.text);
 }
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */

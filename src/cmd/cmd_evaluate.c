@@ -328,11 +328,11 @@ static Status add_own(Evaluations *e, const Settings *s, const Run *run, Err *er
 static Status add_records(const Args *args, Evaluations *e, const Settings *s, const Run *run, Err *err)
 {
     const char *path;
-    if (!args_has(args, "--record") && !args_has(args, "--records"))
+    if (!args_has(args, "--record"))
         return add_own(e, s, run, err);
     for (int i = 0; (path = args_next(args, "--record", &i));)
-        TRY(evaluations_add(e, path, 0, err));
-    return args_has(args, "--records") ? evaluations_add_suite(e, args_value(args, "--records"), err) : STATUS_OK;
+        TRY(evaluations_add_suite(e, path, err));
+    return STATUS_OK;
 }
 
 /* The period of --sa is the building's first, unless another is set. */
@@ -404,7 +404,7 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
     TRY(evaluations_read(e, s, err));
     if (e->n_read == 0) {
         print_refused(stderr, e);
-        return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--records"));
+        return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--record"));
     }
     TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
@@ -514,8 +514,7 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN "; with --full-model also none: the building alone"),
-    VALUES("--record", "FILE", "ground motion; may be repeated"),
-    VALUE("--records", "FOLDER", "every ground motion in it, sorted, in one table"),
+    VALUES("--record", "FILE", "ground motion, or every one of a folder or list, sorted; may be repeated"),
     OPTION_CHANNEL,
     VALUE("--pga", "G",
           "scaled to this peak; FROM:STEP:TO: incremental dynamic analysis, every record at each of these"),

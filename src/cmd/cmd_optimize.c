@@ -332,7 +332,6 @@ static const ArgOption OPTIONS[] = {
     SETTING("--out", "DIR", "run.out", "the run's folder; a run that it holds is resumed"),
     SWITCH("--new", "a new run in any case: a number is added to a folder that holds one"),
     SWITCH("--force-settings", "resume with lower limits (simulations, hours); greater ones need no word"),
-    SETTING("--seed", "N", "search.seed", "same seed, same settings: same front"),
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),
     SETTING("--max-hours", "H", "search.max_hours",

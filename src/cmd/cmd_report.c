@@ -17,8 +17,6 @@ static Status take_records(const Args *args, const Settings *run, OtherRecords *
     TRY(elsewhere_of_study(r, &run->motion, err));
     for (int i = 0; (path = args_next(args, "--record", &i));)
         TRY(elsewhere_add(r, path, err));
-    if (args_has(args, "--records"))
-        TRY(elsewhere_add(r, args_value(args, "--records"), err));
     return elsewhere_otherwise(r, &run->motion, err);
 }
 
@@ -113,8 +111,8 @@ static const ArgOption OPTIONS[] = {
     VALUE("--dossier", "FILE", "instead of the page all that a checker of the design needs, .html to print or .pdf"),
     VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
     VALUES("--record", "FILE",
-           "another earthquake for it, behind those of the study; may be repeated (default: the built-in ones)"),
-    VALUE("--records", "FOLDER", "more of them: every record of a folder or of a list"),
+           "another earthquake for it, or every one of a folder or list, behind those of the study; may be repeated "
+           "(default: the built-in ones)"),
     VALUE("--floor", "N", "whose displacement is shown over time (default: the middle one)"),
     OPTION_MOVED,
     OPTION_CHANNEL,

@@ -145,7 +145,7 @@ static Status take_designs(const Args *args, const Run *run, Job *job, Settings 
 static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *err)
 {
     const char *pga = args_value(args, "--pga");
-    TRY(args_alone(args, "--full-model", "--records --csv --svg --replicates", err));
+    TRY(args_alone(args, "--full-model", "--csv --svg --replicates", err));
     if (!frame_is(s->building.model))
         return bad_data(
             err,

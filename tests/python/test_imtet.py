@@ -291,7 +291,7 @@ class Simulating(unittest.TestCase):
             program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "28", "--threads", "1", "--set", "search.initial=16",
                     "--set", "search.population=12", "--set", "search.polish=0", *SHORT, *more)
             return os.path.join(PLACE, name)
-        a, b, c = run("a"), run("b", "--seed", "2"), run("c", "--set", "motion.stretch=2")
+        a, b, c = run("a"), run("b", "--set", "search.seed=2"), run("c", "--set", "motion.stretch=2")
         merged, of = imtet.merge_fronts(a, b)
         every = np.concatenate([np.asarray(imtet.open_run(r).front) for r in (a, b)])
         senses = [-1 if n in ("ed5_10_pct", "edcs_pct") else 1 for n in imtet.open_run(a).objectives]
