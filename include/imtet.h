@@ -89,7 +89,7 @@ typedef struct {
     const double *start;          /* (starts, variables), moved into the box */
     const char *const *settings;  /* "search.KEY=VALUE" as `imtet settings` lists them, NULL behind the last;
                                                 NULL: none. search.max_evals, seed, population, initial,
-                                                max_hours, stop_after, failures_max, surrogate, nondominated_share,
+                                                max_hours, stop_after, failures_max, surrogate,
                                                 ahead, threads (of the search itself), aspire (objectives are
                                                 f1, f2, ...: "search.aspire=f1 0.5,f2 3") */
 } imtet_search_options;

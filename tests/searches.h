@@ -9,8 +9,7 @@
 /* As the program has it, but for what every test has of its own: seed, sizes, limits. */
 static inline SearchConfig search_config(uint32_t seed, size_t population, size_t surrogate_max)
 {
-    return (SearchConfig){
-        .seed = seed, .population = population, .surrogate_max = surrogate_max, .nondominated_share = 1, .ahead = -1};
+    return (SearchConfig){.seed = seed, .population = population, .surrogate_max = surrogate_max, .ahead = -1};
 }
 
 /* Every row of the archive, copied out. */

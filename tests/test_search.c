@@ -364,9 +364,6 @@ TEST(every_way_to_stop_is_named)
 {
     SearchConfig c = config(40, 500);
     world(&here, 6, 2);
-    c.nondominated_share = 0.01;
-    assert_int_equal(run(&here, &c, &seen), STOP_SHARE);
-    c.nondominated_share = 1.0;
 
     fresh(NULL);
     seen.stop_at_view = 2;

@@ -100,8 +100,8 @@ typedef struct {
 static void is_the_changed_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
     Changed *c = user;
-    static const char *const LIMITS[] = {"search.max_evals", "search.max_hours", "search.nondominated_share",
-                                         "search.stop_after", "problem.timeout_s"};
+    static const char *const LIMITS[] = {"search.max_evals", "search.max_hours", "search.stop_after",
+                                         "problem.timeout_s"};
     static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",
                                        "run.isolate",    "search.start",        "motion.record",
                                        "motion.records", "motion.forces",       "building.model"};
@@ -161,7 +161,7 @@ static void change_everything(Settings *s)
         {"core.section", "effective"},
         {"core.inertias_m4", "1.1, 3.3333333333333335"},
         {"contact.law", "exact"},
-        {"contact.v0_min_m_s", "1.0000000000000002e-12"},
+        {"contact.radius_m", "1.0000000000000002e-6"},
         {"motion.record", "/a/path/with = and # in it.csv"},
         {"motion.unit", "cm_s2"},
         {"sim.engine", "cvode"},
@@ -572,6 +572,10 @@ TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_num
     settings_defaults(&s);
     CHECK_OK(settings_parse(&s, "run.sqlite", "[search]\nasynchronous = on\nseed = 7\n", &err), &err);
     assert_int_equal(s.search.seed, 7);
+    CHECK_OK(settings_parse(&s, "run.sqlite", "[contact]\nv0_min_m_s = 0.001\n", &err), &err);
+    assert_int_equal(settings_parse(&s, "run.sqlite", "[contact]\nv0_min_m_s = 0.01\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "run.sqlite:2:1: contact.v0_min_m_s is no setting any more"));
+    err = (Err){0};
     assert_int_equal(settings_set(&s, "search.asynchronous=on", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "is no setting any more: every search looks ahead"));
     CHECK_OK(settings_set(&s, "search.max_evals=1000000", &err), &err);

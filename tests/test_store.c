@@ -180,12 +180,12 @@ TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
 {
     Settings s = settings_of(TEXTBOOK, "textbook-whole");
     s.search.seed = 5;
-    s.search.nondominated_share = 0.9;
+    s.search.stop_after = 30;
     refused_with(&s, 0, "search.seed is 1 there, now 5, and more; put that back, or choose another --out",
-                 "search.nondominated_share: 1 in the run, now 0.9 (a limit)\n");
+                 "search.stop_after: 0 in the run, now 30 (a limit)\n");
     refused_with(&s, 1, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
     s.search.seed = 1;
-    refused_with(&s, 0, "--force-settings lowers limits", "search.nondominated_share");
+    refused_with(&s, 0, "--force-settings lowers limits", "search.stop_after");
     s.search.max_evals = 39;
     refused_with(&s, 1, "search.max_evals = 39 is less than the 40 simulations that it holds", "search.max_evals");
     s.search.max_evals = 40;

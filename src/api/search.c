@@ -163,8 +163,8 @@ static Status settings_of(const imtet_search_options *o, Settings *s, Err *err)
 {
     static const char *const KEYS[] = {"search.max_evals",    "search.seed",      "search.population",
                                        "search.initial",      "search.max_hours", "search.stop_after",
-                                       "search.failures_max", "search.surrogate", "search.nondominated_share",
-                                       "search.threads",      "search.aspire",    "search.ahead"};
+                                       "search.failures_max", "search.surrogate", "search.threads",
+                                       "search.aspire",       "search.ahead"};
     char key[64];
     settings_defaults(s);
     TRY(settings_put(s, "problem.kind", "external", err));

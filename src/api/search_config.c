@@ -15,7 +15,6 @@ SearchConfig search_config_of(const Settings *s)
         .ahead = s->search.ahead,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = s->search.stop_after,
-        .nondominated_share = s->search.nondominated_share,
         .replicate_share = s->search.replicate_share,
         .replicates_max = s->search.replicates_max,
     };

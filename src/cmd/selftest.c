@@ -44,7 +44,6 @@ static const char *const COMMON[] = {
     "core.density_kg_m3=7850",
     "contact.law=paper",
     "contact.restitution=0.7",
-    "contact.v0_min_m_s=0.001",
     "contact.radius_m=0.1",
     "contact.youngs_modulus_pa=2.1e11",
     "contact.poisson=0.3",

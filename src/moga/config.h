@@ -13,7 +13,6 @@ typedef enum {
     STOP_EVALUATIONS,
     STOP_EXHAUSTED,
     STOP_TIME,
-    STOP_SHARE,
     STOP_CONVERGED,
     STOP_ASKED,
     STOP_FAILURES
@@ -37,7 +36,6 @@ typedef struct {
     size_t replicates_max;     /* ... of each design */
     double max_seconds;        /* of the client's clock; 0: no limit */
     size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
-    double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
 } SearchConfig;
 
 /* Evaluations that the search was planned for. */

@@ -10,7 +10,6 @@ const char *stop_reason_words(StopReason reason)
         [STOP_EVALUATIONS] = "all simulations spent",
         [STOP_EXHAUSTED] = "no new design was found any more",
         [STOP_TIME] = "time limit reached",
-        [STOP_SHARE] = "the wanted share of the archive is nondominated",
         [STOP_CONVERGED] = "the last search.stop_after simulations gained nothing above the noise of hypervolume",
         [STOP_ASKED] = "stopped on request",
         [STOP_FAILURES] = "too many simulations in a row have failed",
@@ -24,9 +23,7 @@ static StopReason reason_to_stop(const Search *s)
     const Archive *a = &s->common.archive;
     if (screening_is_spent(&s->screening, &s->common))
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
-    if (s->n_vain >= 100)
-        return STOP_EXHAUSTED;
-    return c->nondominated_share < 1.0 && a->n_front >= c->nondominated_share * (double)a->n ? STOP_SHARE : STOP_NONE;
+    return s->n_vain >= 100 ? STOP_EXHAUSTED : STOP_NONE;
 }
 
 void search_stop(Search *s, StopReason reason)

@@ -37,7 +37,6 @@ typedef struct {
 typedef struct {
     long seed, threads, population, initial, max_evals;
     double max_hours; /* OPTION_WORD: by the Slurm job */
-    double nondominated_share;
     SurrogateUse surrogate;
     long ahead; /* OPTION_WORD: by the number of designs */
     Fidelity fidelity;

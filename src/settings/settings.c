@@ -136,12 +136,9 @@ static const Option OPTIONS[] = {
            "(docs/theory.md)"),
     REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law",
          .flags = SETTING_BASIC),
-    REAL(contact.v0_min_m_s, "m/s", "1e-3", 1e-12, 10,
-         "smallest approach speed that the contact law is evaluated with"),
     REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
     REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
-    REAL(contact.yield_stress_pa, "Pa", "3.45e8", 1, 1e12, "yield stress of both bodies; changes no response"),
     REAL(contact.bumper_stiffness_n_m, "N/m", "0", 0, 1e14,
          "stiffness of a bumper in series with the steel, at every floor and side; 0: none, steel on steel"),
     REAL(contact.bumper_damping, "-", "0.1", 0, 0.9, "damping ratio of the bumper (docs/theory.md)"),
@@ -297,8 +294,6 @@ static const Option OPTIONS[] = {
     WHOLE(search.failures_max, "50", 0, 1e9,
           "stop when so many simulations in a row have failed: something is wrong with all of them; 0: never",
           .flags = SETTING_FREE),
-    REAL(search.nondominated_share, "-", "1", 0, 1,
-         "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
     WHOLE(search.ahead, "auto", 0, 1e4,
           "designs that may be under way when the next ones are chosen, so that no thread waits; auto: a 24th of all, "
@@ -524,23 +519,34 @@ void settings_defaults(Settings *s)
         table_assign(s, i, OPTIONS[i].standard, NULL);
 }
 
-/* Keys of earlier versions, which stand in their runs, and what is to be known of them today. */
-static const char *const FORMER[][2] = {{"search.asynchronous", "every search looks ahead (search.ahead)"},
-                                        {"search.generations", "search.max_evals limits a search"},
-                                        {"search.blas", "OPENBLAS_CORETYPE in the environment chooses other kernels"},
-                                        {"problem.noise", "textbook problems are in imtet-bench"}};
+/* Keys of earlier versions, which stand in their runs, and what is to be known of them today. One that changed results
+ * still has the value that they are computed with now. */
+static const struct {
+    const char *key;
+    double value; /* 0: any */
+    const char *note;
+} FORMER[] = {
+    {"search.asynchronous", 0, "every search looks ahead (search.ahead)"},
+    {"search.generations", 0, "search.max_evals limits a search"},
+    {"search.blas", 0, "OPENBLAS_CORETYPE in the environment chooses other kernels"},
+    {"search.nondominated_share", 0, "search.stop_after ends a search that gains nothing"},
+    {"problem.noise", 0, "textbook problems are in imtet-bench"},
+    {"contact.v0_min_m_s", 1e-3, "the contact law is never given an approach speed below 1e-3 m/s"},
+    {"contact.yield_stress_pa", 3.45e8, "contact_yields is of steel of 345 MPa; contact_pressure_pa says it of any"},
+};
 
 static size_t find_former(const char *key)
 {
     size_t i = 0;
-    while (i < N_OF(FORMER) && strcmp(key, FORMER[i][0]) != 0)
+    while (i < N_OF(FORMER) && strcmp(key, FORMER[i].key) != 0)
         i++;
     return i;
 }
 
-int table_is_former(const char *key)
+int table_passes(const char *key, const char *value)
 {
-    return find_former(key) < N_OF(FORMER);
+    const size_t i = find_former(key);
+    return i < N_OF(FORMER) && (FORMER[i].value == 0 || strtod(value, NULL) == FORMER[i].value);
 }
 
 Status table_find(const char *key, int *found, Err *err)
@@ -554,8 +560,9 @@ Status table_find(const char *key, int *found, Err *err)
             return STATUS_OK;
         }
     }
-    if (table_is_former(key))
-        return bad_data(err, "%s is no setting any more: %s", key, FORMER[find_former(key)][1]);
+    const size_t former = find_former(key);
+    if (former < N_OF(FORMER))
+        return bad_data(err, "%s is no setting any more: %s", key, FORMER[former].note);
     near = nearest_word(key, names, N_OPTIONS);
     for (int i = 0; near && i < N_OPTIONS; i++)
         if (near == names[i])

@@ -172,7 +172,7 @@ static void take_line(Reading *r, char *line)
     /* The setting, once. */
     snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
     if (table_find(key, &i, &err) != STATUS_OK) {
-        if (!r->is_stored || !table_is_former(key))
+        if (!r->is_stored || !table_passes(key, value))
             report_fault(r, place_of(r, begin), err.text);
         return;
     }

@@ -10,7 +10,7 @@ enum { TABLE_MAX = 256 }; /* lines at most */
 
 /* The line of a key; errors: the nearest key. */
 Status table_find(const char *key, int *i, Err *err);
-int table_is_former(const char *key); /* no setting any more, but one that stored settings may have */
+int table_passes(const char *key, const char *value); /* no setting any more, but stored settings may have it */
 
 /* A value as one would type it. */
 Status table_assign(Settings *s, int i, const char *value, Err *err);

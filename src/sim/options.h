@@ -15,7 +15,7 @@ typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
 
 typedef struct {
     ContactLaw law;
-    double restitution, v0_min_m_s, radius_m, youngs_modulus_pa, poisson, yield_stress_pa;
+    double restitution, radius_m, youngs_modulus_pa, poisson;
     double bumper_stiffness_n_m; /* 0: none */
     double bumper_damping;       /* [-] damping ratio */
     double bumper_thickness_m, bumper_strain_max;

@@ -489,9 +489,9 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
 }
 
 /* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface
- * steel (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections
- * 4.2, 6.1 */
-static const double YIELD_PRESSURE = 1.6;
+ * steel (nu 0.3) begins to yield at p0 = 1.6 of the yield stress, 345 MPa for structural steel (ASTM A572, grade 50).
+ * K. L. Johnson, Contact Mechanics (1985), sections 4.2, 6.1 */
+static const double YIELD_PRESSURE_PA = 1.6 * 3.45e8;
 
 /* What a result has beside what the engine says: filtered peaks, drift over storey height, measures of contacts. */
 static Status complete(SimWorker *w, SimResult *r, Err *err)
@@ -518,7 +518,7 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
     r->indentation_ratio = r->indentation_max_m / o->radius_m;
     r->contact_pressure_pa =
         o->youngs_modulus_pa / (M_PI * (1 - o->poisson * o->poisson)) * sqrt(fmax(r->indentation_ratio, 0));
-    r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE * o->yield_stress_pa;
+    r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE_PA;
     r->bumper_strain = r->bumper_compression_m / o->bumper_thickness_m;
     r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;
     r->repair = w->options->sim.repair;
