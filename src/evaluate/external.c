@@ -261,11 +261,10 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
             return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
                             e->upper[j], j + 1);
     const Protocol protocol = {.name = "problem.command",
-                               .work = {.words = e->words},
+                               .words = e->words,
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,
                                .timeout_s = o->timeout_s,
                                .grace_s = PROCESS_GRACE_S,
-                               .may_leave = 1,
                                .write = write_request,
                                .look = look_for_answer,
                                .tell = tell,

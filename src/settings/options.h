@@ -50,7 +50,6 @@ typedef struct {
 } SearchOptions;
 
 typedef struct {
-    Switch isolate;
     char out[OPTION_TEXT_MAX]; /* the run's folder */
 } RunOptions;
 
