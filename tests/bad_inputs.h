@@ -27,7 +27,7 @@ static inline int all_refused(const char *folder, ReadFn read)
     for (struct dirent *e; (e = readdir(d));) {
         if (e->d_name[0] == '.')
             continue;
-        Err err = {0};
+        err = (Err){0};
         snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
         read_wanted(path, wanted);
         const Status status = read(path, &err);

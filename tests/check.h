@@ -32,9 +32,8 @@
 #endif
 #define TEXTBOOK_WORKER BUILD_FOLDER "/textbook"
 
-/* What the calls of a test say of their faults; it begins empty. A function may have one of its own. */
+/* What the calls of a test say of their faults; it begins empty. */
 static Err err __attribute__((unused));
-#pragma GCC diagnostic ignored "-Wshadow"
 
 /* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
 enum { TESTS_MAX = 128 };
@@ -115,13 +114,13 @@ static inline void rest(double seconds)
     nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
 }
 
-static inline void check_ok(Status status, const Err *err, const char *what, const char *file, int line)
+static inline void check_ok(Status status, const Err *why, const char *what, const char *file, int line)
 {
     if (status != STATUS_OK) {
-        print_error("%s: %s: %s\n", what, status_words(status), err->text);
+        print_error("%s: %s: %s\n", what, status_words(status), why->text);
         _fail(file, line);
     }
 }
-#define CHECK_OK(status, err) check_ok(status, err, #status, __FILE__, __LINE__)
+#define CHECK_OK(status, why) check_ok(status, why, #status, __FILE__, __LINE__)
 
 #endif

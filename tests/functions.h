@@ -18,13 +18,13 @@ typedef struct {
 } Function;
 
 /* A part is f, g and whether it is ok. */
-static inline Status function_simulate(void *self, size_t worker, const Task *task, Err *err)
+static inline Status function_simulate(void *self, size_t worker, const Task *task, Err *why)
 {
     const Function *function = self;
     double *f = task->result, *g = f + function->n_obj;
     unsigned char ok = 0;
     (void)worker;
-    const Status status = function->evaluate(1, task->x, &task->repeat, f, g, &ok, function->user, err);
+    const Status status = function->evaluate(1, task->x, &task->repeat, f, g, &ok, function->user, why);
     g[function->n_con] = ok;
     return status;
 }

@@ -61,18 +61,19 @@ __attribute__((format(printf, 3, 0))) static inline void spread(char *to, size_t
 /* Runs `imtet ARGUMENTS` through the shell; @ in the format stands for the test's own folder. */
 __attribute__((format(printf, 2, 3))) static inline void run(Said *said, const char *format, ...)
 {
-    char arguments[4096], command[8192], out[128], err[128];
+    char arguments[4096], command[8192], out[128], said_err[128];
     va_list list;
     va_start(list, format);
     spread(arguments, sizeof arguments, format, list);
     va_end(list);
     snprintf(out, sizeof out, "%s/out", place.folder);
-    snprintf(err, sizeof err, "%s/err", place.folder);
-    snprintf(command, sizeof command, "exec >%s 2>%s; %s '%s' %s", out, err, place.under, getenv("IMTET"), arguments);
+    snprintf(said_err, sizeof said_err, "%s/err", place.folder);
+    snprintf(command, sizeof command, "exec >%s 2>%s; %s '%s' %s", out, said_err, place.under, getenv("IMTET"),
+             arguments);
     const int status = system(command);
     said->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     said->out = text_of(out);
-    said->err = text_of(err);
+    said->err = text_of(said_err);
 }
 
 static inline void forget(Said *said)

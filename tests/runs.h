@@ -96,21 +96,21 @@ static inline pid_t start(const char *config, const char *out)
 }
 
 /* Designs from outside into the run of a folder. */
-static inline Status add_to_run(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err)
+static inline Status add_to_run(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *why)
 {
     RunStore *store;
     Run now;
     long id = 0;
-    TRY(run_wanted(folder, err));
-    TRY(store_open(&store, folder, 0, err));
+    TRY(run_wanted(folder, why));
+    TRY(store_open(&store, folder, 0, why));
     Status status = STATUS_OK;
     for (size_t i = 0; i < n && status == STATUS_OK; i++) {
         const Run *run = store_run(store);
-        status = store_polished(store, &designs[i], (size_t)run->tried_to_polish, (size_t)run->polished_at, &id, err);
+        status = store_polished(store, &designs[i], (size_t)run->tried_to_polish, (size_t)run->polished_at, &id, why);
     }
     if (status == STATUS_OK && first_id)
         *first_id = id - (long)n + 1;
-    if (status == STATUS_OK && (status = store_write_front(store, &now, err)) == STATUS_OK)
+    if (status == STATUS_OK && (status = store_write_front(store, &now, why)) == STATUS_OK)
         run_free(&now);
     store_free(store);
     return status;

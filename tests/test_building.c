@@ -42,7 +42,7 @@ static Building load(const BuildingOptions *o)
 static void expect_refusal_of(const BuildingOptions *o, const char *wanted)
 {
     Building b;
-    Err err = {0};
+    err = (Err){0};
     const Status status = building_load(&b, o, &err);
     if (status == STATUS_OK || !strstr(err.text, wanted))
         fail_msg("status %d, said '%s', wanted '%s'", (int)status, err.text, wanted);
@@ -394,7 +394,7 @@ static int stands(int n, double weight, double bending)
     write_file(&o, "storeys.csv", "height_m,mass_kg,bending_n_m2\n%s", rows);
     o.p_delta = SWITCH_ON;
     Building b;
-    Err err = {0};
+    err = (Err){0};
     const int standing = building_load(&b, &o, &err) == STATUS_OK;
     if (!standing)
         assert_non_null(strstr(err.text, "buckles"));

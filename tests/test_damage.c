@@ -56,7 +56,6 @@ TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
 {
     char path[PATH_MAX], host[65] = "", text[96];
     Folder folder;
-    Err err = {0};
     gethostname(host, sizeof host - 1);
     shell("mkdir race");
     CHECK_OK(folder_take(&folder, path_of("race", path), 0, &err), &err);

@@ -281,7 +281,7 @@ TEST(devices_are_refused_by_name)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         DesignOptions o = scene_defaults().design;
         DesignSpace s;
-        Err err = {0};
+        err = (Err){0};
         snprintf(o.variables, sizeof o.variables, "%s", bad[i].variables);
         snprintf(o.devices, sizeof o.devices, "%s", bad[i].devices);
         assert_int_equal(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), STATUS_BAD_DATA);

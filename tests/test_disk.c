@@ -161,7 +161,7 @@ static size_t simulated_in(const char *name)
 {
     char path[PATH_MAX];
     Run saved;
-    Err err = {0};
+    err = (Err){0};
     const Status status = run_read(&saved, path_of(name, path), &err);
     const size_t n = saved.table.n;
     run_free(&saved);

@@ -341,7 +341,7 @@ TEST(dashpots_that_are_large_beside_their_springs_are_refused_with_the_figure)
                  {"soil=D radius=11.28", 0}};
     for (size_t i = 0; i < N_OF(CASES); i++) {
         Scene *scene;
-        Err err = {0};
+        err = (Err){0};
         SceneOptions s = on_ground(CASES[i].foundation);
         s.design.thickness_m.at[1] = 0.03;
         const Status status = scene_create(&scene, &s, NULL, &err);
@@ -425,7 +425,6 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
     double x[N + 2] = {[N] = 0.02, [N + 1] = 0.02}, z[N], J = 0;
     Scene *scene;
     SimResult result;
-    Err err = {0};
     assert_true(r && core);
     for (int i = 0; i < 100; i++)
         accel[i] = 3 * pow(sin(M_PI * i / 100), 2);
@@ -538,7 +537,7 @@ TEST(a_mat_that_lifts_has_its_known_response)
         SimWorker *worker;
         SimResult r;
         Settings s;
-        Err err = {0};
+        err = (Err){0};
         settings_defaults(&s);
         CHECK_OK(settings_read(&s, "configs/engineer.ini", NULL, NULL, &err), &err);
         snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
@@ -578,7 +577,7 @@ TEST(what_is_no_foundation_is_refused_in_words)
                {"depth=3", "'depth=3' is none of soil=A..D g="}};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         Foundation f;
-        Err err = {0};
+        err = (Err){0};
         assert_int_equal(foundation_parse(BAD[i].text, 1, &f, &err), STATUS_BAD_DATA);
         if (strncmp(err.text, "core.foundation: ", 17) != 0 || !strstr(err.text, BAD[i].words))
             print_error("%s: %s\n", BAD[i].text, err.text);

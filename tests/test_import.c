@@ -245,7 +245,7 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         const BuildingOptions o = options_of(BAD[i][0], BUILDING_N_M_KG);
         Building b;
-        Err err = {0};
+        err = (Err){0};
         if (building_load(&b, &o, &err) != STATUS_BAD_DATA || !strstr(err.text, BAD[i][1]))
             fail_msg("%s\n  said: %s\n  wanted: %s", BAD[i][0], err.text, BAD[i][1]);
     }

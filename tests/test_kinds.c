@@ -304,7 +304,7 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         VariableKind kind[3];
         double lower[3], upper[3];
-        Err err = {0};
+        err = (Err){0};
         for (int j = 0; j < 3; j++) {
             lower[j] = atof(BAD[i].lower);
             upper[j] = atof(BAD[i].upper);

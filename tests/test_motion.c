@@ -10,9 +10,9 @@ static const double G = 9.81;
 
 /* ---- readers -------------------------------------------------------------------------------------------------- */
 
-static Status parse(Motion *m, const char *text, MotionUnit unit, Err *err)
+static Status parse(Motion *m, const char *text, MotionUnit unit, Err *why)
 {
-    return motion_parse(m, "text", text, strlen(text), &(MotionHow){.unit = unit}, err);
+    return motion_parse(m, "text", text, strlen(text), &(MotionHow){.unit = unit}, why);
 }
 
 /* Text that must be read as a[0..3] = 1 2 -3 0 m/s2 with a step of 0.02 s. */
@@ -104,7 +104,7 @@ TEST(a_sample_missing_anywhere_is_noticed)
             if (i != gone)
                 p += sprintf(p, "%.2f,1\n", i * 0.01);
         Motion m;
-        Err err;
+        err = (Err){0};
         assert_int_equal(parse(&m, text, UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
         char where[32];
         snprintf(where, sizeof where, ":%d: time ", gone + 2); /* one line of header, one sample less before it */
@@ -150,7 +150,7 @@ TEST(every_bad_file_is_refused_with_its_reason)
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         char path[128];
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         snprintf(path, sizeof path, "tests/bad/motion/%s", BAD[i].file);
         assert_int_equal(motion_load(&m, path, UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
         assert_null(m.accel);
@@ -177,7 +177,7 @@ TEST(a_comment_heads_columns_where_it_begins_with_times_or_periods)
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         char text[400];
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         snprintf(text, sizeof text, "%s\n0.02,0.5\n0.04,-0.5\n0.06,0.25\n", CASES[i].head);
         const Status s = parse(&m, text, UNIT_M_S2, &err);
         if ((s == STATUS_OK) != !CASES[i].says || (CASES[i].says && !strstr(err.text, CASES[i].says)))

@@ -185,7 +185,7 @@ static Text changed(Text t, const char *from, const char *to, int all)
 static void refuse(const char *name, Text t, const MotionHow *how, const char *says)
 {
     Motion m;
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(motion_parse(&m, name, t.text, t.length, how, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, says))
         fail_msg("'%s' should be in '%s'", says, err.text);
@@ -372,7 +372,7 @@ TEST(a_specimen_wrong_in_one_way_is_refused_with_line_and_reason)
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         Text t = changed(read_specimen(WRONG[i].file), WRONG[i].from, WRONG[i].to, 0);
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         const Status s = motion_parse(&m, WRONG[i].file, t.text, t.length, &FIRST, &err);
         if (s != STATUS_BAD_DATA || m.accel || strncmp(err.text, WRONG[i].file, strlen(WRONG[i].file)) != 0 ||
             !strstr(err.text, WRONG[i].says))
@@ -407,7 +407,6 @@ TEST(a_file_of_too_many_channels_is_refused)
     char row[400] = "";
     for (int i = 0; i < 130; i++)
         strcat(row, "1 ");
-    Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "row:1: more than 128 channels"));
 }
@@ -417,7 +416,7 @@ TEST(words_without_numbers_are_no_known_format_and_their_first_line_is_quoted)
     static const char *const TEXTS[] = {"W. 12 garbage\n", "alpha\nbeta\n", "time acceleration\nabc def\n",
                                         "W. station foo\n what\n1 2 3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Err err = {0};
+        err = (Err){0};
         char quoted[40];
         snprintf(quoted, sizeof quoted, "first line is '%.*s'", (int)strcspn(TEXTS[i], "\n"), TEXTS[i]);
         assert_int_equal(motion_parse(&(Motion){0}, "text", TEXTS[i], strlen(TEXTS[i]), &FIRST, &err), STATUS_BAD_DATA);
@@ -438,7 +437,7 @@ static void refused(const char *file, const MotionHow *how, const char *says)
 {
     char path[128];
     Motion m;
-    Err err = {0};
+    err = (Err){0};
     specimen_path(file, path);
     assert_int_equal(motion_read(&m, path, how, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, says))
@@ -639,7 +638,7 @@ static Text mutated(const Text *t, uint64_t *random)
 static void check_mutant(const char *file, const Text *t, const MotionHow *how)
 {
     Motion m;
-    Err err = {0};
+    err = (Err){0};
     const Status s = motion_parse(&m, file, t->text, t->length, how, &err);
     if (s == STATUS_OK) {
         assert_true(m.n >= 2 && m.dt_s > 0 && isfinite(m.dt_s));
@@ -703,10 +702,10 @@ TEST(the_offset_of_a_recorder_is_subtracted_and_said)
 }
 
 /* The header's 123.4 gal written as another. */
-static Status read_with_peak(const char *stated, Motion *m, Err *err)
+static Status read_with_peak(const char *stated, Motion *m, Err *why)
 {
     Text t = changed(read_specimen("one.knet"), "123.400", stated, 0);
-    const Status status = motion_parse(m, "one.knet", t.text, t.length, &(MotionHow){0}, err);
+    const Status status = motion_parse(m, "one.knet", t.text, t.length, &(MotionHow){0}, why);
     free(t.text);
     return status;
 }
@@ -724,9 +723,9 @@ TEST(a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_a
     assert_non_null(strstr(err.text, "peak at 123.4 cm_s2, its header says 132; more than 5 % apart"));
 }
 
-static Status parse_text(Motion *m, const char *text, Err *err)
+static Status parse_text(Motion *m, const char *text, Err *why)
 {
-    return motion_parse(m, "there", text, strlen(text), &(MotionHow){0}, err);
+    return motion_parse(m, "there", text, strlen(text), &(MotionHow){0}, why);
 }
 
 /* Rows of `width` values a_k = sin k [m/s2] below a first line. */
@@ -759,7 +758,7 @@ TEST(columns_without_names_are_asked_about_and_joined_only_where_a_count_fits)
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         Text t = rows_of(CASES[i].first, 20, 4);
         const Status s = motion_parse(&m, "rows", t.text, t.length, &(MotionHow){.channel = CASES[i].channel}, &err);
         if (CASES[i].says) {
@@ -786,7 +785,7 @@ TEST(first_rows_of_number_and_step_are_no_samples)
     for (size_t i = 0; i < 2 * sizeof CASES / sizeof *CASES; i++) {
         const int width = (int)(i & 1) + 1, in_two = width == 2 && strcmp(CASES[i / 2].first, "30\n0.02\n") == 0;
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         Text t = {NULL, 0};
         FILE *f = open_memstream(&t.text, &t.length);
         assert_non_null(f);
@@ -814,7 +813,7 @@ TEST(first_rows_of_number_and_step_are_no_samples)
 static void expect_refusal(const char *text, const char *says)
 {
     Motion m;
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(parse_text(&m, text, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, says))
         fail_msg("'%s' should be in '%s'", says, err.text);
@@ -937,7 +936,7 @@ TEST(every_format_with_a_peak_in_its_header_is_checked_against_it)
         for (int refused_ = 0; refused_ < 2; refused_++) {
             Text t = changed(read_specimen(PEAKS[i].file), PEAKS[i].from, refused_ ? PEAKS[i].by_8 : PEAKS[i].by_2, 0);
             Motion m;
-            Err err = {0};
+            err = (Err){0};
             const Status status = motion_parse(&m, PEAKS[i].file, t.text, t.length, &FIRST, &err);
             if (status != (refused_ ? STATUS_BAD_DATA : STATUS_OK) ||
                 (!refused_ && !strstr(m.warning, "its header says")) ||
@@ -967,7 +966,7 @@ TEST(the_extremes_in_an_smc_header_are_checked)
         at = strstr(strstr(at, "1.7000000E+38") + 1, "1.7000000E+38");
         write_over(at, "7.8200000E+01");
         Motion m;
-        Err err = {0};
+        err = (Err){0};
         const Status status = motion_parse(&m, "one.smc", t.text, t.length, &FIRST, &err);
         assert_int_equal(status, by_8 ? STATUS_BAD_DATA : STATUS_OK);
         assert_non_null(
@@ -1243,7 +1242,7 @@ static Text table_below(const char *header)
 static void expect(const char *header, const MotionHow *how, const char *says)
 {
     Motion m;
-    Err err = {0};
+    err = (Err){0};
     Text t = table_below(header);
     const Status s = motion_parse(&m, "there", t.text, t.length, how, &err);
     if (says ? s != STATUS_BAD_DATA || !strstr(err.text, says) : s != STATUS_OK || m.n != 50 || m.dt_s != 0.01)
@@ -1313,7 +1312,7 @@ TEST(a_record_behind_a_record_is_a_channel_in_every_format)
         const int is_plain = strcmp(SPECIMENS[i].format, "csv") == 0;
         Text t = joined(read_specimen(SPECIMENS[i].file), read_specimen("one.knet"));
         Motion m = {0};
-        Err err = {0};
+        err = (Err){0};
         assert_int_equal(motion_parse(&m, "two", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
         if (!is_plain &&
             (!strstr(err.text, "channels: 1 ") || !strstr(err.text, "'N-S'; choose one by motion.channel")))
@@ -1346,7 +1345,6 @@ TEST(rows_that_are_missing_or_swapped_are_refused_where_they_carry_times)
         refuse("there", t, &FIRST, "does not come after");
     }
     Text t = read_specimen("cwb.dat");
-    Err err = {0};
     char *row = strstr(t.text, "     0.150 "), *next = strchr(row, '\n') + 1;
     memmove(row, next, strlen(next) + 1);
     assert_int_equal(motion_parse(&(Motion){0}, "there", t.text, strlen(t.text), &FIRST, &err), STATUS_BAD_DATA);

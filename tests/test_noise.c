@@ -221,11 +221,11 @@ static void exact(const double x[], double f[])
 
 /* The draw is named by the design and how often it was asked for, so that a search that goes on gets the same. */
 static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *err)
+                       void *user, Err *why)
 {
     World *w = user;
     (void)G;
-    (void)err;
+    (void)why;
     for (size_t i = 0; i < n; i++) {
         const double *x = X + i * VAR;
         uint64_t bits;

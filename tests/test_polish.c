@@ -22,7 +22,7 @@ static double tooth(double x)
 
 /* f1 = |x - (1, 0, 0)|^2, f2 = 1 + x1: with f2 kept at its start value x1 = 0, the best is (0, 0, 0), f1 = 1. */
 static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *err)
+                       void *user, Err *why)
 {
     (void)draws;
     Toy *w = user;
@@ -38,7 +38,7 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
             F[i * OBJ] = w->n % 2 ? NAN : -1e300; /* what is written beside a failure must not be believed */
         w->n++;
     }
-    return w->breaks && w->n > 5 ? (fail)(err, STATUS_IO, "the disk is full") : STATUS_OK;
+    return w->breaks && w->n > 5 ? (fail)(why, STATUS_IO, "the disk is full") : STATUS_OK;
 }
 
 static const double FIRST[OBJ] = {1, 0}, KEPT[OBJ] = {INFINITY, 1}, FREE[OBJ] = {INFINITY, INFINITY};
@@ -49,7 +49,7 @@ typedef struct {
 } Polished;
 
 /* From the start, whose own answer is known; at least one bound: COBYLA, else BOBYQA. */
-static Status polish(Toy *w, const double weight[], const double bound[], size_t evals, Polished *r, Err *err)
+static Status polish(Toy *w, const double weight[], const double bound[], size_t evals, Polished *r, Err *why)
 {
     Toy exact = {.jag = w->jag};
     unsigned char ok;
@@ -62,20 +62,20 @@ static Status polish(Toy *w, const double weight[], const double bound[], size_t
                   .enough = -INFINITY,
                   .gain_min = w->gain_min,
                   .budget = evals};
-    CHECK_OK(queue_open(&m.queue, &problem, err), err);
-    CHECK_OK(improver_reserve(&m, err), err);
+    CHECK_OK(queue_open(&m.queue, &problem, why), why);
+    CHECK_OK(improver_reserve(&m, why), why);
     memcpy(m.x, START, sizeof START);
-    evaluate(1, m.x, NULL, m.first, NULL, &ok, &exact, err);
+    evaluate(1, m.x, NULL, m.first, NULL, &ok, &exact, why);
     for (size_t k = 0; k < OBJ; k++) {
         m.weight[k] = weight[k];
         m.scale[k] = 1;
         m.slack[k] = bound[k] - m.first[k];
     }
     m.value = improver_sum(&m, m.first);
-    const Status status = polish_descend(&m, err);
+    const Status status = polish_descend(&m, why);
     *r = (Polished){.n_evaluated = out.cost.n_evaluated, .n_failed = out.cost.n_failed};
     memcpy(r->x, m.x, sizeof r->x);
-    evaluate(1, r->x, NULL, r->f, NULL, &ok, &exact, err);
+    evaluate(1, r->x, NULL, r->f, NULL, &ok, &exact, why);
     assert_close(m.value, improver_sum(&m, r->f), 1e-12); /* what was believed is what it is */
     queue_close(m.queue);
     free(m.store);

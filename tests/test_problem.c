@@ -334,7 +334,7 @@ static pid_t start_with_workers(const char *command, int *end)
     Problem p;
     Queue *q;
     const ProblemOptions options = command_of(command, 60, 2);
-    Err err = {0};
+    err = (Err){0};
     int ends[2];
     char word;
     assert_int_equal(pipe(ends), 0);
@@ -434,9 +434,9 @@ typedef struct {
     int last_ok;
 } Heard;
 
-static Status hear(const Evaluation *e, void *user, Err *err)
+static Status hear(const Evaluation *e, void *user, Err *why)
 {
-    (void)err;
+    (void)why;
     Heard *h = user;
     h->n++;
     h->numbers += e->id;
@@ -477,7 +477,7 @@ TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
 static void refused(const char *assignment, const char *said)
 {
     Settings s = external_settings();
-    Err err = {0};
+    err = (Err){0};
     Adapter *adapter;
     CHECK_OK(settings_set(&s, assignment, &err), &err);
     const Status status = adapter_open(&adapter, &s, &err);

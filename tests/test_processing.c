@@ -266,7 +266,7 @@ TEST(scalings_that_contradict_each_other_are_refused_and_named)
                                       "motion.target=asce7 sds=1 sd1=0.6"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 4; k++) {
-            Err err = {0};
+            err = (Err){0};
             Settings s;
             settings_defaults(&s);
             CHECK_OK(settings_set(&s, SET[i], &err), &err);

@@ -22,7 +22,7 @@ typedef struct {
     long heard[DESIGNS];
 } Bench;
 
-static Status simulate(void *self, size_t worker, const Task *t, Err *err)
+static Status simulate(void *self, size_t worker, const Task *t, Err *why)
 {
     Bench *b = self;
     Part *part = t->result;
@@ -36,10 +36,10 @@ static Status simulate(void *self, size_t worker, const Task *t, Err *err)
     b->n_tasks++;
     b->n_under_way--;
     if (worker >= b->problem.n_workers)
-        return (fail)(err, STATUS_INTERNAL, "worker %zu", worker);
+        return (fail)(why, STATUS_INTERNAL, "worker %zu", worker);
     for (int i = 0; i < 2; i++)
         if (t->part == 1 && t->x[0] == b->fault_at[i])
-            return (fail)(err, STATUS_BAD_DATA, "design %g", t->x[0]);
+            return (fail)(why, STATUS_BAD_DATA, "design %g", t->x[0]);
     return STATUS_OK;
 }
 
@@ -113,10 +113,10 @@ static void ask(Queue *q, int n)
                  &err);
 }
 
-static Status note_done(const Evaluation *e, void *user, Err *err)
+static Status note_done(const Evaluation *e, void *user, Err *why)
 {
     Bench *b = user;
-    (void)err;
+    (void)why;
     b->heard[b->n_heard++] = e->id;
     return STATUS_OK;
 }
@@ -186,7 +186,7 @@ TEST(of_several_faults_the_first_design_is_named)
     for (size_t workers = 1; workers <= WORKERS; workers++)
         for (int turn = 0; turn < 10; turn++) {
             Finished done;
-            Err err = {0};
+            err = (Err){0};
             Status status = STATUS_OK;
             forget();
             bench.rests = turn % 2;
@@ -229,11 +229,11 @@ TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
     }
 }
 
-static Status refuse_third(const Evaluation *e, void *user, Err *err)
+static Status refuse_third(const Evaluation *e, void *user, Err *why)
 {
     Bench *b = user;
     (void)e;
-    return ++b->n_heard < 3 ? STATUS_OK : (fail)(err, STATUS_IO, "the disk is full");
+    return ++b->n_heard < 3 ? STATUS_OK : (fail)(why, STATUS_IO, "the disk is full");
 }
 
 TEST(a_fault_of_the_observer_ends_everything)

@@ -38,10 +38,10 @@ static int fails(const World *w, const double x[])
 }
 
 static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *err)
+                       void *user, Err *why)
 {
     (void)draws;
-    (void)err;
+    (void)why;
     const World *w = user;
     for (size_t i = 0; i < n; i++) {
         const double *x = X + i * w->problem.n_var;
@@ -250,7 +250,7 @@ TEST(a_search_at_its_limit_simulates_nothing_more)
 
 static void refuse(const SearchConfig *c, const SearchStart *start)
 {
-    Err err = {0};
+    err = (Err){0};
     StopReason reason;
     assert_int_equal(search_resume(&here.problem, c, start, observe, &resumed, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "does not fit"));

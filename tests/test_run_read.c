@@ -63,7 +63,7 @@ TEST(what_is_wrong_in_one_cell_is_named)
     char folder[PATH_MAX];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Run h;
-        Err err = {0};
+        err = (Err){0};
         const Status status = run_read(&h, changed(CASES[i].sql, folder), &err);
         if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
             fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
@@ -186,7 +186,8 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     char path[2][PATH_MAX];
     write_in_place("plain.ini", DTLZ2_INI(4, 2));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/first"));
-    free(output_of("optimize @/plain.ini --max-evals 150 --out @/second --set search.seed=2 --set search.start=@/first"));
+    free(output_of(
+        "optimize @/plain.ini --max-evals 150 --out @/second --set search.seed=2 --set search.start=@/first"));
     const char *const folders[] = {path_of("first", path[0]), path_of("second", path[1])};
     CHECK_OK(run_read(&a, folders[0], &err), &err);
     CHECK_OK(run_read(&b, folders[1], &err), &err);
@@ -295,7 +296,6 @@ TEST(who_lets_go_of_a_lock_within_a_second_is_waited_for)
     char path[PATH_MAX], word;
     int ends[2];
     Folder folder;
-    Err err = {0};
     path_of("passing", path);
     assert_int_equal(pipe(ends), 0);
     const pid_t pid = fork();

@@ -356,7 +356,7 @@ TEST(bad_buildings_are_refused_with_file_and_fault)
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         char path[200];
         Building b;
-        Err err = {0};
+        err = (Err){0};
         snprintf(path, sizeof path, "tests/bad/building/%s", BAD[i][0]);
         assert_int_not_equal(load_model(&b, path, &err), STATUS_OK);
         if (!strstr(err.text, BAD[i][1]) || !strstr(err.text, path)) {

@@ -51,11 +51,11 @@ static Part part_of(const World *w, const double x[], size_t part)
     return p;
 }
 
-static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+static Status simulate(void *self, size_t worker, const Task *task, Err *why)
 {
     World *w = self;
     (void)worker;
-    (void)err;
+    (void)why;
 #pragma omp atomic
     w->n_tasks++;
     if (task->part == 0) {
@@ -84,10 +84,10 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
 
 static const Simulator SIMULATOR = {.simulate = simulate, .combine = combine};
 
-static Status note_done(const Evaluation *e, void *user, Err *err)
+static Status note_done(const Evaluation *e, void *user, Err *why)
 {
     World *w = user;
-    return evaluation_table_append(&w->done, e, err);
+    return evaluation_table_append(&w->done, e, why);
 }
 
 static void open_world(World *w, size_t n_workers)

@@ -57,10 +57,10 @@ static uint32_t bits_of(const double x[])
 }
 
 static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *err)
+                       void *user, Err *why)
 {
     (void)draws;
-    (void)err;
+    (void)why;
     World *w = user;
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
     for (size_t i = 0; i < n; i++) {
@@ -176,11 +176,11 @@ TEST(three_objectives_beat_a_latin_hypercube_of_the_same_size)
 
 /* f = (sum x, 2 sum x): every search ends in the corner, and the designs nearest to the front become the same ones. */
 static Status sums(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                   void *user, Err *err)
+                   void *user, Err *why)
 {
     (void)draws;
     (void)G;
-    (void)err;
+    (void)why;
     const World *w = user;
     for (size_t i = 0; i < n; i++) {
         F[2 * i] = 0.0;
@@ -456,9 +456,9 @@ static double volume_of_ok(const Seen *s, size_t m)
 
 /* The best of DTLZ2 is at x_d = 1/2 for d = 2..9: there, and in a third of the box, evaluations fail. */
 static Status fail_in_a_slab(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                             unsigned char ok[], void *user, Err *err)
+                             unsigned char ok[], void *user, Err *why)
 {
-    TRY(evaluate(n, X, draws, F, G, ok, user, err));
+    TRY(evaluate(n, X, draws, F, G, ok, user, why));
     const World *w = user;
     for (size_t i = 0; i < n; i++)
         ok[i] = fabs(X[i * w->problem.n_var + 5] - 0.55) > 0.165;
@@ -594,12 +594,12 @@ TEST(settings_that_make_no_sense_are_refused_by_name)
 }
 
 static Status evaluate_agreeing(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                                unsigned char ok[], void *user, Err *err)
+                                unsigned char ok[], void *user, Err *why)
 {
     (void)draws;
     World *w = user;
     (void)G;
-    (void)err;
+    (void)why;
     for (size_t i = 0; i < n; i++) {
         double sum = 0.0;
         for (size_t d = 0; d < w->problem.n_var; d++)
@@ -614,12 +614,12 @@ static Status evaluate_agreeing(size_t n, const double X[], const size_t draws[]
 
 /* f = x_0 + g, 1 - x_0 + g with Rastrigin's function g of the other variables. */
 static Status evaluate_waves(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                             unsigned char ok[], void *user, Err *err)
+                             unsigned char ok[], void *user, Err *why)
 {
     (void)draws;
     World *w = user;
     (void)G;
-    (void)err;
+    (void)why;
     for (size_t i = 0; i < n; i++) {
         const double *x = X + i * w->problem.n_var;
         double g = 0.0;

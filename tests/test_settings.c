@@ -47,7 +47,7 @@ static void write_text(const char *path, const char *text)
     assert_int_equal(fclose(f), 0);
 }
 
-static Status read_text(Settings *s, const char *text, Err *err)
+static Status read_text(Settings *s, const char *text, Err *why)
 {
     char path[] = "/tmp/imtet-settings-XXXXXX";
     const int fd = mkstemp(path);
@@ -55,7 +55,7 @@ static Status read_text(Settings *s, const char *text, Err *err)
     close(fd);
     write_text(path, text);
     settings_defaults(s);
-    const Status status = settings_read(s, path, NULL, NULL, err);
+    const Status status = settings_read(s, path, NULL, NULL, why);
     remove(path);
     return status;
 }
@@ -123,7 +123,7 @@ static void change_one(Settings *s, int i, const char *was)
                                          "damping=0.3", "0.31,0.32", "2,3", "2e3,3e3", "link=2", "structure=0.3"};
     const char *words = settings_words(i), *bar = words ? strchr(words, '|') : NULL;
     char assignment[2 * OPTION_TEXT_MAX];
-    Err err = {0};
+    err = (Err){0};
     if (bar)
         snprintf(assignment, sizeof assignment, "%s=%.*s", settings_key(i),
                  strncmp(was, words, strlen(was)) == 0 ? (int)strcspn(bar + 1, "|") : (int)(bar - words),
@@ -229,12 +229,12 @@ TEST(a_misspelt_key_is_answered_with_the_nearest)
     Settings s;
     settings_defaults(&s);
     for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
-        Err err = {0};
+        err = (Err){0};
         assert_int_equal(settings_set(&s, PAIRS[i][0], &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "did you mean"));
         assert_non_null(strstr(err.text, PAIRS[i][1]));
     }
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(settings_set(&s, "nonsense", &err), STATUS_USAGE);
     assert_int_equal(settings_set(&s, "=3", &err), STATUS_USAGE);
     assert_int_equal(settings_set(&s, "qqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqqq=3", &err), STATUS_BAD_DATA);
@@ -245,7 +245,7 @@ TEST(a_misspelt_key_is_answered_with_the_nearest)
 static void refused(const char *assignment, Status status, const char *says)
 {
     Settings s;
-    Err err = {0};
+    err = (Err){0};
     settings_defaults(&s);
     assert_int_equal(settings_set(&s, assignment, &err), status);
     if (!strstr(err.text, says))
@@ -327,7 +327,7 @@ TEST(a_text_that_a_file_would_change_is_refused)
     Settings s;
     settings_defaults(&s);
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Err err = {0};
+        err = (Err){0};
         assert_int_equal(settings_set(&s, TEXTS[i], &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "motion.record"));
     }
@@ -442,11 +442,11 @@ TEST(columns_count_characters_and_not_the_mark_of_utf_8)
     assert_non_null(strstr(err.text, ":2:1: core."));
 }
 
-static Status read_file(const char *path, Err *err)
+static Status read_file(const char *path, Err *why)
 {
     Settings s;
     settings_defaults(&s);
-    return settings_read(&s, path, NULL, NULL, err);
+    return settings_read(&s, path, NULL, NULL, why);
 }
 
 TEST(every_bad_file_is_refused_with_file_line_and_key)

@@ -42,7 +42,7 @@ static pid_t study_in_child(const char *out, int evaluations)
     if (pid > 0)
         return pid;
     StudySummary summary;
-    Err err = {0};
+    err = (Err){0};
     const Settings s = settings_of(STEADY, out);
     const Status status = study_run(&s, &(StudyOptions){.stop = evaluations ? wait_after : NULL, .user = &evaluations},
                                     &summary, NULL, &err);

@@ -38,7 +38,7 @@ static int run_by_pieces(const Settings *s, int k, StudySummary *summary)
 {
     for (int sessions = 1;; sessions++) {
         int left = k;
-        Err err = {0};
+        err = (Err){0};
         const StudyOptions options = {.stop = stop_after, .user = &left};
         const Status status = study_run(s, &options, summary, NULL, &err);
         if (status == STATUS_OK)
@@ -141,7 +141,7 @@ static void refused_with(const Settings *s, int force, const char *said, const c
 {
     char *lines = NULL;
     size_t length;
-    Err err = {0};
+    err = (Err){0};
     StudySummary summary;
     const StudyOptions options = {.force = force};
     FILE *f = open_memstream(&lines, &length);
@@ -547,9 +547,9 @@ static int prepare_pinned(void **state)
 
 /* -- results that one version of the program has and another lacks ---------------------------------------------------- */
 
-static Status take_extra(const Evaluation *e, void *extra, Err *err)
+static Status take_extra(const Evaluation *e, void *extra, Err *why)
 {
-    (void)err;
+    (void)why;
     memcpy(extra, e->extra, 3 * sizeof(double));
     return STATUS_OK;
 }
@@ -557,7 +557,7 @@ static Status take_extra(const Evaluation *e, void *extra, Err *err)
 /* A file of `wrote`, a row of which `reads` inserts and reads: results are found by their names. */
 static void exchange(const char *name, const Schema *wrote, const Schema *reads, const Settings *s, double extra[3])
 {
-    Err err = {0};
+    err = (Err){0};
     Database *db;
     RowColumns columns;
     double numbers[] = {0.1, 0.2, 0.3, 4, 5, 6, 7, 8};
@@ -576,7 +576,6 @@ static void exchange(const char *name, const Schema *wrote, const Schema *reads,
 
 TEST(a_result_that_a_file_lacks_is_not_known_and_one_that_only_the_file_has_is_passed_over)
 {
-    Err err = {0};
     Schema now, before;
     double extra[3];
     Settings s = settings_of("[problem]\nkind = external\ncommand = true\nvariables = 3\nobjectives = 2\n", "columns");

@@ -142,10 +142,10 @@ static Settings short_textbook(const char *out)
     return s;
 }
 
-static Status study(const Settings *s, Err *err)
+static Status study(const Settings *s, Err *why)
 {
     StudySummary summary;
-    return study_run(s, &(StudyOptions){0}, &summary, NULL, err);
+    return study_run(s, &(StudyOptions){0}, &summary, NULL, why);
 }
 
 static int stop_after(void *left)
@@ -157,7 +157,7 @@ static int stop_after(void *left)
 static void run_half(const Settings *s)
 {
     int left = 17;
-    Err err = {0};
+    err = (Err){0};
     StudySummary summary;
     const StudyOptions options = {.stop = stop_after, .user = &left};
     assert_int_equal(study_run(s, &options, &summary, NULL, &err), STATUS_STOPPED);
@@ -165,7 +165,7 @@ static void run_half(const Settings *s)
 
 static void fail_once(Kind kind, long at, const char *front)
 {
-    Err err = {0};
+    err = (Err){0};
     remove_in_place("faulty");
     const Settings s = short_textbook("faulty");
     if (at % 2 == 0)
@@ -186,7 +186,6 @@ static void fail_once(Kind kind, long at, const char *front)
 
 TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
 {
-    Err err = {0};
     const char *wanted = getenv("FAULTS");
     const long most = wanted ? strtol(wanted, NULL, 10) : SOME;
     const Settings s = short_textbook("whole");
@@ -240,7 +239,7 @@ static SearchView view_of(size_t g)
 }
 
 /* The fourth takes long enough to be committed at once. */
-static Status simulate(RunStore *store, size_t i, Err *err)
+static Status simulate(RunStore *store, size_t i, Err *why)
 {
     Evaluation e = {.id = (long)i + 1,
                     .generation = (long)GENERATION[i],
@@ -250,64 +249,64 @@ static Status simulate(RunStore *store, size_t i, Err *err)
                     .f = (double *)F[i],
                     .room = (char[REASON_MAX]){0}};
     evaluation_set_outcome(&e, OK[i] ? OUTCOME_OK : OUTCOME_DEAD, OK[i] ? "" : "it died");
-    return store_evaluation(store, &e, err);
+    return store_evaluation(store, &e, why);
 }
 
-static Status generation(RunStore *store, size_t g, Err *err)
+static Status generation(RunStore *store, size_t g, Err *why)
 {
     const SearchView v = view_of(g);
     for (size_t i = g > 0 ? UNTIL[g - 1] : 0; i < UNTIL[g]; i++)
-        TRY(simulate(store, i, err));
-    TRY(store_generation(store, &v, &(SessionTimes){.run = 1.0, .session = 1.0}, err));
-    TRY(store_event(store, json_pack("{s:s, s:i}", "event", "generation", "number", (int)g), err));
-    return store_event(store, json_pack("{s:I}", "generation", (json_int_t)g), err);
+        TRY(simulate(store, i, why));
+    TRY(store_generation(store, &v, &(SessionTimes){.run = 1.0, .session = 1.0}, why));
+    TRY(store_event(store, json_pack("{s:s, s:i}", "event", "generation", "number", (int)g), why));
+    return store_event(store, json_pack("{s:I}", "generation", (json_int_t)g), why);
 }
 
 static const Evaluation POLISHED[N_POLISHED] = {{.x = (double *)X[0], .f = (double *)F[5], .outcome = OUTCOME_OK},
                                                 {.x = (double *)X[1], .f = (double *)F[3], .outcome = OUTCOME_OK},
                                                 {.x = (double *)X[2], .outcome = OUTCOME_DEAD}};
 
-static Status work(RunStore *store, const Settings *s, const Schema *schema, size_t n_generations, Err *err)
+static Status work(RunStore *store, const Settings *s, const Schema *schema, size_t n_generations, Err *why)
 {
     const Run *h = store_run(store);
     Run now;
-    TRY(h ? store_resume(store, schema, s, 1, err) : store_begin(store, schema, s, "{}", err));
-    TRY(store_session(store, "a test", 1, 0, err));
+    TRY(h ? store_resume(store, schema, s, 1, why) : store_begin(store, schema, s, "{}", why));
+    TRY(store_session(store, "a test", 1, 0, why));
     for (size_t g = h ? h->n_generations : 0; g < n_generations; g++)
-        TRY(generation(store, g, err));
-    TRY(store_read(store, &now, err));
+        TRY(generation(store, g, why));
+    TRY(store_read(store, &now, why));
     const long tried = now.tried_to_polish;
     run_free(&now);
     if (n_generations == N_GENERATIONS && tried < 1)
-        TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, &(long){0}, err));
-    return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, NULL, err) : STATUS_OK;
+        TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, &(long){0}, why));
+    return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, NULL, why) : STATUS_OK;
 }
 
-static Status session(const char *folder, const Schema *schema, size_t n_generations, Err *err)
+static Status session(const char *folder, const Schema *schema, size_t n_generations, Err *why)
 {
     RunStore *store;
     const Settings s = settings_of(PLAIN, "life");
-    TRY(store_open(&store, folder, 0, err));
-    const Status status = work(store, &s, schema, n_generations, err);
+    TRY(store_open(&store, folder, 0, why));
+    const Status status = work(store, &s, schema, n_generations, why);
     if (status == STATUS_OK)
-        return store_close(store, "the end", n_generations == N_GENERATIONS, 1.0, NULL, err);
+        return store_close(store, "the end", n_generations == N_GENERATIONS, 1.0, NULL, why);
     store_flush(store, &(Err){0}); /* as a study does */
     store_free(store);
     return status;
 }
 
 /* From wherever the run stands to its end, designs from outside included. */
-static Status life(const char *folder, const Schema *schema, Err *err)
+static Status life(const char *folder, const Schema *schema, Err *why)
 {
     Run h;
-    TRY(session(folder, schema, N_GENERATIONS - 1, err));
-    TRY(session(folder, schema, N_GENERATIONS, err));
-    TRY(run_read(&h, folder, err));
+    TRY(session(folder, schema, N_GENERATIONS - 1, why));
+    TRY(session(folder, schema, N_GENERATIONS, why));
+    TRY(run_read(&h, folder, why));
     const size_t n = h.table.n;
     run_free(&h);
     for (size_t k = n - N_DESIGNS; k < N_POLISHED; k++)
-        TRY(add_to_run(folder, 1, POLISHED + k, NULL, err));
-    return session(folder, schema, N_GENERATIONS, err);
+        TRY(add_to_run(folder, 1, POLISHED + k, NULL, why));
+    return session(folder, schema, N_GENERATIONS, why);
 }
 
 /* The tables of a life, one behind the other. */
@@ -322,7 +321,8 @@ static char *tables(void)
 
 static void check_life(Kind kind, long at, int rolls_back, const char *folder, const Schema *schema, const char *wanted)
 {
-    Err err = {0}, again = {0};
+    Err again = {0};
+    err = (Err){0};
     remove_in_place("life");
     arm(kind, at, SQLITE_IOERR);
     fault.rolls_back = rolls_back;
@@ -340,7 +340,6 @@ static void check_life(Kind kind, long at, int rolls_back, const char *folder, c
 
 TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
 {
-    Err err = {0};
     char folder[PATH_MAX];
     long n[N_KINDS];
     Schema schema;
@@ -388,7 +387,6 @@ TEST(every_fault_of_the_database_is_said_in_our_words)
                 {SQLITE_CANTOPEN, STATUS_OK, ""}};
     char folder[PATH_MAX], inside[PATH_MAX];
     RunStore *store;
-    Err err = {0};
     Schema schema;
     const Settings s = settings_of(PLAIN, "50% ?#");
     CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
@@ -456,7 +454,7 @@ static const char *long_path(char path[], size_t n, const char *name)
 static void refused_by_store(const char *folder, int fresh, const char *words)
 {
     RunStore *store;
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(store_open(&store, folder, fresh, &err), STATUS_IO);
     assert_null(store);
     if (!strstr(err.text, words))
@@ -468,7 +466,6 @@ TEST(a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next)
     char path[2 * PATH_MAX], other[PATH_MAX], old[PATH_MAX];
     RunStore *first, *second;
     Database *d;
-    Err err = {0};
     CHECK_OK(store_open(&first, path_of("old", old), 0, &err), &err);
     store_free(first);
     assert_int_equal(access(old, F_OK), -1); /* no run came of it */
@@ -495,7 +492,6 @@ TEST(a_generation_that_was_not_simulated_is_refused)
 {
     char folder[PATH_MAX];
     RunStore *store;
-    Err err = {0};
     Schema schema;
     long first;
     const Settings s = settings_of(PLAIN, "early");

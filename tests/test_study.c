@@ -253,7 +253,8 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     char *said = output_of("choose @/earlier"), knee[40];
     snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
     assert_non_null(strstr(said, knee));
-    free(output_of("polish @/earlier --design knee --improve f1 --keep f1 --max-evals 60")); /* a gain enters the archive */
+    free(output_of(
+        "polish @/earlier --design knee --improve f1 --keep f1 --max-evals 60")); /* a gain enters the archive */
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
     expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");

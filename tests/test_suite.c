@@ -79,10 +79,10 @@ typedef struct {
     char source[40][OPTION_TEXT_MAX];
 } Seen;
 
-static Status see(const char *source, void *user, Err *err)
+static Status see(const char *source, void *user, Err *why)
 {
     Seen *s = user;
-    (void)err;
+    (void)why;
     snprintf(s->source[s->n++], OPTION_TEXT_MAX, "%s", source);
     return STATUS_OK;
 }

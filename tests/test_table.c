@@ -4,14 +4,14 @@
 #include "scene/design.h"
 #include "base/csv.h"
 
-static Status parse(Table *t, const char *text, int has_header, Err *err)
+static Status parse(Table *t, const char *text, int has_header, Err *why)
 {
-    return table_parse(t, "there.csv", text, strlen(text), has_header, err);
+    return table_parse(t, "there.csv", text, strlen(text), has_header, why);
 }
 
 static void expect_refusal(const char *text, int has_header, const char *wanted)
 {
-    Err err = {0};
+    err = (Err){0};
     Table t;
     assert_int_equal(parse(&t, text, has_header, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, wanted))
@@ -222,10 +222,10 @@ TEST(variables_are_named_by_floor_from_the_bottom)
     }
 }
 
-static Status read_two_floors(const char *path, Err *err)
+static Status read_two_floors(const char *path, Err *why)
 {
     Designs d;
-    const Status status = design_read(&d, path, paper_space(2), err);
+    const Status status = design_read(&d, path, paper_space(2), why);
     design_free(&d);
     return status;
 }

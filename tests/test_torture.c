@@ -70,7 +70,7 @@ static pid_t start(const Prey *prey, const char *folder, int by_folder)
 /* What the database tells: 0 where there is none yet, -1 where it cannot be read. */
 static int look(const char *folder, Run *h)
 {
-    Err err = {0};
+    err = (Err){0};
     memset(h, 0, sizeof *h);
     if (!run_is_there(folder))
         return 0;

@@ -19,9 +19,9 @@ typedef struct {
 /* core_mass 0: a wall. The caller frees the model. */
 static inline void bobs_model(SimModel *model, int n, const Bob bobs[], double core_mass, const Contact *contact)
 {
-    Err err = {0};
+    Err why = {0};
     const double core = core_mass > 0 ? 1 / sqrt(core_mass) : 1e-30;
-    need(model_create(model, n, n, &err), &err);
+    need(model_create(model, n, n, &why), &why);
     model->nb = n;
     model->nc = 1;
     model->m = n + 1;

@@ -8,11 +8,11 @@
 
 #include "base/status.h"
 
-static inline void need(Status status, const Err *err)
+static inline void need(Status status, const Err *why)
 {
     if (status == STATUS_OK)
         return;
-    fprintf(stderr, "imtet-bench: %s: %s\n", status_words(status), err->text);
+    fprintf(stderr, "imtet-bench: %s: %s\n", status_words(status), why->text);
     abort();
 }
 
