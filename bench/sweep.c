@@ -165,7 +165,7 @@ static void write_row(const Sweep *s, const SweepRow *row, FILE *out)
     put(out, ok ? r->energy_balance_error : NAN);
     put(out, sweep_floor(s, (int)(row->kind - bench_kind(0))));
     fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations,
-            outcome_word(measure_outcome(r->outcome)), r->reason);
+            outcome_word((Outcome)r->outcome), r->reason);
 }
 
 void sweep_write(const Sweep *s, FILE *out)

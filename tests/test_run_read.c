@@ -56,7 +56,7 @@ TEST(what_is_wrong_in_one_cell_is_named)
         {"DELETE FROM evaluation WHERE id = 2", "evaluation 2 is missing", STATUS_IO},
         {"DELETE FROM evaluation WHERE id = 40", "evaluation 40 is missing", STATUS_IO},
         {"DELETE FROM evaluation", "evaluation 1 is missing", STATUS_IO},
-        {"ALTER TABLE session DROP COLUMN stopped", "1 of its tables are not those of this run", STATUS_IO},
+        {"ALTER TABLE session DROP COLUMN stopped", "its table session is not that of this run", STATUS_IO},
         {"ALTER TABLE evaluation RENAME COLUMN x2 TO x7", "its table evaluation is not that of this run", STATUS_IO},
         {"ALTER TABLE finer ADD COLUMN level2 INTEGER", "its table finer is not that of this run", STATUS_IO},
     };

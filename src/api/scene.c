@@ -237,7 +237,7 @@ static Status simulate(Question *q, Err *err)
         if (own)
             memcpy(own, values, rows * n * sizeof *own);
     }
-    result_text(q->result, "outcome", outcome_word(measure_outcome(s.outcome)));
+    result_text(q->result, "outcome", outcome_word((Outcome)s.outcome));
     result_text(q->result, "reason", s.reason);
     return STATUS_OK;
 }
@@ -276,7 +276,7 @@ static Status history(Question *q, Err *err)
         at = add_columns(q->result, &t, FLOORS[k], at, t.n_floors);
     for (size_t k = 0; k < N_ENERGIES; k++)
         at = add_columns(q->result, &t, ENERGIES[k], at, 1);
-    result_text(q->result, "outcome", outcome_word(measure_outcome(t.outcome)));
+    result_text(q->result, "outcome", outcome_word((Outcome)t.outcome));
     track_free(&t);
     return STATUS_OK;
 }

@@ -193,7 +193,7 @@ static void add_rows(json_t *table, const Evaluations *e, size_t i)
         const Measured m = measured(&run->result[c]);
         const double level = e->level ? level_of(e, run) : NAN;
         const double motion[] = {level, e->level && !is_spectral(e) ? level : run->pga_g, run->scale, run->stretch};
-        json_t *row = begin_row(table, e, run->record->path, c, outcome_word(measure_outcome(m.outcome)), motion);
+        json_t *row = begin_row(table, e, run->record->path, c, outcome_word((Outcome)m.outcome), motion);
         put_measures(row, order, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
             put_replicates(row, order, c == SCENE_IMPACT ? &run->replicates : NULL);

@@ -127,7 +127,7 @@ static Status write_csv(const Job *job, const MeasureOrder *order, const char *p
         put_measures(row, order, "", m.value, NULL, NULL);
         if (job->has_parts)
             put_replicates(row, order, &job->summary[i]);
-        json_put(row, "outcome=%s", outcome_word(measure_outcome(m.outcome)));
+        json_put(row, "outcome=%s", outcome_word((Outcome)m.outcome));
     }
     return figures_csv(table, path, err);
 }

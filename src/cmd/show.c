@@ -282,8 +282,8 @@ static json_t *json_damage(const SimResult *r)
 
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r)
 {
-    json_t *o = json_of("scene=%s outcome=%s reason=%s", SCENES[kind].key, outcome_word(measure_outcome(r->outcome)),
-                        r->reason);
+    json_t *o =
+        json_of("scene=%s outcome=%s reason=%s", SCENES[kind].key, outcome_word((Outcome)r->outcome), r->reason);
     put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
@@ -419,7 +419,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     json_put(row, "impacts=%ld", r->impacts);
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
-        snprintf(note, sizeof note, "%s", outcome_word(measure_outcome(r->outcome)));
+        snprintf(note, sizeof note, "%s", outcome_word((Outcome)r->outcome));
     else if (beyond_contact_law(r))
         snprintf(note, sizeof note, "deeper than %g of the contact's radius: beyond the contact law",
                  INDENTATION_RATIO_MAX);

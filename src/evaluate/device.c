@@ -97,21 +97,6 @@ static Status begin(Tuning *t, Err *err)
     return STATUS_OK;
 }
 
-/* About the best point, half as far as before; where that is known by few records alone, as far, and itself, by all. */
-static void surround(Tuning *t, int by_all)
-{
-    const int rows = t->search->kind == SCENE_TMD;
-    if (by_all)
-        use_all_records(t);
-    t->n = 0;
-    for (int d = 0; d < 2; d++)
-        t->spacing[d] *= by_all ? 1 : 0.5;
-    for (int i = -1; i <= 1; i++)
-        for (int k = -rows; k <= rows; k++)
-            if (i || k || by_all)
-                add_point(t, t->best[0] + i * t->spacing[0], t->best[1] + k * t->spacing[1]);
-}
-
 /* -- what simulations say ------------------------------------------------------------------------------------------ */
 
 /* Choose the records of the first grid by the building alone, of (n_records) all: of many the strongest, and others
@@ -200,8 +185,21 @@ Status devices_find(const Problem *p, size_t n, DeviceSearch search[], Err *err)
         status = begin(&tuning[i], err);
     THEN(status, simulate(p, n, tuning, err));
     for (int grid = -by_few; grid < FINER && status == STATUS_OK; grid++) {
-        for (size_t i = 0; i < n; i++)
-            surround(&tuning[i], grid < 0);
+        /* About the best point, half as far as before; where that is known by few records alone, as far, and itself, by
+         * all. */
+        const int by_all = grid < 0;
+        for (Tuning *t = tuning; t < tuning + n; t++) {
+            const int rows = t->search->kind == SCENE_TMD;
+            if (by_all)
+                use_all_records(t);
+            t->n = 0;
+            for (int d = 0; d < 2; d++)
+                t->spacing[d] *= by_all ? 1 : 0.5;
+            for (int i = -1; i <= 1; i++)
+                for (int k = -rows; k <= rows; k++)
+                    if (i || k || by_all)
+                        add_point(t, t->best[0] + i * t->spacing[0], t->best[1] + k * t->spacing[1]);
+        }
         status = simulate(p, n, tuning, err);
     }
     for (size_t i = 0; i < n && status == STATUS_OK; i++)

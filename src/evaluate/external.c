@@ -25,33 +25,6 @@ typedef struct {
     Pool pool;
 } External;
 
-/* -- the command --------------------------------------------------------------------------------------------------- */
-
-/* Split the command into words at blanks; quotes are taken off in place. */
-static Status split_command(External *e, const char *from, Err *err)
-{
-    TRY_ROOM(e->text, strlen(from) + 2, "bytes of the command", err);
-    char *to = e->text;
-    for (size_t n = 0;;) {
-        from += strspn(from, " \t");
-        if (!*from)
-            return n > 0 ? STATUS_OK : bad_data(err, "problem.command: is empty; what is to be run?");
-        if (n == WORDS_MAX)
-            return bad_data(err, "problem.command: has more than %d words", WORDS_MAX);
-        e->words[n++] = to;
-        char quote = 0;
-        for (; *from && (quote || (*from != ' ' && *from != '\t')); ++from) {
-            if (quote ? *from == quote : *from == '\'' || *from == '"')
-                quote = quote ? 0 : *from;
-            else
-                *to++ = *from == '\\' && quote != '\'' && from[1] ? *++from : *from;
-        }
-        if (quote)
-            return bad_data(err, "problem.command: a quote is left open");
-        *to++ = 0;
-    }
-}
-
 /* -- one request --------------------------------------------------------------------------------------------------- */
 
 /* Write a design, or a list of them, whole: half a request would be waited for. */
@@ -243,10 +216,31 @@ static Status read_bounds(const char *key, const char *list, size_t n, double bo
     return STATUS_OK;
 }
 
-/* The command, the box (a choice has bounds of its own), and the processes. */
+/* All of a problem that was allocated: the command, the box, the processes. */
 static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
 {
-    TRY(split_command(e, o->command, err));
+    /* 1. The words of the command, split at blanks, without their quotes. */
+    const char *from = o->command + strspn(o->command, " \t");
+    size_t n_words = 0;
+    TRY_ROOM(e->text, strlen(from) + 2, "bytes of the command", err);
+    for (char *to = e->text; *from; from += strspn(from, " \t"), *to++ = 0) {
+        char quote = 0;
+        if (n_words == WORDS_MAX)
+            return bad_data(err, "problem.command: has more than %d words", WORDS_MAX);
+        e->words[n_words++] = to;
+        for (; *from && (quote || (*from != ' ' && *from != '\t')); ++from) {
+            if (quote ? *from == quote : *from == '\'' || *from == '"')
+                quote = quote ? 0 : *from;
+            else
+                *to++ = *from == '\\' && quote != '\'' && from[1] ? *++from : *from;
+        }
+        if (quote)
+            return bad_data(err, "problem.command: a quote is left open");
+    }
+    if (n_words == 0)
+        return bad_data(err, "problem.command: is empty; what is to be run?");
+
+    /* 2. The box; a choice has bounds of its own. */
     TRY_ROOM(e->lower, 2 * e->n_var, "bounds of variables", err);
     e->upper = e->lower + e->n_var;
     TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
@@ -260,6 +254,8 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
         if (e->lower[j] > e->upper[j])
             return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
                             e->upper[j], j + 1);
+
+    /* 3. The processes. */
     const Protocol protocol = {.name = "problem.command",
                                .words = e->words,
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,

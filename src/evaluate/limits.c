@@ -2,25 +2,6 @@
 
 #include <ctype.h>
 
-/* Read NAME<=NUMBER or NAME>=NUMBER, where NAME may be a chance p(NAME>NUMBER). */
-static Status read_limit(Limit *l, const Schema *schema, const char *text, Err *err)
-{
-    const size_t inside = strncmp(text, "p(", 2) == 0 ? strcspn(text, ")") : 0;
-    const char *relation = strpbrk(text + inside, "<>");
-    char name[TABLE_NAME_MAX], *end;
-    if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
-        return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
-    snprintf(name, sizeof name, "%.*s", (int)(relation - text), text);
-    for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
-        *--last = 0;
-    TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "search.limits", name, &l->result, err));
-    l->sign = *relation == '<' ? 1.0 : -1.0;
-    l->bound = strtod(relation + 2, &end);
-    if (end == relation + 2 || *end || !isfinite(l->bound))
-        return bad_data(err, "search.limits: '%.60s': no number behind %c=", text, *relation);
-    return STATUS_OK;
-}
-
 /* The limit of that result on that side; NULL: there is none before limit n. */
 static const Limit *find(const Limits *limits, size_t n, size_t result, double sign)
 {
@@ -30,22 +11,36 @@ static const Limit *find(const Limits *limits, size_t n, size_t result, double s
     return NULL;
 }
 
-/* Read the list, then check that there is one limit on a side, that of what is better only beside the other, and some
- * number between both. */
 Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
 {
     const int is_tower = schema->order.n_obj > 0;
-    char text[128];
+    char text[128], name[TABLE_NAME_MAX], *end;
     limits->n = 0;
     if (strcmp(list, "none") == 0)
         return STATUS_OK;
     if (list_count(list) > LIMITS_MAX)
         return bad_data(err, "search.limits: more than %d", LIMITS_MAX);
+
+    /* 1. NAME<=NUMBER or NAME>=NUMBER, where NAME may be a chance p(NAME>NUMBER). */
     for (size_t i = 0; i < list_count(list); i++) {
+        Limit *l = &limits->limit[limits->n++];
         if (!list_item(list, i, text, sizeof text))
             return bad_data(err, "search.limits: item %zu is empty or too long", i + 1);
-        TRY(read_limit(&limits->limit[limits->n++], schema, text, err));
+        const size_t inside = strncmp(text, "p(", 2) == 0 ? strcspn(text, ")") : 0;
+        const char *relation = strpbrk(text + inside, "<>");
+        if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
+            return bad_data(err, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
+        snprintf(name, sizeof name, "%.*s", (int)(relation - text), text);
+        for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
+            *--last = 0;
+        TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "search.limits", name, &l->result, err));
+        l->sign = *relation == '<' ? 1.0 : -1.0;
+        l->bound = strtod(relation + 2, &end);
+        if (end == relation + 2 || *end || !isfinite(l->bound))
+            return bad_data(err, "search.limits: '%.60s': no number behind %c=", text, *relation);
     }
+
+    /* 2. One limit on a side, that of what is better only beside the other, and some number between both. */
     for (size_t i = 0; i < limits->n; i++) {
         const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
         const Column *c = schema_objective(schema, l->result);

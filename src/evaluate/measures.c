@@ -269,8 +269,3 @@ Status measures_order(MeasureOrder *out, const char *objectives, const char *lim
 
 _Static_assert((int)OUTCOME_OK == RUN_OK && (int)OUTCOME_ENGINE_FAILED == RUN_ENGINE_FAILED,
                "the outcomes of an evaluation begin with those of a run");
-
-Outcome measure_outcome(RunOutcome outcome)
-{
-    return (Outcome)outcome;
-}

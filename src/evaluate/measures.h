@@ -189,6 +189,3 @@ const char *measures_missing(const MeasureOrder *order, const char *objectives, 
 /* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has
  * none fails with its reason. */
 void measures_settle(SimResult *r, MeasureSet set);
-
-/* What a run comes to as an evaluation. */
-Outcome measure_outcome(RunOutcome outcome);

@@ -133,39 +133,36 @@ static void make_canonical(size_t n, double values[])
         values[i] = isfinite(values[i]) ? values[i] + 0.0 : NAN;
 }
 
-/* All parts of a design are in: make the evaluation of them, in the order of their numbers; those of a cheap level as
- * they were taken. */
-static void complete(const Problem *p, Slot *s)
-{
-    const int is_ordered = p->order && s->n_parts == p->n_parts;
-    Evaluation *e = &s->e;
-    for (size_t i = 0; is_ordered && i < p->n_parts; i++)
-        memcpy(s->ordered + p->order[i] * p->part_size, s->parts + i * p->part_size, p->part_size);
-    p->simulator->combine(p, s->n_parts, is_ordered ? s->ordered : s->parts, e);
-    for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
-        e->f[k] = NAN;
-    make_canonical(p->n_obj, e->f);
-    make_canonical(p->n_obj, e->sd);
-    make_canonical(p->n_extra, e->extra);
-    problem_judge(p, e, s->f, s->g);
-    e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, s->g) : INFINITY;
-}
-
 /* The last part given completes its design, which the observer hears of outside the lock, one at a time. */
 void queue_give(Queue *q, const Task *task, Status status, const Err *why)
 {
-    const Observer *o = &q->problem->observer;
+    const Problem *p = q->problem;
+    const Observer *o = &p->observer;
     Slot *s = task->slot;
+    Evaluation *e = &s->e;
     Err fault = {0};
     pthread_mutex_lock(&q->lock);
     if (status != STATUS_OK)
-        end(q, status == STATUS_STOPPED ? SIZE_MAX : s->sequence * q->problem->n_parts + task->part, status, why->text);
+        end(q, status == STATUS_STOPPED ? SIZE_MAX : s->sequence * p->n_parts + task->part, status, why->text);
     const int is_whole = status == STATUS_OK && ++s->n_given == s->n_parts;
     pthread_mutex_unlock(&q->lock);
+
+    /* All parts of a design are in: its evaluation is made of them in the order of their numbers, of a cheap level as
+     * they were taken. */
     if (is_whole) {
-        complete(q->problem, s);
+        const int is_ordered = p->order && s->n_parts == p->n_parts;
+        for (size_t i = 0; is_ordered && i < p->n_parts; i++)
+            memcpy(s->ordered + p->order[i] * p->part_size, s->parts + i * p->part_size, p->part_size);
+        p->simulator->combine(p, s->n_parts, is_ordered ? s->ordered : s->parts, e);
+        for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
+            e->f[k] = NAN;
+        make_canonical(p->n_obj, e->f);
+        make_canonical(p->n_obj, e->sd);
+        make_canonical(p->n_extra, e->extra);
+        problem_judge(p, e, s->f, s->g);
+        e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, s->g) : INFINITY;
         pthread_mutex_lock(&q->finishing);
-        status = o->done ? o->done(&s->e, o->user, &fault) : STATUS_OK;
+        status = o->done ? o->done(e, o->user, &fault) : STATUS_OK;
     }
     pthread_mutex_lock(&q->lock);
     if (is_whole) {

@@ -580,21 +580,6 @@ void tower_standard_errors(const Tower *t, const SimResult by_record[], double e
     memcpy(error, sum.error, sizeof sum.error);
 }
 
-/* Give a task that is done what it wants of its parts. */
-static void store_task(const Problem *p, const SimTask *task, const char *parts)
-{
-    const size_t n = MAX_OF(task->n_parts, 1);
-    const ReplicatePlan plan = tower_plan(p->self, n);
-    ReplicateSummary sum;
-    replicates_summarise(&plan, parts, p->part_size, task->summary != NULL, &sum);
-    if (task->summary)
-        *task->summary = sum;
-    if (task->result)
-        *task->result = ((const FullResult *)(const void *)(parts + sum.shown * p->part_size))->result;
-    for (size_t i = 0; task->parts && i < n; i++)
-        memcpy(&task->parts[i], parts + i * p->part_size, sizeof *task->parts);
-}
-
 /* Ask a queue of its own for all tasks. Some more are under way at once than there are workers: parts of all would need
  * memory. */
 Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tell, void *user, Err *err)
@@ -625,7 +610,19 @@ Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tel
             design.variant.is_full = is_full;
             status = queue_ask(q, &design, err);
         } else if ((status = queue_next(q, &done, err)) == STATUS_OK) {
-            store_task(&own, &tasks[i++], done.parts);
+            /* A task that is done gets what it wants of its parts. */
+            const SimTask *task = &tasks[i++];
+            const size_t n_parts = MAX_OF(task->n_parts, 1);
+            const ReplicatePlan plan = tower_plan(p->self, n_parts);
+            ReplicateSummary sum;
+            replicates_summarise(&plan, done.parts, own.part_size, task->summary != NULL, &sum);
+            if (task->summary)
+                *task->summary = sum;
+            if (task->result)
+                *task->result =
+                    ((const FullResult *)(const void *)((const char *)done.parts + sum.shown * own.part_size))->result;
+            for (size_t k = 0; task->parts && k < n_parts; k++)
+                memcpy(&task->parts[k], (const char *)done.parts + k * own.part_size, sizeof *task->parts);
             if (tell)
                 tell(i, user);
         }

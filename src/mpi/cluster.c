@@ -31,42 +31,38 @@ static int n_ranks(void)
     return n;
 }
 
-/* Every rank compares what all say of themselves, so that all come to one verdict, whose reason is rank 0's to tell. */
-static Status check_ranks(int argc, char *argv[], const char version[CLUSTER_VERSION_MAX], Err *err)
+Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
+                    Err *err)
 {
+    /* 1. Launchers signal every rank: rank 0 alone decides what a signal means. */
+    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
     Hello mine = {.arguments = HASH_SEED};
-    Status verdict = STATUS_OK;
+    Status status = STATUS_OK;
+    int level;
+    MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
+    *serves = rank_of_this() > 0;
+    for (size_t i = 0; *serves && i < N_OF(SIGNALS); i++)
+        signal(SIGNALS[i], SIG_IGN);
+
+    /* 2. Every rank compares what all say of themselves, so that all come to one verdict, whose reason is rank 0's to
+     * tell. */
     const int n = n_ranks();
     Hello *all = calloc(n, sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     host_name(mine.host);
     memcpy(mine.version, version, sizeof mine.version);
-    for (int i = 1; i < argc; i++)
-        mine.arguments = hash_fnv1a(argv[i], strlen(argv[i]) + 1, mine.arguments);
+    for (int i = 1; i < *argc; i++)
+        mine.arguments = hash_fnv1a((*argv)[i], strlen((*argv)[i]) + 1, mine.arguments);
     MPI_Allgather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, MPI_COMM_WORLD);
-    for (int i = 1; i < n && verdict == STATUS_OK; i++)
+    for (int i = 1; i < n && status == STATUS_OK; i++)
         if (memcmp(all[i].version, all->version, sizeof all->version) != 0)
-            verdict = bad_data(err, "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
-                               all[i].host, all[i].version, all->host, all->version);
+            status = bad_data(err, "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
+                              all[i].host, all[i].version, all->host, all->version);
         else if (all[i].arguments != all->arguments)
-            verdict =
+            status =
                 bad_data(err, "rank %d on %s has another command line than rank 0: all must have one", i, all[i].host);
     free(all);
-    return verdict;
-}
-
-/* Launchers signal every rank: rank 0 alone decides what a signal means. */
-Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
-                    Err *err)
-{
-    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
-    int level;
-    MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
-    *serves = rank_of_this() > 0;
-    for (size_t i = 0; *serves && i < N_OF(SIGNALS); i++)
-        signal(SIGNALS[i], SIG_IGN);
-    Status status = check_ranks(*argc, *argv, version, err);
     if (status == STATUS_OK && level < MPI_THREAD_SERIALIZED)
         status = fail(err, STATUS_INTERNAL, "this MPI cannot be called by one thread after the other");
     if (status != STATUS_OK) {

@@ -317,7 +317,7 @@ static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question 
     const int ok = r->outcome == RUN_OK;
     json_t *answer = json_of(
         "turn=%ld outcome=%s reason=%s objectives=%p gap_m=%p peaks=%p no_core=%p beyond_law=%c seconds=%g", q->turn,
-        outcome_word(measure_outcome(r->outcome)), r->reason, ok ? json_numbers(order->n_obj, natural) : json_null(),
+        outcome_word((Outcome)r->outcome), r->reason, ok ? json_numbers(order->n_obj, natural) : json_null(),
         json_numbers(tower_n_floors(tower), gap_m), ok ? result_json(r, order) : json_null(),
         o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(), beyond_contact_law(r),
         r->seconds);

@@ -509,33 +509,12 @@ static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
     return strlen(text);
 }
 
-/* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be
- * accepted. */
-static Status listen_on(Server *s, int port, Err *err)
-{
-    struct rlimit files;
-    unsigned n = PEERS_MAX;
-    if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur <= FILES_OWN + PEERS_MAX)
-        n = files.rlim_cur > FILES_OWN + 2 ? (unsigned)files.rlim_cur - FILES_OWN : 2;
-    const struct sockaddr_in here = {
-        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    s->n_waiting = n / 2;
-    s->daemon = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL |
-                                     MHD_USE_ERROR_LOG,
-                                 (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
-                                 MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here,
-                                 MHD_OPTION_CONNECTION_LIMIT, n, MHD_OPTION_CONNECTION_TIMEOUT, STALL_S,
-                                 MHD_OPTION_CONNECTION_MEMORY_LIMIT, HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION,
-                                 note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed, s, MHD_OPTION_END);
-    if (!s->daemon)
-        return fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", port, strerror(errno));
-    s->port = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
-    snprintf(s->url, sizeof s->url, "http://127.0.0.1:%d/%s/", s->port, s->token);
-    return STATUS_OK;
-}
-
 Status serve_open(Server **out, const ServeOptions *o, Err *err)
 {
+    const struct sockaddr_in here = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)o->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    struct rlimit files;
+    unsigned n = PEERS_MAX;
     Server *s;
     *out = NULL;
     TRY_ROOM(s, 1, "a server", err);
@@ -545,12 +524,29 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err)
     pthread_mutex_init(&s->notes, NULL);
     Status status = guard_token(s->token, err);
     THEN(status, watch_open(&s->watch, o->folder, &s->moved, err));
-    THEN(status, listen_on(s, o->port, err));
-    if (status != STATUS_OK)
+
+    /* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be
+     * accepted. */
+    if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur <= FILES_OWN + PEERS_MAX)
+        n = files.rlim_cur > FILES_OWN + 2 ? (unsigned)files.rlim_cur - FILES_OWN : 2;
+    s->n_waiting = n / 2;
+    if (status == STATUS_OK)
+        s->daemon = MHD_start_daemon(
+            MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL | MHD_USE_ERROR_LOG,
+            (uint16_t)o->port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
+            MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here, MHD_OPTION_CONNECTION_LIMIT,
+            n, MHD_OPTION_CONNECTION_TIMEOUT, STALL_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT, HEAD_MAX,
+            MHD_OPTION_NOTIFY_CONNECTION, note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed, s,
+            MHD_OPTION_END);
+    if (!s->daemon) {
+        THEN(status, fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", o->port, strerror(errno)));
         serve_close(s);
-    else
-        *out = s;
-    return status;
+        return status;
+    }
+    s->port = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+    snprintf(s->url, sizeof s->url, "http://127.0.0.1:%d/%s/", s->port, s->token);
+    *out = s;
+    return STATUS_OK;
 }
 
 const char *serve_url(const Server *s)

@@ -56,29 +56,6 @@ static double worked_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* before: the look before, NULL: none. What was simulated stays while no other run is made in the place of this one. */
-static Status look_at(const Watch *w, const char *folder, const Look *before, Look **out, Err *err)
-{
-    Look *look = *out = NULL;
-    TRY_ROOM(look, 1, "a run", err);
-    Status status = run_read(&look->run, folder, err);
-    if (status == STATUS_OK) {
-        look->n_users = 1;
-        standing_of(&look->standing, folder, &look->run);
-        if (before && on_demand_is_of(before->on_demand, &look->run))
-            look->on_demand = on_demand_share(before->on_demand);
-        else
-            status = on_demand_open(&look->on_demand, &look->run, w->moved, err);
-    }
-    if (status == STATUS_OK) {
-        *out = look;
-    } else {
-        run_free(&look->run);
-        free(look);
-    }
-    return status;
-}
-
 /* Where it has changed, and not sooner than a tenth of a processor allows. The mutex is held. */
 static void read_again(const Watch *w, Watched *r)
 {
@@ -89,9 +66,10 @@ static void read_again(const Watch *w, Watched *r)
     LockHolder holder;
     Stamp stamp;
     Err err = {0};
-    Look *fresh;
     if (clock_seconds() < r->next && (v->look || v->why.code != STATUS_OK))
         return;
+
+    /* 1. Has any of it changed? */
     memset(&stamp, 0, sizeof stamp);
     for (int i = 0; i < 2; i++) {
         folder_path(r->folder, FILES[i], path);
@@ -103,16 +81,32 @@ static void read_again(const Watch *w, Watched *r)
     stamp.held = folder_is_held(r->folder, &holder);
     if (v->look && v->why.code == STATUS_OK && memcmp(&stamp, &r->stamp, sizeof stamp) == 0)
         return;
+
+    /* 2. The run as it is now. What was simulated on demand stays while no other run is made in its place. */
     const double start = worked_s();
-    const Status status = look_at(w, r->folder, v->look, &fresh, &err);
+    Look *fresh = calloc(1, sizeof *fresh);
+    Status status = fresh ? run_read(&fresh->run, r->folder, &err) : fail_memory(&err, 1, "a run");
+    if (status == STATUS_OK) {
+        fresh->n_users = 1;
+        standing_of(&fresh->standing, r->folder, &fresh->run);
+        if (v->look && on_demand_is_of(v->look->on_demand, &fresh->run))
+            fresh->on_demand = on_demand_share(v->look->on_demand);
+        else
+            status = on_demand_open(&fresh->on_demand, &fresh->run, w->moved, &err);
+    }
+
+    /* 3. It takes the place of the look before, or the reason does why it cannot be read. */
     r->next = clock_seconds() + (status == STATUS_OK ? READ_SHARE * (worked_s() - start) : AGAIN_S);
     err.code = status;
     v->version += status == STATUS_OK || v->why.code == STATUS_OK;
     v->why = err;
-    if (fresh) {
+    if (status == STATUS_OK) {
         release(v->look);
         v->look = fresh;
         r->stamp = stamp;
+    } else if (fresh) {
+        run_free(&fresh->run);
+        free(fresh);
     }
 }
 

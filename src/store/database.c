@@ -282,14 +282,36 @@ static Status take_word(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-/* Ours, of a format that is known, and whole. A view or a virtual table in the place of a table could compute rows
- * without end. */
-static Status check(Database *d, Err *err)
+void database_grow(Database *d)
 {
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, INT_MAX);
+}
+
+/* What was opened: no row is longer than the file and its journal, as a damaged file may claim; a writer commits for
+ * good, and remembers which file it has. It is ours, of a format that is known, and whole. */
+static Status prepare(Database *d, DatabaseMode mode, Err *err)
+{
+    /* A view or a virtual table in the place of a table could compute rows without end. */
     static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE type <> 'table' OR "
                                   "coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%'";
+    enum { SLACK = 1 << 20 };
+    char journal[PATH_MAX + 8], word[200] = "";
     double application, format, foreign;
-    char word[200] = "";
+    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
+    snprintf(journal, sizeof journal, "%s-wal", d->path);
+    const int is_there = stat(d->path, &file) == 0;
+    stat(journal, &beside);
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
+                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
+    if (mode == DATABASE_WRITE) {
+        TRY(database_do(d, err, d->is_shared ? "PRAGMA journal_mode=DELETE" : "PRAGMA journal_mode=WAL", ""));
+        TRY(database_do(d, err, "PRAGMA synchronous=FULL", ""));
+    }
+    if (mode == DATABASE_WRITE && is_there) {
+        d->device = file.st_dev;
+        d->file = file.st_ino;
+    }
+    TRY(database_number(d, "PRAGMA data_version", &d->version, err));
     TRY(database_number(d, "PRAGMA application_id", &application, err));
     TRY(database_number(d, "PRAGMA user_version", &format, err));
     if (application != DATABASE_APPLICATION)
@@ -306,35 +328,6 @@ static Status check(Database *d, Err *err)
     for (char *end; (end = strchr(word, '\n'));) /* of several lines */
         *end = ' ';
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
-}
-
-void database_grow(Database *d)
-{
-    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, INT_MAX);
-}
-
-/* What was opened: no row is longer than the file and its journal, as a damaged file may claim; a writer commits for
- * good, and remembers which file it has. */
-static Status prepare(Database *d, DatabaseMode mode, Err *err)
-{
-    enum { SLACK = 1 << 20 };
-    char journal[PATH_MAX + 8];
-    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
-    snprintf(journal, sizeof journal, "%s-wal", d->path);
-    const int is_there = stat(d->path, &file) == 0;
-    stat(journal, &beside);
-    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
-                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
-    if (mode == DATABASE_WRITE) {
-        TRY(database_do(d, err, d->is_shared ? "PRAGMA journal_mode=DELETE" : "PRAGMA journal_mode=WAL", ""));
-        TRY(database_do(d, err, "PRAGMA synchronous=FULL", ""));
-    }
-    if (mode == DATABASE_WRITE && is_there) {
-        d->device = file.st_dev;
-        d->file = file.st_ino;
-    }
-    TRY(database_number(d, "PRAGMA data_version", &d->version, err));
-    return check(d, err);
 }
 
 /* Another way to open a file for reading, where the first one needs what the folder does not allow. A commit that a

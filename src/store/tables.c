@@ -100,14 +100,14 @@ static const TableColumns TABLES[N_DESCRIBED] = {
     [TABLE_SESSION] = TABLE("session", 0, SESSION, RunSession),
 };
 
-static const char OTHERS[] =
-    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL, "
-    "planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL, "
-    "tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0, digest INTEGER NOT NULL);"
-    "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "
-    "digest INTEGER NOT NULL);";
+#define OTHERS                                                                                                         \
+    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL, "       \
+    "planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL, "                                  \
+    "tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0, digest INTEGER NOT NULL);"    \
+    "CREATE TABLE state(copy INTEGER PRIMARY KEY, generation INTEGER NOT NULL, bytes BLOB NOT NULL, "                  \
+    "digest INTEGER NOT NULL);"
 
-enum { N_FIXED = N_DESCRIBED - N_ROW_TABLES + 2 /* tables without numbers of an evaluation */ };
+static const Field DIGEST = {"digest", "INTEGER NOT NULL", WHOLE, 0, 0};
 
 /* Numbers of an evaluation that follow its digest: n columns named after those of the schema from `first` on, and the
  * array of the record that has them. */
@@ -116,7 +116,7 @@ typedef struct {
     const char *begin, *end; /* of their names */
 } Numbers;
 
-enum { N_NUMBERS = 5 };
+enum { N_NUMBERS = 5, COLUMNS_MAX = 2000 /* SQLITE_MAX_COLUMN as SQLite is built by default */ };
 
 /* What a table has of them, in the order in which this program writes them. */
 static void numbers_of(RunTable table, const Schema *s, Numbers list[N_NUMBERS])
@@ -139,7 +139,6 @@ static double *number_at(const Evaluation *e, NumberPlace place)
 
 Status tables_have_room(const Schema *s, Err *err)
 {
-    enum { COLUMNS_MAX = 2000 }; /* SQLITE_MAX_COLUMN as SQLite is built by default */
     Numbers list[N_NUMBERS];
     size_t others = N_OF(EVALUATION) + 1;
     numbers_of(ROWS_EVALUATION, s, list);
@@ -155,14 +154,6 @@ Status tables_have_room(const Schema *s, Err *err)
 
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
-static void put_table(FILE *f, const TableColumns *t)
-{
-    fprintf(f, "CREATE TABLE %s(", t->name);
-    for (size_t i = 0; i < t->n; i++)
-        fprintf(f, "%s%s %s", i > 0 ? ", " : "", t->field[i].name, t->field[i].declared);
-    fputs(t->has_digest ? ", digest INTEGER NOT NULL" : "", f);
-}
-
 /* The statements that make all tables, to be freed. Names become identifiers of SQL: in double quotes, doubled inside.
  */
 static Status tables_text(const Schema *s, char **text, Err *err)
@@ -175,7 +166,11 @@ static Status tables_text(const Schema *s, char **text, Err *err)
         return fail_memory(err, 1, "the names of the columns");
     fputs(OTHERS, f);
     for (RunTable t = 0; t < N_DESCRIBED; t++) {
-        put_table(f, &TABLES[t]);
+        fprintf(f, "CREATE TABLE %s(", TABLES[t].name);
+        for (size_t i = 0; i < TABLES[t].n + TABLES[t].has_digest; i++) {
+            const Field *field = i < TABLES[t].n ? &TABLES[t].field[i] : &DIGEST;
+            fprintf(f, "%s%s %s", i > 0 ? ", " : "", field->name, field->declared);
+        }
         numbers_of(t, s, list);
         for (size_t k = 0; k < N_NUMBERS && t < N_ROW_TABLES; k++)
             for (size_t c = 0; c < list[k].n; c++) {
@@ -190,21 +185,6 @@ static Status tables_text(const Schema *s, char **text, Err *err)
 }
 
 /* -- what a file has of them --------------------------------------------------------------------------------------- */
-
-typedef struct {
-    const char *text;
-    int n_known;
-} Known;
-
-/* SQLite keeps the statements as they were written. */
-static Status count_known(sqlite3_stmt *row, void *user, Err *err)
-{
-    Known *k = user;
-    const char *text = column_text(row, 0), *found = strstr(k->text, text);
-    (void)err;
-    k->n_known += found && strncmp(text, "CREATE", 6) == 0 && found[strlen(text)] == ';';
-    return STATUS_OK;
-}
 
 /* Where numbers of that name stand in the record of a row; that of column `like` is tried first. */
 static NumberPlace place_of(const char *name, const Numbers list[N_NUMBERS], const Schema *s, size_t like)
@@ -225,86 +205,72 @@ static NumberPlace place_of(const char *name, const Numbers list[N_NUMBERS], con
 }
 
 typedef struct {
-    Database *db;
-    RunTable table;
+    const TableColumns *table;
+    Numbers list[N_NUMBERS];
     const Schema *schema;
     RowColumns *columns;
-    size_t n_wanted; /* variables and objectives that were found */
-    int is_whole;    /* all of the text was understood */
+    size_t at, n_wanted; /* columns that have passed; variables and objectives among them */
+    int is_right;        /* all of these columns are those of the table */
 } Finding;
 
-/* The text of a table begins with its fields, as this program writes them; behind them stand numbers alone, in any
- * order. */
-static Status find_columns(sqlite3_stmt *row, void *user, Err *err)
+/* A column of a table: its fields, as this program makes them; behind them stand numbers alone, in any order. */
+static Status find_column(sqlite3_stmt *row, void *user, Err *err)
 {
     Finding *f = user;
-    Numbers list[N_NUMBERS];
     RowColumns *c = f->columns;
-    const char *text = column_text(row, 0);
-    char *begin = NULL, name[TABLE_NAME_MAX + 8];
-    size_t length;
-    FILE *stream = text_open(&begin, &length);
-    if (stream)
-        put_table(stream, &TABLES[f->table]);
-    if (!stream || text_close(stream) != 0) {
-        free(begin);
-        return fail_memory(err, 1, "the names of the columns");
+    const TableColumns *t = f->table;
+    const char *name = column_text(row, 0), *declared = column_text(row, 1);
+    const size_t at = f->at++;
+    (void)err;
+    if (at < t->n + t->has_digest) {
+        const Field *field = at < t->n ? &t->field[at] : &DIGEST;
+        f->is_right &= strcmp(name, field->name) == 0 && strcmp(declared, field->declared) == 0;
+        return STATUS_OK;
     }
-    const char *at = strncmp(text, begin, length) == 0 ? text + length : NULL;
-    free(begin);
-    TRY_ROOM(c->place, strlen(text) / sizeof ", \"\" REAL" + 2, "columns", err); /* no column is shorter */
-    numbers_of(f->table, f->schema, list);
-    for (; at && strncmp(at, ", \"", 3) == 0; c->n++) {
-        size_t n = 0;
-        for (at += 3; *at && n + 1 < sizeof name; at++) {
-            if (*at == '"' && *++at != '"')
-                break;
-            name[n++] = *at;
-        }
-        name[n] = 0;
-        at = strncmp(at, " REAL", 5) == 0 ? at + 5 : NULL;
-        if (!at)
-            break;
-        const NumberPlace place = c->place[c->n] = place_of(name, list, f->schema, c->n);
+    f->is_right &= c->table < N_ROW_TABLES && c->n < COLUMNS_MAX && strcmp(declared, "REAL") == 0;
+    if (f->is_right) {
+        const NumberPlace place = c->place[c->n] = place_of(name, f->list, f->schema, c->n);
         f->n_wanted += place.array == offsetof(Evaluation, x) || place.array == offsetof(Evaluation, f);
+        c->n++;
     }
-    f->is_whole = at && strcmp(at, ")") == 0;
     return STATUS_OK;
 }
 
 Status tables_columns(Database *db, RunTable table, const Schema *schema, RowColumns *columns, Err *err)
 {
-    char sql[80];
-    Finding f = {.db = db, .table = table, .schema = schema, .columns = columns};
-    const size_t wanted = schema->n_obj + (table == ROWS_EVALUATION ? schema->n_var : 0);
+    char sql[240];
+    Finding f = {.table = &TABLES[table], .schema = schema, .columns = columns, .is_right = 1};
+    const size_t n_obj = table < N_ROW_TABLES ? schema->n_obj : 0;
+    const size_t wanted = n_obj + (table == ROWS_EVALUATION ? schema->n_var : 0);
     *columns = (RowColumns){.table = table};
-    snprintf(sql, sizeof sql, "SELECT sql FROM sqlite_schema WHERE name = '%s'", TABLES[table].name);
-    Status status = database_each(db, sql, find_columns, &f, err);
-    if (status == STATUS_OK && !(f.is_whole && f.n_wanted == wanted))
-        status = database_damaged(db, err, "its table %s is not that of this run", TABLES[table].name);
-    if (status != STATUS_OK)
+    numbers_of(table, schema, f.list);
+    TRY_ROOM(columns->place, COLUMNS_MAX, "columns", err);
+    snprintf(sql, sizeof sql,
+             "SELECT name, type || iif(\"notnull\", ' NOT NULL', '') || iif(pk, ' PRIMARY KEY', '') || "
+             "coalesce(dflt_value, '') || iif(hidden, ' HIDDEN', '') FROM pragma_table_xinfo('%s')",
+             f.table->name);
+    Status status = database_each(db, sql, find_column, &f, err);
+    if (status == STATUS_OK && !(f.is_right && f.at >= f.table->n + f.table->has_digest && f.n_wanted == wanted))
+        status = database_damaged(db, err, "its table %s is not that of this run", f.table->name);
+    if (status != STATUS_OK) {
         free(columns->place);
-    columns->place = status == STATUS_OK ? columns->place : NULL;
+        columns->place = NULL;
+    }
     return status;
 }
 
 Status tables_check(Database *db, const Schema *schema, Err *err)
 {
-    char *text;
-    TRY(tables_text(schema, &text, err));
-    Known k = {.text = text};
-    Status status = database_each(db, "SELECT sql FROM sqlite_schema WHERE name NOT IN ('evaluation', 'finer')",
-                                  count_known, &k, err);
-    free(text);
-    for (RunTable t = 0; t < N_ROW_TABLES && status == STATUS_OK; t++) {
+    /* SQLite keeps the statements as they were written. */
+    static const char KNOWN[] = "SELECT count(*) FROM sqlite_schema WHERE instr('" OTHERS "', sql || ';') > 0";
+    double n_known;
+    for (RunTable t = 0; t < N_DESCRIBED; t++) {
         RowColumns columns;
-        status = tables_columns(db, t, schema, &columns, err);
+        TRY(tables_columns(db, t, schema, &columns, err));
         free(columns.place);
     }
-    TRY(status);
-    return k.n_known == N_FIXED
-               ? STATUS_OK
-               : database_damaged(db, err, "%d of its tables are not those of this run", N_FIXED - k.n_known);
+    TRY(database_number(db, KNOWN, &n_known, err));
+    return n_known == 2 ? STATUS_OK : database_damaged(db, err, "its tables run and state are not those of this run");
 }
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
@@ -314,18 +280,6 @@ static uint64_t digest_whole(long value, uint64_t hash)
 {
     hash = (hash ^ (uint64_t)value) * HASH_PRIME;
     return hash ^ hash >> 32;
-}
-
-/* As SQLite gives them back: -0 as 0, and one value for all that are not finite. */
-static uint64_t digest_numbers(size_t n, const double values[], uint64_t hash)
-{
-    for (size_t i = 0; i < n; i++) {
-        const double known = isfinite(values[i]) ? values[i] + 0.0 : -1e308;
-        long bits;
-        memcpy(&bits, &known, sizeof bits);
-        hash = digest_whole(bits, hash);
-    }
-    return hash;
 }
 
 static uint64_t digest_text(const char *text, uint64_t hash)
@@ -411,15 +365,19 @@ typedef struct {
     uint64_t digest;
 } Row;
 
-/* NULL stands for what is not finite. */
+/* NULL stands for what is not finite; the digest is of numbers as SQLite gives them back: -0 as 0, and one value for
+ * all that are not finite. */
 static void pass_number(Row *r, double *value)
 {
+    long bits;
     if (r->reads)
         *value = column_number(r->s, r->at);
     else if (isfinite(*value))
         sqlite3_bind_double(r->s, r->at + 1, *value);
     r->at++;
-    r->digest = digest_numbers(1, value, r->digest);
+    const double known = isfinite(*value) ? *value + 0.0 : -1e308;
+    memcpy(&bits, &known, sizeof bits);
+    r->digest = digest_whole(bits, r->digest);
 }
 
 /* A column of a record: what is not bound is NULL, and a reason that is read is SQLite's until the next row. */

@@ -33,8 +33,8 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
 
 Status tables_set_settings(Database *db, const Settings *used, const Run *run, Err *err);
 
-/* Their text is what this program writes, but for numbers of an evaluation that another version of it has or lacks: a
- * bit in it may have changed what a query does. */
+/* Their columns are those that this program makes, but for numbers of an evaluation that another version of it has or
+ * lacks: a bit in the text of a table may have changed what a query does. */
 Status tables_check(Database *db, const Schema *schema, Err *err);
 
 /* Of "SELECT settings, provenance, planned_evals, n_var, ?, ?, digest FROM run": they are what was written. */
