@@ -41,7 +41,7 @@ typedef struct {
 
 static void try_case(const Case *c)
 {
-    Err err = {0};
+    err = (Err){0};
     Motion m;
     MotionHow how = c->how;
     char *text = lines_of(c->head, c->per_line, c->with_times, c->scale, c->zero);
@@ -114,7 +114,7 @@ TEST(rows_of_pairs_are_refused_with_the_option_and_read_by_it)
             char whole[16384], *const names[] = {"", "# npts = 240\n# dt = 0.02 s\n"};
             snprintf(whole, sizeof whole, "%s%s", names[with_count], text);
             MotionHow how = {.unit = UNIT_G, .channel = pairs == 2 ? "1" : NULL};
-            Err err = {0};
+            err = (Err){0};
             assert_int_equal(motion_parse(&m, "pairs", whole, strlen(whole), &how, &err), STATUS_BAD_DATA);
             if (!strstr(err.text, "--text pairs=yes"))
                 fail_msg("%d pairs: %s", pairs, err.text);
