@@ -294,11 +294,12 @@ install: all install-library ## program, library, manual pages, completion, exam
 	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/* examples/* python/README.md python/examples/*.py; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
-# The library alone: libimtet, headers, imtet.pc and, where Python is, its module.
+# The library alone: libimtet, headers, imtet.pc and, where Python is, its package.
 INCLUDED := imtet.h imtet_scene.h
 # Where the Python of Debian looks.
 PYTHON_DIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell /usr/bin/python3 -c 'import sys; print("python3.%d" % sys.version_info[1])' 2>/dev/null || echo python3))/dist-packages
-install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, python/imtet.py
+PYTHON_PACKAGE := $(patsubst python/%,%,$(wildcard python/imtet/*.py)) imtet/py.typed
+install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, the Python package
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 644 $(SHARED) $(CORE) $(DESTDIR)$(LIBDIR)
 	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/$(SONAME)
@@ -306,12 +307,12 @@ install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, python
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@LIBS@|-fopenmp $(CORE_LIBS)|' include/imtet.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/imtet.pc
 	@for f in $(INCLUDED); do install -D -m 644 include/$$f $(DESTDIR)$(PREFIX)/include/$$f; done
-	@install -D -m 644 python/imtet.py $(DESTDIR)$(PYTHON_DIR)/imtet.py
+	@for f in $(PYTHON_PACKAGE); do install -D -m 644 python/$$f $(DESTDIR)$(PYTHON_DIR)/$$f; done
 	@[ "$(DESTDIR)$(PREFIX)" != /usr/local ] || ldconfig 2>/dev/null || true # so that programs find the library
 
 uninstall-library:
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,$(notdir $(SHARED)) $(SONAME) libimtet.so libimtet.a pkgconfig/imtet.pc) \
-	    $(addprefix $(DESTDIR)$(PREFIX)/include/,$(INCLUDED)) $(DESTDIR)$(PYTHON_DIR)/imtet.py
+	    $(addprefix $(DESTDIR)$(PREFIX)/include/,$(INCLUDED)) $(addprefix $(DESTDIR)$(PYTHON_DIR)/,$(PYTHON_PACKAGE))
 
 uninstall: uninstall-library ## removes what install has put under PREFIX
 	rm -f $(addprefix $(DESTDIR)$(PREFIX)/bin/,imtet imtet_mpi imtet-mpirun) $(SHARE)/man/man1/imtet.1 $(SHARE)/man/man1/imtet-*.1 \

@@ -31,7 +31,7 @@
  * The same   options and answers give the same designs, to the last bit, in whatever portions they are asked for, in
  *            whatever order they are told, saved and loaded in between or not, at any number of threads: those of
  *            `imtet optimize` with the same settings. On processors of several kinds: with OPENBLAS_CORETYPE=Haswell in
- *            the environment, as the program has it
+ *            the environment, as the program has it; a search that is loaded on others goes on with other designs
  * Failures   a design that failed is told with a reason in words. The search avoids designs like it. Where
  *            search.failures_max designs in a row have failed, ask says so once, and goes on when it is called again.
  *            Where none has succeeded when the search is done, its front is IMTET_INTERNAL, with the commonest reason
@@ -41,7 +41,8 @@
  *            thread of the library runs. Not across fork: a child loads a saved search. While designs are chosen, or a
  *            scene opened, the OpenBLAS of this process has one thread
  * Errors     every function that can fail returns an imtet_status and writes a sentence into *error (NULL: not wanted):
- *            what, where, what to do. Nothing has changed then. So is a handle that is NULL, as free leaves it */
+ *            what, where, what to do. State is unchanged. A NULL handle is an error too, as free leaves it. Where a
+ *            function succeeds the sentence is empty, but for a note of imtet_search_load */
 #ifndef IMTET_H
 #define IMTET_H
 
@@ -103,21 +104,24 @@ IMTET_API imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids
                                         imtet_error *error);
 
 /* What n designs are worth, in any order: F (n, objectives), G (n, constraints; NULL without constraints), failed (n):
- * NULL, or why it failed, and then its F and G are not read; failed NULL: all succeeded. An id is one that ask has given;
- * of a search that was loaded also one from before it was saved that has no answer yet, whether ask has given it again
- * or not: told, it is not given again. Refused as a whole where an id is
- * another one, stands there twice or was told before, or where a number is not finite. */
+ * NULL, or why it failed, and then its F and G are not read; failed NULL: all succeeded. An id is one that ask has
+ * given. After a load it may also be one from before the save that has no answer yet, whether ask has given it again or
+ * not; it is then not given again. The call is refused as a whole where an id is another one, stands there twice or was
+ * told before, or where a number is not finite. */
 IMTET_API imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[], const double F[],
                                          const double G[], const char *const failed[], imtet_error *error);
 
 typedef struct {
     size_t size; /* sizeof(imtet_search_state) */
     size_t variables, objectives, constraints;
-    size_t told, failed; /* designs */
-    size_t under_way;    /* given by ask and not told */
-    size_t left;         /* of search.max_evals, less what is told and under way */
-    int done;            /* 1: nothing more will be asked for */
-    const char *why;     /* it is done, in words; empty */
+    size_t told, failed;         /* designs */
+    size_t under_way;            /* given by ask and not told */
+    size_t ready;                /* chosen, and not given yet: ask has so many without another answer */
+    size_t left;                 /* of search.max_evals, less what is told and under way */
+    int done;                    /* 1: nothing more will be asked for */
+    const char *why;             /* it is done, in words; empty */
+    const char *senses;          /* as in its options, and */
+    const double *lower, *upper; /* (variables), until it is freed */
 } imtet_search_state;
 
 /* How far it is. Looks whether the search is done, for which it may choose designs, as ask does. */
@@ -131,8 +135,9 @@ typedef enum { IMTET_FRONT, IMTET_TOLD } imtet_set;
 IMTET_API imtet_status imtet_search_designs(imtet_search *search, imtet_set which, size_t max, long ids[], double X[],
                                             double F[], double G[], size_t *found, imtet_error *error);
 
-/* All of it into a file, which is replaced when the new one is whole on the disk. Whatever is under way is asked for
- * again, with the same ids, by the search that loads it. */
+/* All of it into a file, which is replaced when the new one is whole on the disk; the one before is kept as PATH.prev.
+ * Whatever is under way is asked for again, with the same ids, by the search that loads it. On other BLAS kernels than
+ * those it was saved with it goes on with other designs: error->text says so beside IMTET_OK. */
 IMTET_API imtet_status imtet_search_save(imtet_search *search, const char *path, imtet_error *error);
 IMTET_API imtet_status imtet_search_load(const char *path, imtet_search **out, imtet_error *error);
 

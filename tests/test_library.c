@@ -392,7 +392,7 @@ TEST(python_does_what_its_tests_say)
         python = system(command) == 0 ? PYTHONS[k] : NULL;
     }
     if (!is_built() || !python) {
-        print_message("python3 with numpy (python3-numpy) is not here: python/imtet.py is not tested\n");
+        print_message("python3 with numpy (python3-numpy) is not here: python/imtet is not tested\n");
         skip();
     }
     snprintf(command, sizeof command, "IMTET=$PWD/imtet %s tests/python/test_imtet.py %s", python, place.folder);

@@ -4,7 +4,10 @@ OpenSees is not in Debian, so that `ops` below is a solver of our own with the s
 element, eigen, wipe). With OpenSeesPy installed: `import openseespy.opensees as ops` in its place; its state is global,
 so that designs are evaluated one after another (threads=1), or in processes of their own.
 """
+from __future__ import annotations
+
 import numpy as np
+import numpy.typing as npt
 
 import imtet
 
@@ -12,30 +15,33 @@ import imtet
 class ShearFrame:
     """Nodes in a line with masses, joined by zero-length springs in direction 1."""
 
-    def wipe(self):
-        self.masses, self.fixed, self.springs, self.stiffness = {}, set(), [], {}
+    def wipe(self) -> None:
+        self.masses: dict[int, float] = {}
+        self.fixed: set[int] = set()
+        self.springs: list[tuple[int, int, float]] = []
+        self.stiffness: dict[int, float] = {}
 
-    def model(self, *_):
+    def model(self, *_: object) -> None:
         self.wipe()
 
-    def node(self, tag, *_):
+    def node(self, tag: int, *_: object) -> None:
         self.masses[tag] = 0.0
 
-    def mass(self, tag, m, *_):
+    def mass(self, tag: int, m: float, *_: object) -> None:
         self.masses[tag] = m
 
-    def fix(self, tag, *_):
+    def fix(self, tag: int, *_: object) -> None:
         self.fixed.add(tag)
 
-    def uniaxialMaterial(self, kind, tag, E):
+    def uniaxialMaterial(self, kind: str, tag: int, E: float) -> None:
         if not E > 0:
             raise ValueError(f"{kind} {tag} has no stiffness")
         self.stiffness[tag] = E
 
-    def element(self, kind, tag, i, j, mat, material, *_):
+    def element(self, kind: str, tag: int, i: int, j: int, mat: str, material: int, *_: object) -> None:
         self.springs.append((i, j, self.stiffness[material]))
 
-    def eigen(self, n):
+    def eigen(self, n: int) -> list[float]:
         free = [t for t in self.masses if t not in self.fixed]
         at = {t: k for k, t in enumerate(free)}
         K = np.zeros((len(free), len(free)))
@@ -51,7 +57,7 @@ ops = ShearFrame()
 STOREYS, MASS = 3, 2e4  # [kg]
 
 
-def frame(x):
+def frame(x: npt.NDArray[np.float64]) -> list[float]:
     """x: lg of the storeys' stiffnesses [N/m]. First period [s] and cost, both to be small."""
     ops.wipe()
     ops.model("basic", "-ndm", 1, "-ndf", 1)
@@ -68,8 +74,5 @@ def frame(x):
 
 if __name__ == "__main__":
     search = imtet.Search([5] * STOREYS, [8] * STOREYS, 2, evaluations=150)
-    while not search.done:
-        X = search.ask(8)
-        search.tell(X, search.evaluate(frame, X))
-    F, X = search.front()
+    F, X = search.run(frame)  # F before X
     print(f"{len(F)} frames, first period {F[:, 0].min():.2f} to {F[:, 0].max():.2f} s")

@@ -8,16 +8,13 @@ import imtet
 
 # 1. The scene: the 20-storey tower, a core of box section, a built-in motion.
 quick = os.environ.get("IMTET_QUICK") == "1"
-scene = imtet.Scene(None, record="builtin:kobe-like", pga_g=0.3, **({"sim.duration_s": 20} if quick else {}))
+scene = imtet.Scene(None, record="builtin:kobe-like", pga_g=0.3, settings=["sim.duration_s=20"] if quick else [])
 print(f"{scene.floors} floors, first frequency {scene.building_hz[0]:.2f} Hz, {len(scene.variables)} variables")
 
-# 2. The search: all objectives of the paper, by threads, for simulate gives up the lock of the interpreter.
+# 2. The search: all objectives of the paper, by threads, for simulate releases the GIL.
 search = imtet.Search(scene.lower, scene.upper, len(scene.objectives), senses=scene.senses,
                       evaluations=60 if quick else 400)
-while not search.done:
-    X = search.ask(16)
-    search.tell(X, search.evaluate(scene.evaluate, X, threads=os.cpu_count()))
-F, X = search.front()
+F, X = search.run(scene.evaluate, batch=16, threads=os.cpu_count() or 1)  # F before X
 print(f"{len(F)} designs on the front;", ", ".join(f"best {n} {(F[:, k].min() if s == 'min' else F[:, k].max()):.4g}"
                                                     for k, (n, s) in enumerate(zip(scene.objectives, scene.senses))))
 
@@ -28,9 +25,9 @@ print(f"drift {best.j2_m:.3f} m, alone {alone.j2_m:.3f} m; acceleration {best.j3
 
 # 4. Pictures.
 try:
-    import matplotlib
+    import matplotlib  # type: ignore[import]
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    import matplotlib.pyplot as plt  # type: ignore[import]
 except ImportError:
     print("no matplotlib (python3-matplotlib): no pictures")
 else:

@@ -1,15 +1,19 @@
-#include <limits.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "api/handle.h"
 #include "base/csv.h"
 #include "base/hash.h"
+#include "base/linalg.h"
 #include "base/pack.h"
+#include "base/whole_file.h"
 
 /* A file: the mark, everything of walk, and the hash of what stands before it. */
-enum { SAVED_VERSION = 2 };
+enum { SAVED_VERSION = 3 };
 static const char MARK[8] = "imtetask";
-enum { TEXT_MAX = 1 << 20, COUNT_MAX = 1 << 30 };
+enum { TEXT_MAX = 1 << 20, COUNT_MAX = 1 << 30, KERNELS_MAX = 64 };
 
 /* -- the walk over what is saved (base/pack.h) --------------------------------------------------------------------- */
 
@@ -81,17 +85,36 @@ static void walk(Pack *p, imtet_search *s, Err *err)
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
 
+/* The file that there is becomes PATH.prev, and the new one takes its place when it is whole on the disk: whenever the
+ * program ends, PATH is one of the two. The folder is locked meanwhile, for other processes that save there; a file
+ * system without locks or links does without. */
+static Status put_in_place(const Pack *p, const char *path, Err *err)
+{
+    char folder[PATH_MAX], before[PATH_MAX + 8];
+    Output o;
+    folder_of(path, folder);
+    const int lock = open(folder, O_RDONLY | O_CLOEXEC);
+    flock(lock, LOCK_EX);
+    Status status = output_open_inside(&o, path, err);
+    if (status == STATUS_OK) {
+        fwrite(p->bytes, 1, p->n, o.stream);
+        snprintf(before, sizeof before, "%s.prev", path);
+        if (access(path, F_OK) == 0 && (unlink(before) == 0 || errno == ENOENT))
+            (void)!link(path, before);
+        status = output_close(&o, err);
+    }
+    close(lock);
+    return status;
+}
+
 Status saved_write(imtet_search *s, const char *path, Err *err)
 {
     Pack p = {0};
-    char beside[PATH_MAX];
     const SearchView v = search_look(s->search);
     if (!v.state)
         return fail_memory(err, 1, "the state of the search");
-    if (snprintf(beside, sizeof beside, "%s.part", path) >= PATH_MAX)
-        return fail(err, STATUS_IO, "%.80s...: the name is too long", path);
 
-    /* 1. Pack the mark, the settings and counts, then the walk, then the hash of it all. */
+    /* Pack the mark, the settings, kernels and counts, then the walk, then the hash of it all. */
     s->n_entered = v.all->n;
     s->n_state = v.n_state;
     s->state = (unsigned char *)(uintptr_t)v.state; /* the search's own */
@@ -101,23 +124,14 @@ Status saved_write(imtet_search *s, const char *path, Err *err)
     p.faulty = p.faulty || !text;
     if (text)
         walk_text(&p, text, TEXT_MAX);
+    walk_text(&p, (char *)(uintptr_t)linalg_kernel_name(), KERNELS_MAX);
     pack_size(&p, &s->schema.n_extra, CONSTRAINTS_MAX);
     pack_size(&p, &s->n_given, COUNT_MAX);
     walk(&p, s, err);
     s->state = NULL;
     uint64_t hash = hash_fnv1a(p.bytes, p.n, HASH_SEED);
     pack(&p, &hash, sizeof hash);
-
-    /* 2. Write it beside its place and rename it: the file is the old one or the new one, whenever the program ends. */
-    Status status = pack_finished(&p) ? STATUS_OK : fail_memory(err, 1, "the search as bytes");
-    FILE *f = status == STATUS_OK ? fopen(beside, "we") : NULL;
-    int done = f && fwrite(p.bytes, 1, p.n, f) == p.n && fflush(f) == 0 && fsync(fileno(f)) == 0;
-    if (f)
-        done = fclose(f) == 0 && done;
-    if (status == STATUS_OK && !(done && rename(beside, path) == 0)) {
-        status = fail_errno(err, path, "cannot be written");
-        unlink(beside);
-    }
+    const Status status = pack_finished(&p) ? put_in_place(&p, path, err) : fail_memory(err, 1, "the search as bytes");
     free(p.bytes);
     free(text);
     return status;
@@ -130,9 +144,10 @@ static Status read_search(Pack *p, const char *path, imtet_search **out, Err *er
 {
     Settings settings;
     size_t n_con = 0, n_given = 0;
-    char *text;
+    char *text, kernels[KERNELS_MAX];
     TRY_ROOM(text, TEXT_MAX, "a search", err);
     walk_text(p, text, TEXT_MAX);
+    walk_text(p, kernels, sizeof kernels);
     pack_size(p, &n_con, CONSTRAINTS_MAX);
     pack_size(p, &n_given, p->n);
     settings_defaults(&settings);
@@ -146,7 +161,13 @@ static Status read_search(Pack *p, const char *path, imtet_search **out, Err *er
     if (!pack_finished(p))
         return bad_data(err, "%s: is damaged", path);
     (*out)->known = (*out)->table.n;
-    return handle_open(*out, err);
+    TRY(handle_open(*out, err));
+    if (strcmp(kernels, linalg_kernel_name()) != 0)
+        snprintf(err->text, sizeof err->text,
+                 "%.200s: was saved with BLAS kernels for %.40s; on those for %.40s the search goes on with other "
+                 "designs (OPENBLAS_CORETYPE chooses kernels)",
+                 path, kernels, linalg_kernel_name());
+    return STATUS_OK;
 }
 
 /* Read the file whole; only one whose mark, hash and version are right is unpacked. */
@@ -165,7 +186,10 @@ Status saved_read(imtet_search **out, const char *path, Err *err)
         memcpy(&version, bytes + sizeof MARK, sizeof version);
         memcpy(&hash, bytes + p.n, sizeof hash);
         if (hash != hash_fnv1a(bytes, p.n, HASH_SEED))
-            status = bad_data(err, "%s: is damaged: its bytes are not those that were written", path);
+            status = bad_data(
+                err,
+                "%s: is damaged: its bytes are not those that were written; the save before has .prev behind the name",
+                path);
         else if (version != SAVED_VERSION)
             status = bad_data(err, "%s: was saved by another version of imtet, which can go on with it", path);
         else

@@ -38,8 +38,8 @@ static Status take_question(imtet_search *s, const Question *q, Err *err)
     const size_t row = q->number - 1;
     if (row == s->table.n)
         TRY(handle_add(s, q->x, err));
-    if (row >= s->table.n || memcmp(s->table.row[row].x, q->x, s->table.n_var * sizeof *q->x) != 0)
-        return fail(err, STATUS_INTERNAL, "design %zu is another one than was asked for before", q->number);
+    if (row >= s->table.n)
+        return fail(err, STATUS_INTERNAL, "design %zu was never asked for", q->number);
     Evaluation *e = &s->table.row[row];
     e->kind = q->kind;
     e->generation = (long)q->generation;
@@ -401,9 +401,13 @@ imtet_status imtet_search_look(imtet_search *search, imtet_search_state *state, 
                                       .constraints = s->schema.n_extra,
                                       .told = s->n_told,
                                       .done = s->is_over,
-                                      .why = s->is_over ? stop_reason_words(s->reason) : ""};
+                                      .why = s->is_over ? stop_reason_words(s->reason) : "",
+                                      .senses = s->settings.problem.senses,
+                                      .lower = s->lower,
+                                      .upper = s->upper};
         for (size_t i = 0; i < s->table.n; i++) {
             state->under_way += s->design[i].place == DESIGN_OUT;
+            state->ready += s->design[i].place == DESIGN_FREE;
             state->failed += s->design[i].place == DESIGN_TOLD && s->table.row[i].outcome != OUTCOME_OK;
         }
         const size_t most = (size_t)s->settings.search.max_evals, spent = state->told + state->under_way;

@@ -1,10 +1,15 @@
-"""python/imtet.py against the program and against itself. test_imtet.py FOLDER: where its files go; $IMTET is the program."""
+"""python/imtet against the program and against itself. test_imtet.py FOLDER: where its files go; $IMTET is the program."""
 import copy
+import ctypes
+import importlib.util
+import json
 import math
 import os
 import pickle
 import random
+import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
@@ -16,6 +21,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "python"))
 import numpy as np  # noqa: E402
 import imtet  # noqa: E402
+from imtet import _library as library  # noqa: E402
 
 PLACE, PROGRAM = os.path.abspath(sys.argv.pop(1)), os.environ["IMTET"]
 SETTINGS = {"initial": 16, "population": 12, "threads": 1}
@@ -135,19 +141,17 @@ class Searching(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"row 0 of Y is no tuple \(f, g\), and there is no G of shape \(1, 1\)"):
             bounded = imtet.Search([0] * 3, [1] * 3, 2, constraints=1)
             bounded.tell(bounded.ask(1), [[[1, 2], [3]]])
-        with self.assertRaisesRegex(imtet.ImtetError, "3 designs were asked for and never told"):
-            s.tell(np.empty((0, 4)), [])
-        with self.assertRaisesRegex(ValueError, "row 1 of X was not asked for"):
-            s.tell(np.array([X[0], X[1] + 1e-9, X[2]]), np.ones((3, 2)))
+        with self.assertRaisesRegex(ValueError, r"row 1 of X was not asked for.*nearest design under way, 2, is 2e-06 of the box away"):
+            s.tell(np.array([X[0], X[1] + 2e-6, X[2]]), np.ones((3, 2)))
         with self.assertRaisesRegex(imtet.ImtetError, "F of design 2: number 1 is nan"):
             s.tell(X, [[1, 2], [math.nan, 2], [1, 2]])
         with self.assertRaisesRegex(ValueError, "X: .*wanted numbers of shape"):
             s.tell([["a", "b"]], [[1, 2]])
         self.assertEqual(s.state["told"], 0)
         s.tell(X, np.ones((3, 2)))
-        with self.assertRaisesRegex(ValueError, "told already"):
+        with self.assertRaisesRegex(imtet.ImtetError, "design 1 is told already"):
             s.tell(X, np.ones((3, 2)))
-        with self.assertRaisesRegex(imtet.ImtetError, "did you mean search.population"):
+        with self.assertRaisesRegex(imtet.ImtetError, "populaton is no setting.*did you mean population"):
             search(populaton=3)
         with self.assertRaisesRegex(imtet.ImtetError, "is no saved search"):
             imtet.Search.load(__file__)
@@ -155,6 +159,268 @@ class Searching(unittest.TestCase):
             imtet.Search([0], [1], objectives=-1)
         with self.assertRaisesRegex(imtet.ImtetError, "start: variable 2 of design 1 is 3.5; it is a whole number"):
             imtet.Search([0, 0], [1, 5], 2, kinds="real,int", start=[[0.5, 3.5]])
+
+    def told_as(self, change):
+        """Everything a search knows in the end, whose designs are told as `change` of X and the order makes them."""
+        s, dice = search(), np.random.default_rng(5)
+        while not s.done:
+            X = s.ask(7)
+            order = dice.permutation(len(X))
+            Y = s.evaluate(f, X)
+            s.tell(change(X, order), [Y[i] for i in order])
+        return np.hstack(s.told()[:2])
+
+    def test_designs_are_known_by_ids_however_they_are_rounded_reordered_or_converted(self):
+        wanted = np.hstack(drive(search(), 7).told()[:2])
+        for name, change in (("rounded", lambda X, o: np.round(X, 1)[o]), ("float32", lambda X, o: X[o].astype(np.float32).round(2)),
+                             ("scaled", lambda X, o: (0.99 * X)[o]), ("plain", lambda X, o: np.asarray(X)[o] + 3e-7),
+                             ("taken", lambda X, o: np.take(X, o, axis=0)), ("copied", lambda X, o: copy.deepcopy(X[o])),
+                             ("pickled", lambda X, o: pickle.loads(pickle.dumps(X))[o]), ("list", lambda X, o: X[o].tolist())):
+            with self.subTest(name):
+                np.testing.assert_array_equal(self.told_as(change), wanted)
+        s = search()
+        X = s.ask(5)
+        with self.assertRaisesRegex(ValueError, "row 1 of X was not asked for.*nearest design under way, 2, is 0.0"):
+            s.tell(np.asarray(X[:2]) + [[0], [0.004]], [[1, 2]] * 2)
+        np.random.default_rng(1).shuffle(X)  # in place: ids stay where they were, and values tell
+        s.tell(X, [[x[0], 2] for x in X])
+        F, where, _ = s.told()
+        np.testing.assert_array_equal(F[:, 0], where[:, 0])
+        again = search().ask(5)
+        self.assertEqual([list(rows.ids) for rows in (again, again[::2], again[again.ids > 3], again[1:, :2])],
+                         [[1, 2, 3, 4, 5], [1, 3, 5], [4, 5], [2, 3, 4, 5]])
+        self.assertIsNone(again.T.ids)
+        self.assertIsInstance(again.max(), float)
+        with self.assertRaisesRegex(ValueError, "no other design is under way"):  # ids of another search say nothing here
+            search().tell(again, [[1, 2]] * 5)
+        s = search(start=[[0.5] * 4])
+        X = s.ask(4)
+        s.tell(X.round(9) + 1e-12, [[1, 2]] * 4, ids=X.ids[::-1])
+        self.assertEqual(s.state["told"], 4)
+
+    def test_equal_designs_are_told_oldest_first(self):
+        s = imtet.Search([1, 1], [1, 2], 2, kinds="int", evaluations=8, initial=4, population=4)
+        X = s.ask(2)
+        with self.assertRaisesRegex(imtet.ImtetError, "design 1 is told twice"):
+            s.tell(X[[0, 0]], [[1, 2]] * 2)
+        s._under_way[2][:] = s._under_way[1]
+        s.tell(np.asarray(s._under_way[1]), [[7, 7]])
+        np.testing.assert_array_equal(s.told()[1], X[:1])
+
+    def test_tables_of_pandas_are_taken_and_made(self):
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("pandas (python3-pandas) is not here")
+        np.testing.assert_array_equal(self.told_as(lambda X, o: X.to_frame().iloc[o].round(1)),
+                                      self.told_as(lambda X, o: pandas.DataFrame(np.asarray(X)).iloc[o]))
+        s = imtet.Search([0] * 3, [1] * 3, 2, constraints=1, evaluations=60, **SETTINGS)
+        while not s.done:
+            table = s.ask(5).to_frame().sample(frac=1, random_state=1)
+            table["f1"], table["f2"], table["g1"] = table.x1, 1 - table.x1 * table.x2, table.x3 - 0.5
+            s.tell(table, table[["f1", "f2"]], G=table[["g1"]])
+        whole, front = s.to_frame(), s.to_frame(front=True)
+        self.assertEqual((list(whole.columns), len(whole)), (["x1", "x2", "x3", "f1", "f2", "g1"], 60))
+        np.testing.assert_array_equal(whole.f1, whole.x1)
+        np.testing.assert_array_equal(front[["f1", "f2"]], s.front()[0])
+        self.assertTrue((front.g1 <= 0).all())
+
+    def test_pictures_are_drawn_and_the_history_grows_to_the_area_that_is_dominated(self):
+        from imtet._tables import growth
+        F = np.array([[3.0, 3.0], [0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])
+        share = growth(F, np.array([False, True, True, True]))
+        self.assertEqual(list(share[:3]), [0, 0, 0])
+        self.assertAlmostEqual(share[3], 0.25, delta=0.03)
+        try:
+            import matplotlib
+        except ImportError:
+            self.skipTest("matplotlib (python3-matplotlib) is not here")
+        matplotlib.use("Agg")
+        s = drive(search())
+        for kind in ("pairs", "parallel", "history"):
+            name = os.path.join(PLACE, kind + ".png")
+            s.plot(kind).savefig(name)
+            self.assertGreater(os.path.getsize(name), 5000)
+        with self.assertRaisesRegex(ValueError, "kind is 'pears', wanted pairs, parallel or history"):
+            s.plot("pears")
+        with self.assertRaisesRegex(ValueError, "nothing to be drawn"):
+            search().plot()
+
+    def test_only_what_is_to_be_caught_fails_a_design(self):
+        s = search()
+        X = s.ask(3)
+        with self.assertRaises(NameError):
+            s.evaluate(lambda x: nowhere(x), X)  # noqa: F821
+        self.assertIsInstance(s.evaluate(lambda x: nowhere(x), X, catch=NameError)[2], NameError)  # noqa: F821
+        with self.assertRaises(ZeroDivisionError):
+            s.evaluate(lambda x: 1 / 0, X, catch=(OSError, ValueError))
+        self.assertIsInstance(s.evaluate(lambda x: 1 / 0, X)[0], ZeroDivisionError)
+
+    def test_ctrl_c_in_a_batch_loses_no_finished_evaluation(self):
+        for threads in (1, 3):
+            s, called = search(), []
+
+            def slow(x):
+                called.append(x.tobytes())
+                if len(called) == 6:
+                    raise KeyboardInterrupt
+                return f(x)
+            with self.assertRaises(KeyboardInterrupt):
+                s.run(slow, batch=8, threads=threads)
+            self.assertEqual((s.state["told"], s.state["under_way"]), (0, 8))
+            s.run(slow, batch=8, threads=threads)
+            self.assertEqual(len(called), len(set(called)) + 1)  # the one that was interrupted
+            np.testing.assert_array_equal(np.hstack(s.told()[:2]), np.hstack(drive(search()).told()[:2]))
+
+    def test_ctrl_c_in_ask_and_tell_loses_no_design(self):
+        wanted = np.hstack(drive(search(), 20).told()[:2])
+
+        def interrupted(call, after):
+            signal.setitimer(signal.ITIMER_REAL, after)
+            try:
+                return call()
+            finally:
+                signal.setitimer(signal.ITIMER_REAL, 0)
+        before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        hits, dice = 0, random.Random(2)
+        try:
+            for _ in range(int(os.environ.get("PYTHON_INTERRUPTS", 8))):
+                s = search()
+                while not s.done:
+                    try:
+                        X = interrupted(lambda: s.ask(20), 10 ** dice.uniform(-5, -2))
+                    except KeyboardInterrupt:
+                        hits += 1
+                        X = s.under_way if not s.ask_ready else s.ask(20)
+                    Y = s.evaluate(f, X)
+                    try:
+                        interrupted(lambda: s.tell(X, Y), 10 ** dice.uniform(-5, -3))
+                    except KeyboardInterrupt:
+                        hits += 1
+                        X = s.under_way
+                        s.tell(X, s.evaluate(f, X))
+                np.testing.assert_array_equal(np.hstack(s.told()[:2]), wanted)
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        self.assertGreater(hits, 3)
+
+    def test_ask_gives_designs_waits_for_answers_or_says_that_it_cannot(self):
+        s = search()
+        X = s.ask(100)
+        self.assertEqual((len(X), s.ask_ready, len(s.under_way)), (16, False, 16))
+        with self.assertRaisesRegex(imtet.ImtetError, "before one of the 16 under way is told"):
+            s.ask()
+        np.testing.assert_array_equal(s.under_way.ids, X.ids)
+
+        def work():
+            while not s.done:
+                X = s.ask(1, wait=True)
+                s.tell(X, s.evaluate(f, X))
+        threads = [threading.Thread(target=work) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        s.tell(X, s.evaluate(f, X))
+        for thread in threads:
+            thread.join()
+        self.assertEqual((s.state["told"], len(s.ask(3))), (60, 0))
+        np.testing.assert_array_equal(np.hstack(s.told()[:2]), np.hstack(drive(search()).told()[:2]))
+
+    def test_words_of_other_packages_are_taken_or_answered_by_ours(self):
+        a = imtet.Search([0, 0], [1, 1], 2, senses=["minimize", "maximize"], seed=None)
+        self.assertEqual(a._signs, [1.0, -1.0])
+        self.assertNotEqual(a.seed, imtet.Search([0, 0], [1, 1], 2, seed=None).seed)
+        b = imtet.Search([0, 0], [1, 1], 2, senses="min,max", seed=a.seed)
+        np.testing.assert_array_equal(a.ask(9), b.ask(9))
+        for word, ours in (("pop_size", "population"), ("n_obj", "objectives"), ("n_trials", "evaluations")):
+            with self.assertRaisesRegex(TypeError, f"no {word}; here it is {ours}"):
+                imtet.Search([0, 0], [1, 1], **{word: 2})
+        for wrong, said in (({"evaluations": -3}, "^evaluations: -3 is outside"), ({"kinds": "reel"}, "^kinds: 'reel'"),
+                            ({"senses": "up"}, "^senses: item 1"), ({"population": 1.5}, "^population: 1.5")):
+            with self.assertRaisesRegex(imtet.ImtetError, said):
+                imtet.Search([0, 0], [1, 1], 2, **wrong)
+
+    def test_a_loop_calls_back_and_ends_when_it_is_told_to(self):
+        seen = []
+        s = search()
+        F, X = s.run(f, batch=5, callback=lambda s: seen.append(s.state["told"]) or len(seen) == 4)
+        self.assertEqual((len(seen), seen[-1]), (4, s.state["told"]))
+        self.assertLess(s.state["told"], 60)
+        swapped = s.front(order="XF")
+        np.testing.assert_array_equal(swapped[1], F)
+        np.testing.assert_array_equal(swapped[0], X)
+        self.assertRegex(repr(s), f"^<imtet.Search: 4 variables, 2 objectives, {seen[-1]} designs told, .* left>$")
+
+    def test_a_fork_is_told_to_load_a_saved_search(self):
+        s = search()
+        s.ask(2)
+        child = os.fork()
+        if child == 0:
+            try:
+                s.ask(1)
+            except imtet.ImtetError as fault:
+                os._exit(7 if "fork" in str(fault) else 1)
+            os._exit(1)
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 7)
+
+    def test_a_search_that_is_saved_goes_on_on_other_kernels_and_says_so_once(self):
+        dice, kernels = random.Random(4), ("Haswell", "Sandybridge", "Prescott", "Nehalem")
+        path, n = os.path.join(PLACE, "elsewhere.search"), int(os.environ.get("PYTHON_SAVES", 6))
+        code = ("import sys; sys.argv = ['', %r]; sys.path.insert(0, %r)\nfrom test_imtet import *\nimport warnings\n"
+                "with warnings.catch_warnings(record=True) as said:\n    warnings.simplefilter('always')\n"
+                "    s = imtet.Search.load(%r)\n    before = s.told()\n    drive(s)\n"
+                "print(len(said), s.state['told'], len(s.front()[0]), all(np.array_equal(a, b[:len(a)], True) for a, b in "
+                "zip(before, s.told())), *[w.message for w in said])")
+        for i in range(n):
+            s = search()
+            for _ in range(dice.randrange(12)):
+                if s.ask_ready and dice.random() < 0.8:
+                    s.ask(dice.randrange(1, 9))
+                X = s.under_way[:dice.randrange(9)]
+                s.tell(X, s.evaluate(f, X))
+            s.save(path)
+            other = kernels[i % len(kernels)]
+            done = subprocess.run([sys.executable, "-c", code % (PLACE, os.path.dirname(os.path.abspath(__file__)), path)],
+                                  env={**os.environ, "OPENBLAS_CORETYPE": other}, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            warned, told, front, kept, *said = done.stdout.split()
+            self.assertEqual((told, kept, int(front) > 3), ("60", "True", True))
+            self.assertEqual(warned, "0" if other == "Haswell" else "1")
+            self.assertTrue(other == "Haswell" or f"for {other} the search goes on" in " ".join(said))
+
+    def test_saves_of_several_processes_are_each_whole_and_the_one_before_is_kept(self):
+        path, victim = os.path.join(PLACE, "shared.search"), os.path.join(PLACE, "victim")
+        with open(victim, "w") as out:
+            out.write("mine")
+        s = search()
+        for name in (path, path + ".part", f"{path}.{os.getpid()}.tmp"):
+            os.symlink(victim, name)
+        s.save(path)
+        X = s.ask(5)
+        s.tell(X, s.evaluate(f, X))
+        s.save(path)
+        self.assertFalse(os.path.islink(path))
+        with open(victim) as text:
+            self.assertEqual(text.read(), "mine")
+        self.assertEqual([imtet.Search.load(p).state["told"] for p in (path + ".prev", path)], [0, 5])
+        children = []
+        for _ in range(3):
+            children.append(os.fork())
+            if children[-1] == 0:
+                mine = imtet.Search.load(path)
+                for _ in range(60):
+                    mine.save(path)
+                os._exit(0)
+        for _ in range(60):
+            for name in (path, path + ".prev"):
+                self.assertEqual(imtet.Search.load(name).state["told"], 5) if os.path.exists(name) else None
+        self.assertEqual([os.waitpid(child, 0)[1] for child in children], [0, 0, 0])
+        self.assertEqual(sorted(n for n in os.listdir(PLACE) if n.startswith("shared.search")),
+                         sorted(["shared.search", "shared.search.prev", "shared.search.part"]))
+        with open(path, "r+b") as file:
+            file.seek(200)
+            file.write(b"x")
+        with self.assertRaisesRegex(imtet.ImtetError, "is damaged.*the save before has .prev behind the name"):
+            imtet.Search.load(path)
 
     def test_where_every_design_fails_the_front_says_why(self):
         s = imtet.Search([0] * 4, [1] * 4, 2, evaluations=40)
@@ -251,8 +517,8 @@ class Simulating(unittest.TestCase):
         gained = 0
         for _ in range(50):
             before = ticks[0]
-            imtet._call("imtet_scene_history", scene._scene, b"no_core", None, 0, imtet.ctypes.c_double(1e-3),
-                        imtet.ctypes.byref(imtet._handle()))
+            library.call("imtet_scene_history", scene._scene, b"no_core", None, 0, ctypes.c_double(1e-3),
+                         ctypes.byref(library.handle()))
             gained = max(gained, ticks[0] - before)
             if gained > 1000:
                 break
@@ -286,6 +552,59 @@ class Simulating(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "nowhere: there is no such folder"):
             imtet.open_run(os.path.join(PLACE, "nowhere"))
 
+    def test_a_run_that_is_not_what_was_written_is_refused_as_the_program_does(self):
+        whole, other = os.path.join(PLACE, "whole"), os.path.join(PLACE, "other")
+        program("optimize", "configs/quick.ini", "--out", whole, "--max-evals", "28", "--threads", "1", "--set", "search.initial=16",
+                "--set", "search.population=12", *SHORT)
+        run = imtet.open_run(whole)
+        self.assertEqual(json.loads(program("optimize", whole, "--json"))["knee"]["design"], run.knee.id)
+        self.assertEqual(run.best("j3_g").j3_g, run.front.j3_g.min())
+        self.assertEqual(run.best("ed5_10_pct").ed5_10_pct, run.front.ed5_10_pct.max())
+        with self.assertRaisesRegex(KeyError, "'j4' is no objective of this run; it has j1_m"):
+            run.best("j4")
+        self.assertIn("28 designs" if len(run.designs) == 28 else "designs", repr(run))
+        damages = (("UPDATE evaluation SET j1_m = j1_m * 1.0000000001 WHERE id = 3", "evaluation 3 is not what was written"),
+                   ("UPDATE evaluation SET outcome = 'ok', reason = 'x' WHERE id = 4", "evaluation 4 is not"),
+                   ("UPDATE evaluation SET generation = 7 WHERE id = 5", "evaluation 5 is not"),
+                   ("UPDATE finer SET j1_m = 1 WHERE id IN (SELECT id FROM finer LIMIT 1)", "(evaluation|finer) [0-9]+ is not"),
+                   ("DELETE FROM evaluation WHERE id = 6", "evaluation (6 )?is missing|an evaluation is missing"),
+                   ("UPDATE front SET left = 1 WHERE evaluation IN (SELECT evaluation FROM front WHERE left IS NULL LIMIT 1)",
+                    "its front is not what was written"),
+                   ("UPDATE run SET settings = replace(settings, 'seed = 1', 'seed = 2')", "settings are not|is not what was written"),
+                   ("CREATE VIEW v AS SELECT 1", "holds views or triggers"),
+                   ("ALTER TABLE run RENAME TO old; CREATE VIEW run AS WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r) "
+                    "SELECT n AS settings, n AS provenance, n AS planned_evals, n AS n_var, n AS digest FROM r WHERE n < 0", "holds views"),
+                   ("PRAGMA user_version = 9", "has format 9"), ("PRAGMA application_id = 1", "is no database of a run"))
+        for sql, said in damages:
+            shutil.rmtree(other, ignore_errors=True)
+            shutil.copytree(whole, other)
+            db = sqlite3.connect(os.path.join(other, "run.sqlite"))
+            db.executescript(sql)
+            db.commit()
+            db.close()
+            with self.subTest(sql):
+                with self.assertRaisesRegex(imtet.ImtetError, said):
+                    imtet.open_run(other)
+                with self.assertRaises(imtet.ImtetError):
+                    imtet.merge_fronts(whole, other)
+                refused = subprocess.run([PROGRAM, "export", other, "--csv", "-"], capture_output=True, text=True)
+                self.assertIn(refused.returncode, (65, 74), refused.stderr)
+        with open(os.path.join(other, "run.sqlite"), "wb") as file:
+            file.write(b"SQLite format 3\0" + bytes(5000))
+        with self.assertRaises(imtet.ImtetError):
+            imtet.open_run(other)
+
+    def test_of_a_run_a_table_has_its_designs(self):
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            self.skipTest("pandas (python3-pandas) is not here")
+        run = imtet.open_run(os.path.join(PLACE, "six"))
+        table = run.to_frame(front=True)
+        np.testing.assert_array_equal(table.index, run.front.id)
+        np.testing.assert_array_equal(table.j1_m, run.front.j1_m)
+        self.assertEqual(len(run.to_frame()), len(run.designs))
+
     def test_fronts_of_runs_of_one_problem_are_merged_and_of_two_refused(self):
         def run(name, *more):
             program("optimize", "configs/quick.ini", "--out", os.path.join(PLACE, name), "--max-evals", "28", "--threads", "1", "--set", "search.initial=16",
@@ -310,11 +629,47 @@ class Simulating(unittest.TestCase):
         self.assertTrue(dt > 0 and a.ndim == 1 and meta["format"] == "builtin")
 
 
+class Packaging(unittest.TestCase):
+    def needs(self, *modules):
+        missing = [m for m in modules if importlib.util.find_spec(m) is None]
+        if missing:
+            self.skipTest(f"{', '.join(missing)} not here")
+
+    def test_a_wheel_holds_the_library(self):
+        self.needs("pip", "setuptools", "wheel", "venv", "ensurepip")
+        place, source = os.path.join(PLACE, "venv"), os.path.join(PLACE, "tree")
+        os.mkdir(source)
+        for name in os.listdir(ROOT):  # pip writes beside setup.py
+            if name != "python":
+                os.symlink(os.path.abspath(os.path.join(ROOT, name)), os.path.join(source, name))
+        shutil.copytree(os.path.join(ROOT, "python"), os.path.join(source, "python"))
+        subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", place], check=True)
+        python = os.path.join(place, "bin", "python")
+        subprocess.run([python, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-index", "./python"], check=True, cwd=source,
+                       env={k: v for k, v in os.environ.items() if not k.startswith("MAKE")}, capture_output=True)
+        alone = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "IMTET_LIBRARY", "LD_LIBRARY_PATH")}
+
+        def run(*words):
+            return subprocess.run([python, *words], check=True, cwd="/", env=alone, capture_output=True, text=True).stdout
+        said = run("-c", "import imtet; print(imtet.__version__, imtet._library.lib._name); print(imtet.Scene().simulate(kind='no_core').j1_m)")
+        self.assertRegex(said, rf"^{imtet.__version__} {place}/.*/site-packages/imtet/libimtet.so\n0.")
+        self.assertIn("Version: " + imtet.__version__, run("-m", "pip", "show", "imtet"))
+
+    def test_every_public_function_has_a_docstring(self):
+        for name in imtet.__all__:
+            thing = getattr(imtet, name)
+            if callable(thing):
+                self.assertTrue(thing.__doc__, name)
+                for part, value in vars(thing).items() if isinstance(thing, type) else ():
+                    if not part.startswith("_") and (callable(value) or isinstance(value, property)):
+                        self.assertTrue(value.__doc__, f"{name}.{part}")
+
+
 class Examples(unittest.TestCase):
     def test_every_example_runs(self):
         folder = os.path.join(ROOT, "python", "examples")
         for name in sorted(os.listdir(folder)):
-            if name.endswith(".py"):
+            if name.endswith(".py") and (name != "optuna_sampler.py" or importlib.util.find_spec("optuna")):
                 done = subprocess.run([sys.executable, os.path.join(folder, name)], capture_output=True, text=True, cwd=PLACE,
                                       env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "python"), "IMTET_QUICK": "1"})
                 self.assertEqual(done.returncode, 0, name + ": " + done.stderr)
