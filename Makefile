@@ -5,6 +5,8 @@
 #   T="moga rbf"                              with test: these tests only, in MODE
 
 VERSION  := 0.2.0
+# Of the manual pages: the day of the last commit, or where there is no history that of the changelog of Debian.
+DATE     ?= $(shell git log -1 --format=%cs 2>/dev/null || dpkg-parsechangelog -S Date | date +%F -f -)
 REVISION ?= $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 MODE     ?= release
 BUILD    := build/$(MODE)
@@ -187,6 +189,9 @@ $(BUILD)/revision: .FORCE
 $(BUILD)/src/store/provenance.o: $(BUILD)/revision
 $(BUILD)/src/store/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' -DIMTET_REVISION='"$(REVISION)"' \
                                              -DIMTET_CFLAGS='"$(FLAGS_TEXT)"'
+
+$(BUILD)/src/cmd/manual.o: $(BUILD)/revision
+$(BUILD)/src/cmd/manual.o: CPPFLAGS += -DIMTET_DATE='"$(DATE)"'
 
 include bench/bench.mk src/mpi/mpi.mk
 

@@ -6,6 +6,7 @@
 #include <jansson.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include <wchar.h>
 
 #include "base/linalg.h"
 #include "cmd/manual.h"
@@ -55,7 +56,7 @@ static Status run_command(int argc, char *argv[], Err *err)
 
 static int is_version(const char *word)
 {
-    return strcmp(word, "--version") == 0 || strcmp(word, "-v") == 0 || strcmp(word, "version") == 0;
+    return strcmp(word, "--version") == 0 || strcasecmp(word, "-v") == 0 || strcmp(word, "version") == 0;
 }
 
 static int is_help(const char *word)
@@ -63,34 +64,22 @@ static int is_help(const char *word)
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
 }
 
-/* A second word may name a command; more are too many. */
-static Status second_word(int argc, char *argv[], const Command **command, Err *err)
+/* help and --man: a second word may name a command; more are too many. */
+static Status explain(int argc, char *argv[], Err *err)
 {
+    const Command *command = NULL;
     const char *option;
-    *command = NULL;
-    if (argc == 3 && is_help(argv[2]))
-        return STATUS_OK;
     if (argc > 3)
         return fail(err, STATUS_USAGE, "imtet %s takes one command at most, found '%.60s'", argv[1], argv[3]);
-    return argc == 3 ? command_find(argv[2], command, &option, err) : STATUS_OK;
-}
-
-static Status help(int argc, char *argv[], Err *err)
-{
-    const Command *command;
-    TRY(second_word(argc, argv, &command, err));
-    if (command)
+    if (argc == 3 && !is_help(argv[2]))
+        TRY(command_find(argv[2], &command, &option, err));
+    if (strcmp(argv[1], "--man") == 0)
+        manual_write(command, stdout);
+    else if (command)
         command_help(command, stdout);
     else
         usage_write(stdout);
     return STATUS_OK;
-}
-
-static Status manual(int argc, char *argv[], Err *err)
-{
-    const Command *command;
-    TRY(second_word(argc, argv, &command, err));
-    return manual_write(command, stdout, err);
 }
 
 static Status version(int argc, char *argv[], Err *err)
@@ -109,14 +98,12 @@ static Status run(int argc, char *argv[], Err *err)
         usage_write(stderr);
         return fail(err, STATUS_USAGE, "no command was given");
     }
-    if (is_help(argv[1]))
-        return help(argc, argv, err);
+    if (is_help(argv[1]) || strcmp(argv[1], "--man") == 0)
+        return explain(argc, argv, err);
     if (strcmp(argv[1], "--json") == 0 && argc == 3 && strcmp(argv[2], "--version") == 0)
         return show_json(program_description(), err);
     if (is_version(argv[1]))
         return version(argc, argv, err);
-    if (strcmp(argv[1], "--man") == 0)
-        return manual(argc, argv, err);
     if (strcmp(argv[1], "--commands") == 0)
         for (int i = 0; command_at(i); i++)
             puts(command_at(i)->name);
@@ -155,6 +142,16 @@ static Status run_here(int argc, char *argv[], Err *err)
     return serves ? STATUS_OK : run(argc, argv, err);
 }
 
+/* One sentence on standard error, and with --json also an object on standard output, unless there is one already: a
+ * stream that was never written to has no orientation. */
+static void tell_failure(int argc, char *argv[], Status status, const char *words)
+{
+    fprintf(stderr, "imtet: %s\n", words);
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], "--json") == 0 && fwide(stdout, 0) == 0)
+            show_json(json_of("error=%s status=%ld", words, (long)status_exit_code(status)), &(Err){0});
+}
+
 int main(int argc, char *argv[])
 {
     Err err = {0};
@@ -164,7 +161,7 @@ int main(int argc, char *argv[])
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
         status = fail(&err, STATUS_IO, "standard output: cannot be written");
     if (status != STATUS_OK)
-        fprintf(stderr, "imtet: %s\n", err.text[0] ? err.text : status_words(status));
+        tell_failure(argc, argv, status, err.text[0] ? err.text : status_words(status));
     cluster_leave(status_exit_code(status));
     return status_exit_code(status);
 }

@@ -5,23 +5,45 @@
 
 #include "cmd/manual.h"
 
-TEST(every_command_has_a_page_with_all_its_options)
+/* A text as roff has it: every hyphen behind a backslash. */
+static int has_entry(const char *page, const char *name)
 {
+    char entry[96] = "\n.TP\n\\fB", *to = entry + strlen(entry);
+    for (; *name; name++)
+        to += sprintf(to, *name == '-' ? "\\-" : "%c", *name);
+    strcpy(to, "\\fR ");
+    return strstr(page, entry) != NULL;
+}
+
+TEST(every_command_has_a_page_with_the_sections_of_man_and_all_its_options)
+{
+    static const char *const SECTIONS[] = {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "EXAMPLES"};
     for (int i = 0; command_at(i); i++) {
         const Command *c = command_at(i);
-        char option[64];
-        char *page = output_of("--man %s", c->name);
-        assert_int_equal(strncmp(page, ".TH \"imtet-", 11), 0);
-        for (const ArgOption *o = c->options; o->name; o++) {
-            snprintf(option, sizeof option, "  \\-\\-%s", o->name + 2);
-            if (!strstr(page, option) && !strchr(o->name + 2, '-'))
+        char *page = output_of("--man %s", c->name), *at = page;
+        assert_int_equal(strncmp(page, ".TH imtet\\-", 11), 0);
+        assert_int_equal(strspn(strstr(page, " 1 \"") + 4, "0123456789-"), 10); /* a date */
+        for (size_t k = 0; k < N_OF(SECTIONS); k++) {
+            char title[32];
+            snprintf(title, sizeof title, "\n.SH %s\n", SECTIONS[k]);
+            at = strstr(at, title);
+            if (!at)
+                fail_msg("%s: no section %s", c->name, SECTIONS[k]);
+        }
+        for (const ArgOption *o = c->options; o->name; o++)
+            if (!has_entry(page, o->name))
                 fail_msg("%s is not in the page of %s", o->name, c->name);
+        for (Status s = 0; s < STATUS_COUNT; s++) {
+            char code[8];
+            snprintf(code, sizeof code, "%d", status_exit_code(s));
+            assert_true(has_entry(page, code));
         }
         free(page);
     }
     char *all = output_of("--man");
-    assert_non_null(strstr(all, "  optimize  "));
-    assert_non_null(strstr(all, "\n.SH DESCRIPTION\n"));
+    for (int i = 0; command_at(i); i++)
+        assert_true(has_entry(all, command_at(i)->name));
+    assert_non_null(strstr(all, "\n.SH COMMANDS\n"));
     free(all);
 }
 

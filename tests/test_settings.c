@@ -19,7 +19,7 @@ static char *written(const Settings *s, int described)
     size_t length = 0;
     FILE *f = open_memstream(&text, &length);
     assert_non_null(f);
-    settings_write(s, f, (SettingsForm)described);
+    settings_write(s, f, (SettingsForm)described, NULL);
     fclose(f);
     return text;
 }

@@ -36,16 +36,10 @@ typedef struct {
     Measured scene[1 + LADDER_MAX][LADDER_SCENES]; /* the same of the scenes; of the design as in parts */
 } Job;
 
-typedef struct {
-    const char *key;
-    char *value;
-} Wanted;
-
-static void take_value(const char *key, const char *value, void *user)
+static void take_value(const char *key, const char *value, void *to)
 {
-    const Wanted *w = user;
-    if (strcmp(key, w->key) == 0)
-        snprintf(w->value, OPTION_TEXT_MAX, "%s", value);
+    (void)key;
+    snprintf(to, OPTION_TEXT_MAX, "%s", value);
 }
 
 /* -- effects ------------------------------------------------------------------------------------------------------- */
@@ -118,13 +112,13 @@ static Status list_effects(Job *job, Err *err)
         LadderEffect *e = &l->effect[l->n];
         if (!is_there(job, kind))
             continue;
-        settings_each(&job->all, take_value, &(Wanted){EFFECTS[kind].key, now});
+        settings_each(&job->all, EFFECTS[kind].key, take_value, now);
         set_values(job, kind, now, e);
         job->kind[l->n++] = kind;
         TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
     }
     for (int i = 0; i < YIELDING_KEYS; i++)
-        settings_each(&job->s, take_value, &(Wanted){YIELDING_KEY[i], l->yielding[i]});
+        settings_each(&job->s, YIELDING_KEY[i], take_value, l->yielding[i]);
     return find_hardening(&job->all, &l->all_hardening, err);
 }
 

@@ -1,4 +1,5 @@
 
+#include "base/text.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
@@ -145,6 +146,7 @@ static void tell_knees(const Run *run, const Picks *p)
 static void show_table(const Run *run, const Picks *p)
 {
     json_t *table = json_array();
+    char quoted[4 * PATH_MAX + 3];
     printf("%zu of %zu designs are within the limits\n\n", p->n_left, run->n_front);
     size_t n_unknown = 0;
     for (size_t i = 0; i < p->n; i++) {
@@ -155,7 +157,7 @@ static void show_table(const Run *run, const Picks *p)
     if (n_unknown > 0)
         printf("\nnot among the designs that the study named, and without a known error: %zu; `imtet "
                "evaluate %s --design ID` estimates one\n",
-               n_unknown, run->id_step > 0 ? "RUN" : run->folder);
+               n_unknown, run->id_step > 0 ? "RUN" : text_shell(run->folder, quoted));
     if (p->n > 0)
         tell_knees(run, p);
 }

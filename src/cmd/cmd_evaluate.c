@@ -488,12 +488,14 @@ static Status evaluate_by_config(const Args *args, Settings *s, const char *word
 /* run NULL: the operand is a CONFIG, else the settings are of that run. */
 static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *err)
 {
-    const char *word = args_value(args, "--design");
+    const char *given = args_value(args, "--design"), *word = given || !run ? given : "knee";
     TRY(run ? args_apply(args, s, NULL, NULL, err) : args_settings(args, s, NULL, NULL, err));
     if (s->problem.kind != PROBLEM_TOWER && !run)
         return is_no_tower(err);
     if (args_has(args, "--full-model"))
         return show_full_model(args, s, run, err);
+    if (!word)
+        return misused(err, "--design FILE is missing: which design of %s", args->operand);
     return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
 }
 
@@ -501,8 +503,6 @@ static Status run(const Args *args, Err *err)
 {
     Settings s;
     Run r = {0};
-    if (!args_has(args, "--full-model") && !args_value(args, "--design"))
-        return misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
     if (!run_is_there(args->operand))
         return evaluate_with(args, &s, NULL, err);
     TRY(run_read(&r, args->operand, err));

@@ -46,9 +46,9 @@ static void tell(const StudyProgress *p, void *user)
                  p->settings->search.max_evals, left);
     else
         snprintf(line, sizeof line,
-                 "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left", v->generation,
-                 p->progress.simulated, p->settings->search.max_evals, v->all->n_failed, v->all->n_front, hypervolume,
-                 left);
+                 "%zu of %ld simulated, %s left, %zu failed, front %zu, hypervolume %s, generation %zu",
+                 p->progress.simulated, p->settings->search.max_evals, left, v->all->n_failed, v->all->n_front,
+                 hypervolume, v->generation);
     if (t->terminal)
         fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
     else
@@ -178,6 +178,10 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n",
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
+    size_t n_failed, most;
+    const char *reason = evaluation_table_failures(&run->table, &n_failed, &most);
+    if (n_failed > 0)
+        printf("%zu of %zu failures: %s\n", most, n_failed, reason);
     double expected;
     TRY(improvement_expected(run, &expected, err));
     show_expected_gain(expected);
@@ -292,7 +296,8 @@ static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
     StudySummary summary;
-    Telling telling = {.terminal = isatty(STDERR_FILENO)};
+    const char *terminal = getenv("TERM");
+    Telling telling = {.terminal = isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0};
     StudyOptions options = {.fresh = args_has(args, "--new"),
                             .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
@@ -331,7 +336,7 @@ static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
     SETTING("--out", "DIR", "run.out", "the run's folder; a run that it holds is resumed"),
     SWITCH("--new", "a new run in any case: a number is added to a folder that holds one"),
-    SWITCH("--force-settings", "resume with lower limits (simulations, hours); greater ones need no word"),
+    SWITCH("--force-settings", "resume with lower limits (simulations, hours); raising them needs no option"),
     SETTING("--threads", "N", "search.threads", "0: one per processor"),
     SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),
     SETTING("--max-hours", "H", "search.max_hours",
@@ -353,7 +358,7 @@ const Command CMD_OPTIMIZE = {
         "column). A run that is there already is resumed, with the same result as if it had never stopped; its\n"
         "settings must be the same. `imtet optimize RUN` resumes a run with its own settings. Ctrl-C, SIGTERM and\n"
         "--max-hours store everything and end with status 75; a second signal, 0.2 s later or more, ends at\n"
-        "once and costs the simulations under way and at most 0.2 s of finished ones.\n"
+        "once and discards running simulations and at most 0.2 s of finished ones.\n"
         "With problem.kind = external the simulator is a program of your own (docs/external.md).",
     .options = OPTIONS,
     .run = run,

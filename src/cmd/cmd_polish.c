@@ -117,9 +117,7 @@ static Status work(const Args *args, Improve *m, Err *err)
 
 static Status run(const Args *args, Err *err)
 {
-    const char *word = args_value(args, "--design");
-    return word ? improve_run(args, word, work, err)
-                : misused(err, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+    return improve_run(args, work, err);
 }
 
 static const ArgOption OPTIONS[] = {

@@ -5,6 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/dossier.h"
+#include "cmd/show.h"
 #include "report/elsewhere.h"
 #include "report/pictures.h"
 #include "report/report.h"
@@ -100,9 +101,12 @@ static Status report(const Args *args, const Run *run, Err *err)
                  : args_has(args, "--pictures") ? report_pictures(&r, path, err)
                                                 : report_page(&r, path, err));
     report_close(&r);
-    if (status == STATUS_OK && strcmp(path, "-") != 0)
+    TRY(status);
+    if (args_has(args, "--json"))
+        return show_json(json_of("written=%s", path), err);
+    if (strcmp(path, "-") != 0)
         printf("%s\n", path);
-    return status;
+    return STATUS_OK;
 }
 
 static const ArgOption OPTIONS[] = {
@@ -113,6 +117,7 @@ static const ArgOption OPTIONS[] = {
     VALUES("--record", "FILE",
            "another earthquake for it, or every one of a folder or list, behind those of the study; may be repeated "
            "(default: the built-in ones)"),
+    SWITCH("--json", "where it was written, as an object"),
     VALUE("--floor", "N", "whose displacement is shown over time (default: the middle one)"),
     OPTION_MOVED,
     OPTION_CHANNEL,

@@ -54,8 +54,8 @@ static Status take_options(const Args *args, Improve *m, Err *err)
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-/* The path with its cost; then name and number of every variable at its end, gaps and plates in mm. */
-static void show(const Improve *m)
+/* The path: of each step devices, cost and objectives. */
+static json_t *table_of(const Improve *m)
 {
     static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",
                                         "on steps", "moved on steps", "fewer devices"};
@@ -70,7 +70,15 @@ static void show(const Improve *m)
         if (i != SIMPLIFY_ZONES || m->config.zones > 0)
             improve_row(m, table, label, i, i == SIMPLIFY_START ? m->run.table.row[m->row].id : 0);
     }
-    improve_print(m, table);
+    return table;
+}
+
+/* The path with its cost; then name and number of every variable at its end, gaps and plates in mm. */
+static void show(const Improve *m)
+{
+    const Schema *s = &m->run.schema;
+    const EvaluationTable *path = &m->result.designs;
+    improve_print(m, table_of(m));
     puts("behind the colon: devices, and the cost by design.prices\n");
     const double *x = path->row[path->n - 1].x;
     for (size_t j = 0; j < s->n_var; j++) {
@@ -100,14 +108,12 @@ static Status store_end(Improve *m, Err *err)
                     m->run.folder);
     for (size_t i = 0; i < has->n; i++)
         if (memcmp(last->x, has->row[i].x, has->n_var * sizeof *last->x) == 0) {
-            printf("it is design %ld of the run: nothing new to store.\n", has->row[i].id);
+            m->id = has->row[i].id;
             return STATUS_OK;
         }
     snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, has->row[m->row].id);
     last->reason = reason;
-    TRY(improve_store(m, last, err));
-    improve_say(m);
-    return STATUS_OK;
+    return improve_store(m, last, err);
 }
 
 static Status work(const Args *args, Improve *m, Err *err)
@@ -116,14 +122,19 @@ static Status work(const Args *args, Improve *m, Err *err)
     if (m->run.settings->problem.kind != PROBLEM_TOWER)
         return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", m->run.folder);
     TRY(improve_design(&m->run, m->row, &m->config, simplify_design, &m->result, err));
-    show(m);
-    return store_end(m, err);
+    const int as_json = args_has(args, "--json");
+    if (!as_json)
+        show(m);
+    TRY(store_end(m, err));
+    if (as_json)
+        return show_json(json_of("design=%ld path=%p", m->id, table_of(m)), err);
+    improve_say(m);
+    return STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
 {
-    const char *word = args_value(args, "--design");
-    return improve_run(args, word ? word : "knee", work, err);
+    return improve_run(args, work, err);
 }
 
 static const ArgOption OPTIONS[] = {
@@ -134,6 +145,7 @@ static const ArgOption OPTIONS[] = {
     VALUE(
         "--keep", "NAME[=S],...",
         "these may lose the share S of their value, 2% where none is given; if not given the first 2%, all others 10%"),
+    OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,
 };

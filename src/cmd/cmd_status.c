@@ -1,6 +1,7 @@
 #include <errno.h>
 
 #include "base/json.h"
+#include "base/text.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "base/hypervolume.h"
@@ -180,6 +181,7 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
 /* What the JSON says of the run, in lines. */
 static void print_head(const char *folder, const Run *run, const Standing *s, json_t *described)
 {
+    char quoted[4 * PATH_MAX + 3];
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
     printf("%s: %s", folder, state_words(s->state));
@@ -203,7 +205,7 @@ static void print_head(const char *folder, const Run *run, const Standing *s, js
         putchar('\n');
     }
     if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
-        printf("resume it with: imtet optimize %s\n", folder);
+        printf("resume it with: imtet optimize %s\n", text_shell(folder, quoted));
 }
 
 static Status run(const Args *args, Err *err)

@@ -16,10 +16,11 @@ static Status open_run(Improve *m, const Args *args, const char *word, Err *err)
     return record_paths_find(m->run.settings, m->run.provenance, &moved, err);
 }
 
-Status improve_run(const Args *args, const char *word, Status (*work)(const Args *args, Improve *m, Err *err), Err *err)
+Status improve_run(const Args *args, Status (*work)(const Args *args, Improve *m, Err *err), Err *err)
 {
     Improve m = {0};
-    Status status = open_run(&m, args, word, err);
+    const char *word = args_value(args, "--design");
+    Status status = open_run(&m, args, word ? word : "knee", err);
     THEN(status, work(args, &m, err));
     improved_free(&m.result);
     run_free(&m.run);
@@ -78,7 +79,7 @@ void improve_say(const Improve *m)
 {
     const long before = m->run.n_front > 0 ? m->run.table.row[run_knee(&m->run)].id : 0;
     if (m->id)
-        printf("stored in the run as design %ld.\n", m->id);
-    if (m->id && m->knee != before)
+        printf("%s the run as design %ld.\n", m->knee ? "stored in" : "nothing new: it is in", m->id);
+    if (m->knee && m->knee != before)
         printf("%s:knee was design %ld and is now design %ld.\n", m->run.folder, before, m->knee);
 }

@@ -11,15 +11,14 @@ typedef struct {
     RunStore *store;
     Run run;       /* as it was; its motions where they are now (OPTION_MOVED) */
     size_t row;    /* of the design */
-    long id, knee; /* of the new design, of the run's knee beside it; 0: nothing is stored */
+    long id, knee; /* of the design at the end, of the run's knee beside it where that was stored; 0: none */
     ImproveConfig config;
     Improved result;
 } Improve;
 
-/* The operand is the run, `word` names the design; `work` fills config, calls improve_design and reports. Whatever
- * comes of it, all is released. */
-Status improve_run(const Args *args, const char *word, Status (*work)(const Args *args, Improve *m, Err *err),
-                   Err *err);
+/* The operand is the run, --design the design, the knee if it is not given; `work` fills config, calls improve_design
+ * and reports. Whatever comes of it, all is released. */
+Status improve_run(const Args *args, Status (*work)(const Args *args, Improve *m, Err *err), Err *err);
 
 /* As a design of the kind polished; where the search is over it may be a named one, and gets better values. */
 Status improve_store(Improve *m, const Evaluation *design, Err *err);

@@ -1,6 +1,7 @@
 #include "cmd/manual.h"
 
-#include "base/text.h"
+#include <stdarg.h>
+
 #include "cmd/commands.h"
 #include "store/provenance.h"
 
@@ -87,42 +88,46 @@ void usage_write(FILE *out)
 
 /* ---- for man --------------------------------------------------------------------------------------------------- */
 
-/* Text in which roff finds nothing of its own. */
-static void roff(FILE *out, const char *text)
+/* The format with a text in the place of every %, in which roff finds nothing of its own. */
+static void roff(FILE *out, const char *format, ...)
 {
-    int first = 1;
-    for (; *text; text++) {
-        if (first && (*text == '.' || *text == '\''))
-            fputs("\\&", out);
-        if (*text == '-' || *text == '\\')
-            fputs(*text == '-' ? "\\-" : "\\e", out);
-        else
-            fputc(*text, out);
-        first = *text == '\n';
+    va_list texts;
+    va_start(texts, format);
+    for (const char *f = format; *f; f++) {
+        if (*f != '%')
+            fputc(*f, out);
+        for (const char *text = *f == '%' ? va_arg(texts, const char *) : "", *at = text; *at; at++) {
+            if ((at == text || at[-1] == '\n') && strchr(".'", *at))
+                fputs("\\&", out);
+            if (strchr("-\\", *at))
+                fputc('\\', out);
+            fputc(*at == '\\' ? 'e' : *at, out);
+        }
     }
+    va_end(texts);
 }
 
-/* What the terminal shows, under a title and a name for `man` and `apropos`. */
-Status manual_write(const Command *c, FILE *out, Err *err)
+void manual_write(const Command *c, FILE *out)
 {
-    char name[40], *text = NULL;
-    size_t size;
-    FILE *help = text_open(&text, &size);
-    if (!help)
-        return fail_memory(err, 1, "a manual page");
-    if (c)
-        command_help(c, help);
-    else
-        usage_write(help);
-    const int is_whole = text_close(help) == 0;
-    snprintf(name, sizeof name, "imtet%s%s", c ? "-" : "", c ? c->name : "");
-    fprintf(out, ".TH \"%s\" 1 \"\" \"imtet %s\" \"User commands\"\n.SH NAME\n", name, program_version());
-    roff(out, name);
-    fputs(" \\- ", out);
-    roff(out, c ? c->summary : "earthquake protection by impacts between a tower and an inner core");
-    fputs("\n.SH DESCRIPTION\n.nf\n", out);
-    roff(out, text);
-    fprintf(out, ".fi\n.SH SEE ALSO\n.BR imtet%s (1)\n", c ? "" : "\\-optimize");
-    free(text);
-    return is_whole ? STATUS_OK : fail_memory(err, 1, "a manual page");
+    static const char ENTRY[] = ".TP\n\\fB%\\fR \\fI%\\fR\n%\n";
+    char code[16];
+    const char *dash = c ? "-" : "", *name = c ? c->name : "";
+    roff(out, ".TH imtet%% 1 \"" IMTET_DATE "\" \"imtet %\" \"User commands\"\n", dash, name, program_version());
+    roff(out, ".SH NAME\nimtet%% \\- %\n.SH SYNOPSIS\n\\fBimtet %\\fR % [options]\n.SH DESCRIPTION\n%\n.SH %\n", dash,
+         name, c ? c->summary : "earthquake protection by impacts between a tower and an inner core", name,
+         c ? operand_of(c) : "COMMAND", c ? c->details : "Each command has a page of its own.",
+         c ? "OPTIONS" : "COMMANDS");
+    for (const ArgOption *o = c ? c->options : &(ArgOption){0}; o->name; o++)
+        roff(out, ENTRY, o->name, o->value ? o->value : "", o->help);
+    for (int i = 0; !c && i < N_COMMANDS; i++)
+        roff(out, ENTRY, COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+    fputs(".SH EXIT STATUS\n", out);
+    for (int s = 0; s < STATUS_COUNT; s++) {
+        snprintf(code, sizeof code, "%d", status_exit_code(s));
+        roff(out, ENTRY, code, "", status_words(s));
+    }
+    fputs(".SH EXAMPLES\n.nf\n", out);
+    for (int i = 0; i < (c ? 1 : FIRST_EXAMPLES); i++)
+        roff(out, "%\n", c ? c->example : COMMANDS[i]->example);
+    roff(out, ".fi\n.SH SEE ALSO\n.BR imtet% (1)\n", c ? "" : "-optimize");
 }

@@ -10,7 +10,7 @@ const Command *command_at(int i); /* NULL behind the last */
 void usage_write(FILE *out);      /* `imtet --help` */
 
 /* A page for man; NULL: imtet(1). */
-Status manual_write(const Command *command, FILE *out, Err *err);
+void manual_write(const Command *command, FILE *out);
 
 /* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option
  * that it stands for, or NULL. */

@@ -154,28 +154,34 @@ static int by_words(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-Status evaluation_table_check(const EvaluationTable *t, Err *err)
+const char *evaluation_table_failures(const EvaluationTable *t, size_t *n_failed, size_t *most)
 {
-    const char **reason;
-    size_t n = 0, most = 0, end = 0;
-    while (n < t->n && t->row[n].outcome != OUTCOME_OK)
-        n++;
-    if (n == 0 || n < t->n)
-        return STATUS_OK;
-    TRY_ROOM(reason, n, "reasons", err);
-    for (size_t i = 0; i < n; i++)
-        reason[i] = t->row[i].reason;
-    qsort(reason, n, sizeof *reason, by_words);
+    const char **reason = malloc((t->n + 1) * sizeof *reason), *commonest = "";
+    size_t n = 0;
+    *n_failed = *most = 0;
+    for (size_t i = 0; i < t->n; i++)
+        if (t->row[i].outcome != OUTCOME_OK && ++*n_failed && reason)
+            reason[n++] = t->row[i].reason;
+    if (n > 0)
+        qsort(reason, n, sizeof *reason, by_words);
     for (size_t i = 0, first = 0; i < n; i++) {
         first = strcmp(reason[i], reason[first]) == 0 ? first : i;
-        if (i + 1 - first > most) {
-            most = i + 1 - first;
-            end = i;
+        if (i + 1 - first > *most) {
+            *most = i + 1 - first;
+            commonest = reason[i];
         }
     }
-    fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %zu failed with: %s", n, most, reason[end]);
     free(reason);
-    return STATUS_INTERNAL;
+    return commonest;
+}
+
+Status evaluation_table_check(const EvaluationTable *t, Err *err)
+{
+    size_t n, most;
+    const char *reason = evaluation_table_failures(t, &n, &most);
+    return n == 0 || n < t->n
+               ? STATUS_OK
+               : fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %zu failed with: %s", n, most, reason);
 }
 
 void evaluation_table_free(EvaluationTable *t)

@@ -109,6 +109,9 @@ Status evaluation_table_give_room(Evaluation *row, Err *err); /* for its reason 
 /* The same filled with a copy of `from`, whose shapes are those of the table; NULL arrays are not known. */
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);
 
+/* The commonest reason of those that failed, how many have it, and how many failed. */
+const char *evaluation_table_failures(const EvaluationTable *t, size_t *n_failed, size_t *most);
+
 /* STATUS_INTERNAL where there are rows and all failed, with the reason that most of them have. */
 Status evaluation_table_check(const EvaluationTable *t, Err *err);
 

@@ -278,7 +278,7 @@ static const Option OPTIONS[] = {
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
-    WHOLE(search.population, "92", 4, 100000, "designs of a population"),
+    WHOLE(search.population, "92", 4, 100000, "designs of a population; search.ahead is what a batch of workers needs"),
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
     PATH_LIST(search.start, "none",
@@ -296,7 +296,8 @@ static const Option OPTIONS[] = {
           .flags = SETTING_FREE),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
     WHOLE(search.ahead, "auto", 0, 1e4,
-          "designs that may be under way when the next ones are chosen, so that no thread waits; auto: a 24th of all, "
+          "batch size: designs that may be under way when the next ones are chosen, so that no worker waits; auto: a "
+          "24th of all, "
           "24 at least (an eighth of max_evals, where that is less) and 240 at most; 0: one by one",
           .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
@@ -758,12 +759,19 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     }
 }
 
-void settings_each(const Settings *s, SettingFn take, void *user)
+static int is_meant(const Option *o, const char *word)
+{
+    return !word ||
+           (strchr(word, '.') ? strcmp(o->key, word) == 0 : strcasestr(o->key, word) || strcasestr(o->help, word));
+}
+
+void settings_each(const Settings *s, const char *word, SettingFn take, void *user)
 {
     char value[OPTION_TEXT_MAX];
     for (int i = 0; i < N_OPTIONS; i++) {
         format_value(s, &OPTIONS[i], value);
-        take(OPTIONS[i].key, value, user);
+        if (is_meant(&OPTIONS[i], word))
+            take(OPTIONS[i].key, value, user);
     }
 }
 
@@ -778,7 +786,7 @@ void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn di
     }
 }
 
-void settings_write(const Settings *s, FILE *out, SettingsForm form)
+void settings_write(const Settings *s, FILE *out, SettingsForm form, const char *word)
 {
     const char *section = "";
     char value[OPTION_TEXT_MAX], standard[OPTION_TEXT_MAX];
@@ -789,7 +797,8 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form)
         const int n = (int)strcspn(o->key, ".");
         format_value(s, o, value);
         format_value(&defaults, o, standard);
-        if (form == SETTINGS_BASIC && !(o->flags & SETTING_BASIC) && strcmp(value, standard) == 0)
+        if (!is_meant(o, word) ||
+            (form == SETTINGS_BASIC && !(o->flags & SETTING_BASIC) && strcmp(value, standard) == 0))
             continue;
         if (strncmp(section, o->key, (size_t)n + 1) != 0)
             fprintf(out, "%s[%.*s]\n", *section ? "\n" : "", n, o->key);
@@ -822,7 +831,7 @@ char *settings_text(const Settings *s)
     char *text = NULL;
     FILE *f = text_open(&text, &length);
     if (f)
-        settings_write(s, f, SETTINGS_PLAIN);
+        settings_write(s, f, SETTINGS_PLAIN, NULL);
     if (f && text_close(f) == 0)
         return text;
     free(text);

@@ -40,9 +40,10 @@ typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4, SETTING_
 typedef void (*SettingsDiffFn)(const char *key, unsigned flags, const char *was, const char *is, void *user);
 void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn differs, void *user);
 
-/* Calls `take` for every setting, in the order of the table. */
+/* Calls `take` for every setting, in the order of the table: that of a key, or those that have the word in key or
+ * meaning; NULL: all. */
 typedef void (*SettingFn)(const char *key, const char *value, void *user);
-void settings_each(const Settings *s, SettingFn take, void *user);
+void settings_each(const Settings *s, const char *word, SettingFn take, void *user);
 
 /* The same for every file or folder that a setting reads, one by one. */
 void settings_each_path(const Settings *s, SettingFn take, void *user);
@@ -70,9 +71,9 @@ const char *settings_key(int i);   /* "section.key"; NULL behind the last */
 const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path the names that are no file; or NULL */
 
 /* A valid INI file; described: each key after its meaning, unit and range; basic: those alone that a first study
- * touches and those that are no default. */
+ * touches and those that are no default. word as above. */
 typedef enum { SETTINGS_PLAIN, SETTINGS_DESCRIBED, SETTINGS_BASIC } SettingsForm;
-void settings_write(const Settings *s, FILE *out, SettingsForm form);
+void settings_write(const Settings *s, FILE *out, SettingsForm form, const char *word);
 
 /* The plain form as text, to be freed; NULL: no memory. */
 char *settings_text(const Settings *s);

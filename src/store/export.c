@@ -251,7 +251,7 @@ Status export_json(FILE *f, const Run *run, Err *err)
 {
     const Schema *s = &run->schema;
     json_t *settings = json_object(), *columns = json_array();
-    settings_each(run->settings, put_setting, settings);
+    settings_each(run->settings, NULL, put_setting, settings);
     for (size_t c = 0; c < s->n_var + s->n_obj + s->n_extra; c++) {
         const int is_objective = c >= s->n_var && c < s->n_var + s->n_obj;
         json_array_append_new(columns, json_of("name=%s role=%s sense=%s", s->column[c].name,

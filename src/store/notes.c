@@ -51,8 +51,8 @@ Status notes_put(const char *folder, long id, const char *text, Err *err)
     json_t *notes;
     Output o;
     snprintf(key, sizeof key, "%ld", id);
-    if (strlen(text) > NOTE_MAX)
-        return bad_data(err, "a note has at most %d bytes", NOTE_MAX);
+    if (strlen(text) > NOTE_BYTES_MAX)
+        return bad_data(err, "a note has at most %d bytes", NOTE_BYTES_MAX);
     folder_path(folder, NOTES, path);
     TRY(notes_read(folder, &notes, err));
     if (text[0])

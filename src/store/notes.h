@@ -10,7 +10,7 @@
 
 #include "store/run.h"
 
-enum { NOTE_MAX = 4000 };
+enum { NOTE_BYTES_MAX = 4000 };
 
 /* No file, no notes: an empty object. */
 Status notes_read(const char *folder, json_t **notes, Err *err);
@@ -18,5 +18,5 @@ Status notes_read(const char *folder, json_t **notes, Err *err);
 /* Notes on designs that the run has: also where the file is none, or names other designs, which is an error. */
 Status notes_of_run(const Run *run, json_t **notes, Err *err);
 
-/* text: at most NOTE_MAX bytes; empty takes the note away. */
+/* text: at most NOTE_BYTES_MAX bytes; empty takes the note away. */
 Status notes_put(const char *folder, long id, const char *text, Err *err);

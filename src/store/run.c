@@ -2,6 +2,7 @@
 
 #include <float.h>
 
+#include "base/text.h"
 #include "evaluate/problem.h"
 #include "evaluate/race.h"
 #include "evaluate/scenario.h"
@@ -319,7 +320,7 @@ int run_has_limits(const Run *run)
 
 Status run_why_empty(const Run *run, Err *err)
 {
-    char nearest[PATH_MAX], limits[160];
+    char nearest[PATH_MAX], limits[160], quoted[4 * PATH_MAX + 3];
     const size_t n_ok = run->table.n - run->n_failed;
     const Settings *s = run->settings;
     const int has_nearest = folder_has(run->folder, "nearest.csv");
@@ -327,7 +328,7 @@ Status run_why_empty(const Run *run, Err *err)
     folder_path(run->folder, "nearest.csv", nearest);
     if (evaluation_table_check(&run->table, &why) != STATUS_OK)
         return fail(err, STATUS_INTERNAL, "%s: %s; `imtet export %s --all --csv FILE` has all", run->folder, why.text,
-                    run->folder);
+                    text_shell(run->folder, quoted));
     if (run->n_finished == 0)
         return bad_data(err, "%s: there is no front before the initial sample is complete; %zu designs are simulated",
                         run->folder, run->table.n);
@@ -339,7 +340,7 @@ Status run_why_empty(const Run *run, Err *err)
                     has_nearest ? "; those that come nearest: " : "", has_nearest ? nearest : "");
     return fail(err, STATUS_INTERNAL,
                 "%s: every design failed at least once; `imtet export %s --all --csv FILE` says why", run->folder,
-                run->folder);
+                text_shell(run->folder, quoted));
 }
 
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err)

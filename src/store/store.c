@@ -202,7 +202,7 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
     folder_note(&store->folder, store->n_stored);
     folder_path(store_folder(store), "settings.ini", path);
     TRY(output_open_inside(&o, path, err));
-    settings_write(used, o.stream, SETTINGS_PLAIN);
+    settings_write(used, o.stream, SETTINGS_PLAIN, NULL);
     TRY(output_close(&o, err));
     folder_path(store_folder(store), "provenance.json", path);
     TRY(output_open_inside(&o, path, err));

@@ -42,7 +42,7 @@ static char *written(const Settings *s)
     size_t length;
     FILE *f = open_memstream(&text, &length);
     demand(f != NULL, "a stream of memory can be had");
-    settings_write(s, f, 0);
+    settings_write(s, f, 0, NULL);
     fclose(f);
     return text;
 }
