@@ -262,12 +262,13 @@ const Command CMD_BUILDING = {
     .summary = "floors, masses and modes of a building, a drawing; of a CONFIG also of its core and both as one",
     .example = "imtet building my-tower --svg my-tower.svg",
     .details =
+
         "MODEL is a folder with K.csv and M.csv, storeys.csv or a plane frame (nodes.csv, sections.csv,\n"
-        "elements.csv), an OpenSees model (FILE.tcl, units by --set building.units=kN_m_t), guyan or appendix. Floors\n"
-        "with height and mass, modes with period, participating mass and damping. Of a CONFIG also the modes of the\n"
-        "core, 12 mm thick in the first storey to 6.4 mm in the last without --design, and of the two rigidly\n"
-        "connected (zero gap). With building.modes the lowest modes of the fuller model are listed, vertical ones\n"
-        "included.",
+        "elements.csv), an OpenSees model (FILE.tcl, units by --set building.units=kN_m_t), guyan or\n"
+        "appendix. Prints floors with height and mass, and modes with period, participating mass and damping.\n"
+        "For a CONFIG it also prints the modes of the core and those of building and core rigidly connected\n"
+        "(zero gap). Without --design the core is 12 mm thick in the first storey and 6.4 mm in the last.\n"
+        "With building.modes it lists the lowest modes of the fuller model, including vertical ones.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

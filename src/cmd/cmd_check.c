@@ -599,20 +599,21 @@ const Command CMD_CHECK = {
     .summary = "what a configuration describes, what is wrong with it and what is implausible",
     .example = "imtet check configs/quick.ini",
     .details =
-        "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion,\n"
-        "base shear, search box and expected time of the study by the clock (five designs of the box are\n"
-        "simulated). Every fault is named on standard error, not only the first (exit status 65), and so is what is\n"
-        "implausible (a warning; exit status 0): a first period outside 0.03 to 0.3 s per storey, floors outside\n"
-        "1e3 to 1e7 kg, floors from the top down, damping above 20 %, a peak above 3 g, gaps above a metre, a core\n"
-        "whose first mode is beyond the motion's samples. An external worker is started and asked one design, twice\n"
-        "where it is quick: its answer, its time and that of the study are printed.\n"
-        "--json: the same as an object, faults and warnings as arrays.\n"
-        "--ladder: a model with P-delta, ground, yielding storeys, flexible contacts and more is simulated, and\n"
-        "again without each of them: what that changes in J1, drift and J3, what it costs, and whether it is\n"
-        "needed, by more than 2 % or the scatter as built; then the fewest settings that are enough\n"
-        "(docs/ladder.md).\n"
-        "--self: five simulations of the built-in buildings and a search on a textbook problem are compared with\n"
-        "stored answers, within tolerances that hold for every instruction set.",
+
+        "Reads CONFIG, the building and the ground motion. Prints mass, height, periods, core, scaled motion,\n"
+        "base shear, search box and the expected time of the study; for the time it simulates five designs of\n"
+        "the box. Names every fault on standard error, not only the first (exit status 65). What is\n"
+        "implausible is a warning (exit status 0): a first period outside 0.03 to 0.3 s per storey, floors\n"
+        "outside 1e3 to 1e7 kg, floors from the top down, damping above 20 %, a peak above 3 g, gaps above a\n"
+        "metre, a core whose first mode is beyond the motion's samples. An external worker is started and\n"
+        "asked for one design, twice where it is quick; its answer, its time and that of the study are\n"
+        "printed. --json has the same as an object, faults and warnings as arrays.\n"
+        "--ladder simulates a model with P-delta, ground, yielding storeys, flexible contacts and more, then\n"
+        "the same without each effect. It prints what that changes in J1, drift and J3, what the effect\n"
+        "costs, and whether it is needed (more than 2 % or the scatter as built), then the fewest settings\n"
+        "that are enough (docs/ladder.md).\n"
+        "--self compares five simulations of the built-in buildings and a search on a textbook problem with\n"
+        "stored answers. The tolerances hold for every instruction set.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -155,9 +155,8 @@ static void show_table(const Run *run, const Picks *p)
     }
     figures_print(table);
     if (n_unknown > 0)
-        printf("\nnot among the designs that the study named, and without a known error: %zu; `imtet "
-               "evaluate %s --design ID` estimates one\n",
-               n_unknown, run->id_step > 0 ? "RUN" : text_shell(run->folder, quoted));
+        printf("\n%zu designs have no error estimate; `imtet evaluate %s --design ID` makes one\n", n_unknown,
+               run->id_step > 0 ? "RUN" : text_shell(run->folder, quoted));
     if (p->n > 0)
         tell_knees(run, p);
 }
@@ -281,10 +280,12 @@ const Command CMD_CHOOSE = {
     .summary = "designs of a front by limits, weights or a reference point",
     .example = "imtet choose results/quick --max j3_g=5 --weights j1_m=2,mcore_kg=1",
     .details =
-        "Of the front of the folder RUN, among the designs within the limits: the knee (nearest to the ideal point\n"
-        "when every objective is scaled to 0..1 over the front), the best of every objective, the best weighted one,\n"
-        "the one nearest to a reference point. Other commands take a design by its id, RUN:417, and those of the\n"
-        "whole front by name: RUN:knee, RUN:best_j1_m.",
+
+        "Picks designs from the front of the folder RUN, within the limits: the knee (nearest to the ideal\n"
+        "point when every objective is scaled to 0..1 over the front), the best design of each objective, the\n"
+        "best weighted one, and the one nearest to a reference point.\n"
+        "Other commands accept a design by its id, RUN:417, and designs of the whole front by name: RUN:knee,\n"
+        "RUN:best_j1_m.",
     .options = OPTIONS,
     .run_of = choose_of,
     .only_reads = 1,

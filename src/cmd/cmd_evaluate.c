@@ -522,9 +522,9 @@ static const ArgOption OPTIONS[] = {
           "scaled to this spectral acceleration (5 %) at the building's first period, or motion.sa_period_s; "
           "FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
-          "of such a range, probability by intensity of drift_ratio=0.02,j3_g=5 (limits: the run's) being exceeded"),
+          "of such a range: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity (limits: the run's)"),
     VALUE("--hazard", "FILE",
-          "CSV of sa_g (or pga_g) and rate_per_year: how often they then are, and what is lost in a year"),
+          "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
     OPTION_UNIT,
     OPTION_TEXT,
     OPTION_SET,
@@ -549,18 +549,19 @@ const Command CMD_EVALUATE = {
     .summary = "one design on other earthquakes, or on the full model of the building",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =
-        "Simulates one design under each record, by default the run's own, with the same core rigidly connected and "
-        "the\n"
-        "building without a core beside it. Files of a folder that cannot be read are listed with the reason. Peak,\n"
-        "stretch, replicates and all else are the run's unless an option says otherwise; each record stands alone.\n"
-        "--pga 0.05:0.05:0.6 or --sa makes it an incremental dynamic analysis, without replicates; --fragility\n"
-        "fits lognormal curves to it by maximum likelihood, with viscous links beside (docs/risk.md); with --hazard\n"
-        "the expected annual loss of every scene, as a share of a new building, stands below.\n"
-        "--full-model simulates designs on the building as the settings reduce it (building.modes, by default the "
-        "floors\n"
-        "alone) and on all degrees of freedom of its frame, with the contacts at the floors and all modes: 106 of the\n"
-        "built-in tower. Shares by mode are booked by shape. --json: objects reduced and full with the keys of\n"
-        "`simulate --json`, error: reduced / full - 1; one object, or a list of them for several designs or records.",
+
+        "Simulates one design, the knee if --design is not given, under each record (default: the run's own).\n"
+        "The rigidly connected core and the building without a core are simulated for comparison. Files of a\n"
+        "folder that cannot be read are listed with the reason. Peak, stretch, replicates and all else are\n"
+        "the run's unless an option says otherwise; each record stands alone.\n"
+        "--pga 0.05:0.05:0.6 or --sa makes an incremental dynamic analysis, without replicates. --fragility\n"
+        "fits lognormal curves to it by maximum likelihood and adds viscous links (docs/risk.md). --hazard\n"
+        "adds the expected annual loss of every scene as a share of a new building.\n"
+        "--full-model simulates designs twice: on the building as the settings reduce it (building.modes;\n"
+        "default: the floors alone) and on all degrees of freedom of its frame, with contacts at the floors\n"
+        "and all modes (106 for the built-in tower). Shares by mode are assigned by shape. --json then has\n"
+        "the objects reduced and full with the keys of `simulate --json`, and error: reduced / full - 1;\n"
+        "several designs or records make a list.",
     .options = OPTIONS,
     .run = run,
 };

@@ -54,12 +54,13 @@ const Command CMD_EXPORT = {
     .summary = "the front of a run or of several, or all of it, as CSV or JSON",
     .example = "imtet export results/quick --csv front.csv",
     .details =
-        "The front of the folder RUN: one row per design with id, variables [m] and objectives in their natural "
-        "signs.\n"
-        "With --all every evaluated design, failed ones too: id, generation, kind, outcome and reason before the\n"
-        "variables; kind is `unfinished` for those of a generation that is under way or was cut short.\n"
-        "Several runs of one problem are one front, on which a design stands once.\n"
-        "results/README.md explains every column. The run may still be going on.",
+
+        "Writes the front of the folder RUN: one row per design with id, variables [m] and objectives in\n"
+        "natural signs. --all writes every evaluated design, including failed ones: id, generation, kind,\n"
+        "outcome and reason precede the variables, and kind is `unfinished` for designs of a generation that\n"
+        "is not complete.\n"
+        "Several runs of one problem give one front, on which each design appears once. results/README.md\n"
+        "explains every column. The run may still be working.",
     .options = OPTIONS,
     .run = check_options,
     .run_of = export_run,

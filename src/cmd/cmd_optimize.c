@@ -138,7 +138,7 @@ static void print_screening(const StudySummary *sum)
     if (isnan(sum->level_agreement))
         puts("too few were finished to know how well that part ranks designs\n");
     else
-        printf("that part ranks designs as all do by a Kendall's tau of %.2f%s\n\n", sum->level_agreement,
+        printf("rank correlation of screened with full results (Kendall's tau): %.2f%s\n\n", sum->level_agreement,
                sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 
@@ -200,8 +200,8 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     }
     const NamedCost named = named_cost(run);
     if (named.n > 0)
-        printf("simulated with more steps: %zu designs (knee, the best, some spread over the front, and what were such "
-               "before), %zu of them unpredictable; that took %.1f %% of the search's simulations\n",
+        printf("refined with smaller steps: %zu designs (knee, the best, some spread over the front, earlier ones), "
+               "%zu of them unpredictable; that took %.1f %% of the time of the search's simulations\n",
                named.n, named.n_unpredictable, 100.0 * named.share);
     if (summary->polish.n_tried > 0) {
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish); ",
@@ -353,13 +353,14 @@ const Command CMD_OPTIMIZE = {
     .summary = "search for the Pareto front of designs",
     .example = "imtet optimize configs/quick.ini",
     .details =
-        "Searches gaps and core thicknesses for the nondominated designs in search.objectives, and\n"
-        "writes them to DIR/front.csv at its end, however it ends (results/README.md explains every file and\n"
-        "column). A run that is there already is resumed, with the same result as if it had never stopped; its\n"
-        "settings must be the same. `imtet optimize RUN` resumes a run with its own settings. Ctrl-C, SIGTERM and\n"
-        "--max-hours store everything and end with status 75; a second signal, 0.2 s later or more, ends at\n"
-        "once and discards running simulations and at most 0.2 s of finished ones.\n"
-        "With problem.kind = external the simulator is a program of your own (docs/external.md).",
+
+        "Searches gaps and core thicknesses for the nondominated designs in search.objectives and writes them\n"
+        "to DIR/front.csv (results/README.md explains every file and column). If DIR already holds a run with\n"
+        "the same settings, that run is resumed; the result is the same as if it had never stopped. `imtet\n"
+        "optimize RUN` resumes a run with its own settings.\n"
+        "Ctrl-C, SIGTERM and --max-hours store everything and end with status 75. A second signal, at least\n"
+        "0.2 s later, ends at once; it discards running simulations and at most 0.2 s of finished ones.\n"
+        "With problem.kind = external your own program is the simulator (docs/external.md).",
     .options = OPTIONS,
     .run = run,
 };

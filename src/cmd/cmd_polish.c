@@ -24,11 +24,8 @@ static Status take_options(const Args *args, Improve *m, Err *err)
     const size_t needed = polish_evals_min(m->run.settings, c->replicates);
     if ((size_t)evals < needed)
         return misused(
-            err,
-            "--max-evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
-            "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
-            "fewer --replicates",
-            evals, needed);
+            err, "--max-evals must be at least %zu with these --replicates (for a tower 6 times as many), and is %ld",
+            needed, evals);
     c->max_evals = evals;
     return STATUS_OK;
 }
@@ -122,11 +119,12 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN),
-    VALUE("--improve", "NAME[=W],...", "objectives to improve, with weights in ranges of the front, or all; the first"),
+    VALUE("--improve", "NAME[=W],...",
+          "objectives to improve, weighted in ranges of the front, or all; default: the first objective"),
     VALUE("--keep", "NAME[=S],...",
-          "these may lose no more than their deviation, or the share S of their value; all if not given"),
-    VALUE("--max-evals", "N", "simulate at most so often; 300 if not given"),
-    VALUE("--replicates", "N", "simulations of a noisy design (the tower's), whose mean counts; 4"),
+          "these may lose at most their deviation, or the share S of their value; default: all"),
+    VALUE("--max-evals", "N", "simulations at most; default: 300"),
+    VALUE("--replicates", "N", "simulations of a noisy design, as the tower's are, whose mean counts; default: 4"),
     VALUE("--csv", "FILE",
           "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard "
           "output"),
@@ -142,10 +140,10 @@ const Command CMD_POLISH = {
     .summary = "improve objectives of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",
     .details =
-        "Improves objectives of a design of RUN while the others get no worse than their spread, by NLopt on the\n"
-        "simulator. At the end both designs are simulated again; a gain beyond the standard deviation goes into the "
-        "run\n"
-        "as a design of the kind polished.",
+
+        "Improves objectives of a design of RUN (default: the knee) while the others get no worse than their\n"
+        "spread, by NLopt on the simulator. At the end both designs are simulated again. If the gain exceeds\n"
+        "the standard deviation, the new design is stored in the run; its kind is polished.",
     .options = OPTIONS,
     .run = run,
 };

@@ -134,22 +134,18 @@ const Command CMD_REPORT = {
     .summary = "one HTML page to look at a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",
     .details =
-        "Writes one file that needs no network. First what was studied and found, with warnings; then the "
-        "front: parallel\n"
-        "coordinates whose axes are moved, turned over and hidden, any two columns, gaps as a heat map, all "
-        "pairs with\n"
-        "their correlations, typical designs, which variables matter (Sobol indices), designs chosen by ranges "
-        "as a table\n"
-        "and as CSV; the growth of the hypervolume; of one design, simulated again, its gaps, peaks, forces, "
-        "energies,\n"
-        "the displacement of a floor, and other earthquakes. --pga, --unit and --channel are for "
-        "those; else\n"
-        "they are scaled as the run's own. `imtet serve` shows the same page live.\n\n"
-        "--dossier: one document of some ten pages on the design: building, core, devices, drawings; simulated at "
-        "accuracy\n"
-        "fine, by CVODE and on the full model; forces with limits, ladder, every record, intensities, as built,\n"
-        "sensitivities, what is not covered, provenance. CVODE takes minutes under a long record. A PDF takes "
-        "Chromium.",
+
+        "Writes one HTML file that needs no network. It begins with what was studied and found, and with\n"
+        "warnings. The front follows: parallel coordinates whose axes can be moved, turned over and hidden;\n"
+        "any two columns; gaps as a heat map; all pairs with their correlations; typical designs; which\n"
+        "variables matter (Sobol indices); a table and a CSV of designs within chosen ranges; the growth of\n"
+        "the hypervolume. One design is simulated again: its gaps, peaks, forces, energies, the displacement\n"
+        "of a floor, and other earthquakes. --pga, --unit and --channel apply to those; by default they are\n"
+        "scaled as the run's own. `imtet serve` shows the same page live.\n"
+        "--dossier writes one document of some ten pages on the design: building, core, devices and drawings;\n"
+        "simulation at accuracy fine, by CVODE and on the full model; forces with limits, the ladder, every\n"
+        "record, intensities, the design as built, sensitivities, what is not covered, and provenance. CVODE\n"
+        "takes minutes under a long record. A PDF needs Chromium.",
     .options = OPTIONS,
     .is_alone = 1,
     .run_of = report,

@@ -46,10 +46,12 @@ const Command CMD_SERVE = {
     .summary = "a run as a page in the browser, live: progress, any design, what-if",
     .example = "imtet serve results/quick",
     .details =
-        "Serves the page of `imtet report` on this machine alone (127.0.0.1), at an address that nobody guesses, and\n"
-        "with it the progress of a run under way, any design simulated at a click, and sliders that change gaps,\n"
-        "thickness, motion and restitution of a design and show its response at once. RUN may be a folder of runs:\n"
-        "they are listed, and two are compared. Nothing but notes on designs is written. Ctrl-C ends it.",
+
+        "Serves the page of `imtet report` on this machine alone (127.0.0.1), at an address that cannot be\n"
+        "guessed. The page also shows the progress of a working run, simulates any design at a click, and has\n"
+        "sliders that change gaps, thickness, motion and restitution of a design and show its response at\n"
+        "once. RUN may be a folder of runs: the page then lists them and compares two. Only notes on designs\n"
+        "are written. Ctrl-C ends it.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -90,9 +90,8 @@ const Command CMD_NEW = {
     .operand = "FOLDER",
     .summary = "begin a study: a folder with the fifteen settings that a first one touches",
     .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
-    .details = "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files by their path from "
-               "FOLDER. Its run\n"
-               "goes to results/FOLDER.",
+    .details = "Writes FOLDER/study.ini: fifteen settings, each after its meaning, unit and range. Paths in it begin\n"
+               "at FOLDER. Its run goes to results/FOLDER.",
     .options = NEW_OPTIONS,
     .run = begin,
     .only_reads = 1,

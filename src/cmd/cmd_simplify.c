@@ -142,9 +142,8 @@ static const ArgOption OPTIONS[] = {
     VALUE("--zones", "N", "floors of each of so many zones become alike; each stays as it is if not given"),
     VALUE("--gap-step", "MM", "gaps become multiples of it; they stay if not given"),
     VALUE("--plates", "MM,MM,...", "walls become one of these; they stay if not given"),
-    VALUE(
-        "--keep", "NAME[=S],...",
-        "these may lose the share S of their value, 2% where none is given; if not given the first 2%, all others 10%"),
+    VALUE("--keep", "NAME[=S],...",
+          "these may lose the share S of their value (2% without =S); default: the first objective 2%, others 10%"),
     OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,
@@ -157,10 +156,11 @@ const Command CMD_SIMPLIFY = {
     .summary = "a design that can be built: fewer stops, gaps and plates as sold",
     .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
     .details =
-        "Takes out stops that never close, makes the floors of a zone alike, puts gaps and walls on steps, moves\n"
-        "them on these, and takes out devices that earn less than --keep, each simulated under all records of RUN. "
-        "Prints the path; the end goes into the\n"
-        "run as a design of the kind polished.",
+
+        "Makes a design (default: the knee) easier to build, step by step: it removes stops that never close,\n"
+        "makes the floors of a zone alike, rounds gaps and walls to steps, moves them on these steps, and\n"
+        "removes devices that gain less than --keep. Each step is simulated under all records of RUN. Prints\n"
+        "the path and stores its end in the run; its kind is polished.",
     .options = OPTIONS,
     .run = run,
 };

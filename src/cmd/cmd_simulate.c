@@ -413,19 +413,21 @@ const Command CMD_SIMULATE = {
     .summary = "the response of given designs to one ground motion",
     .example = "imtet simulate configs/quick.ini --design none",
     .details =
-        "Simulates every row of a design file: CSV with the header gap_01_m..gap_NN_m,t_base_m,t_top_m, one gap\n"
-        "per floor from the bottom, then the core's wall in the first and in the last storey [m]. A front.csv will "
-        "do,\n"
-        "and so will a design of a run: --design results/quick:knee, results/quick:417, results/quick:best_j1_m.\n"
-        "Of a problem that is no tower its simulator is asked, an external worker say, as a study asks it.\n"
-        "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
-        "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
-        "--json gives one object for one design and a list of them for several. Behind +- stands the error of the\n"
-        "integration that 95 % of all figures keep, by a second run with twice the steps (docs/promise.md); digits\n"
-        "that it leaves open are not shown.\n"
-        "--horizon: impacts magnify differences: two runs that differ in the last digit part ways after some hundreds\n"
-        "of them. Before the predictability horizon results can be compared digit by digit, after it only by their\n"
-        "mean and standard deviation, there of 16 runs whose gaps are off by 1 um, standard deviation.",
+
+        "Simulates every row of a design file: a CSV with the header gap_01_m..gap_NN_m,t_base_m,t_top_m\n"
+        "holds one gap per floor from the bottom, then the core's wall in the first and in the last storey\n"
+        "[m]. A front.csv or a design of a run works too: --design results/quick:knee, results/quick:417,\n"
+        "results/quick:best_j1_m.\n"
+        "For other problems the design goes to the simulator, such as an external worker, as in a study.\n"
+        "With sim.replicates above 1, or with motion.records, the first row is the design as designed under\n"
+        "motion.record; the next rows are the aggregate that the study optimizes (sim.robust) and its\n"
+        "standard deviation.\n"
+        "--json gives one object for one design and a list for several. The number after +- is the error of\n"
+        "the integration, which 95 % of all figures keep; a second run with twice the steps estimates it\n"
+        "(docs/promise.md). Digits beyond it are not shown.\n"
+        "--horizon: impacts amplify differences, so two runs that differ in the last digit diverge after some\n"
+        "hundreds of impacts. Before the predictability horizon results can be compared digit by digit. After\n"
+        "it only mean and standard deviation can be compared; they come from 16 runs, gaps perturbed by 1 um.",
     .options = OPTIONS,
     .run = run,
 };

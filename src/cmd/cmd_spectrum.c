@@ -491,13 +491,13 @@ const Command CMD_SPECTRUM = {
     .summary = "response spectrum, peak, duration and Arias intensity of ground motions",
     .example = "imtet spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1",
     .details =
-        "MOTION is a file (the formats of docs/motions.md) or\n"
-        "builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like, or a suite: builtin:suite, a folder, a\n"
-        "file *list.txt. It is taken as recorded unless an option\n"
-        "scales it, stretches it, or processes it (--set motion.baseline=linear, motion.highpass_hz=0.1): then "
-        "the\n"
-        "recorded figures stand beside. Several motions: their spectra, the mean, and the code spectrum of\n"
-        "--set 'motion.target=eurocode8 ag=0.3 soil=C'.",
+
+        "MOTION is a file (docs/motions.md has the formats), builtin:kobe-like | builtin:elcentro-like |\n"
+        "builtin:sylmar-like, or a suite: builtin:suite, a folder, or a file *list.txt. The motion is taken\n"
+        "as recorded unless an option scales, stretches or processes it (--set motion.baseline=linear,\n"
+        "motion.highpass_hz=0.1); the recorded figures are then shown for comparison. For several motions it\n"
+        "prints their spectra, the mean, and the code spectrum of --set 'motion.target=eurocode8 ag=0.3\n"
+        "soil=C'.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

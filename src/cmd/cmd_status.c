@@ -242,12 +242,11 @@ const Command CMD_STATUS = {
     .summary = "progress of a run, also while it is worked on; the runs of a folder",
     .example = "imtet status results/quick",
     .details =
-        "Progress, pace and time left, the hypervolume generation by generation, failed simulations by reason. The\n"
-        "run may be going on in another terminal: it is only read. Of a folder with runs in it (`results` where none "
-        "is\n"
-        "given) one line for each: running, finished, stopped (it can be resumed) or interrupted (it was killed, and "
-        "can be\n"
-        "resumed too).",
+
+        "Shows progress, pace, time left, the hypervolume by generation, and failed simulations by reason.\n"
+        "The run is only read, so it may be working in another terminal.\n"
+        "For a folder of runs (default: `results`) it prints one line per run: running, finished, stopped\n"
+        "(can be resumed) or interrupted (was killed, can be resumed too).",
     .options = OPTIONS,
     .run = run,
     .only_reads = 1,

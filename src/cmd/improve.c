@@ -48,7 +48,7 @@ Status improve_store(Improve *m, const Evaluation *design, Err *err)
     if (run->n_sessions > 0 && run->session[run->n_sessions - 1].is_final) /* else its search goes on */
         TRY(name_again(m, err));
     TRY(store_write_front(m->store, &now, err));
-    m->knee = now.n_front > 0 ? now.table.row[run_knee(&now)].id : 0;
+    m->knee = now.n_front > 0 ? now.table.row[run_knee(&now)].id : -1;
     run_free(&now);
     return STATUS_OK;
 }
@@ -79,7 +79,8 @@ void improve_say(const Improve *m)
 {
     const long before = m->run.n_front > 0 ? m->run.table.row[run_knee(&m->run)].id : 0;
     if (m->id)
-        printf("%s the run as design %ld.\n", m->knee ? "stored in" : "nothing new: it is in", m->id);
-    if (m->knee && m->knee != before)
+        printf(m->knee ? "stored in the run as design %ld.\n" : "it is design %ld of the run: nothing new to store.\n",
+               m->id);
+    if (m->knee > 0 && m->knee != before)
         printf("%s:knee was design %ld and is now design %ld.\n", m->run.folder, before, m->knee);
 }

@@ -11,7 +11,7 @@ typedef struct {
     RunStore *store;
     Run run;       /* as it was; its motions where they are now (OPTION_MOVED) */
     size_t row;    /* of the design */
-    long id, knee; /* of the design at the end, of the run's knee beside it where that was stored; 0: none */
+    long id, knee; /* of the design at the end; of the knee where that was stored, -1 without a front; 0: none */
     ImproveConfig config;
     Improved result;
 } Improve;
