@@ -29,14 +29,24 @@ _imtet_offers() # PROGRAM WORD...
             / = / && !/^;/ { print before section "." $1 "=\t" help }'
     elif [[ $option == *"--design FILE"* ]]; then
         words="none FILE"
-    elif [[ $option == *"--design ID"* ]]; then
+    elif [[ $option == *"--design ID"* ]]; then # of the run on the line names and ids of its front
         words=knee
+        for word in "${@:3}"; do
+            [[ -e $word/run.sqlite ]] || continue
+            words+=" $("$program" choose "$word" --json 2>/dev/null | sed -n 's/.*"name": "best[ _]\(.*\)",/best_\1/p')"
+            words+=" $("$program" export "$word" --csv - 2>/dev/null | sed '1d; s/,.*//')"
+        done
     elif [[ $option ]]; then
         [[ $option =~ ^\ \ [-a-z]+\ (FILE|DIR|FOLDER)\  ]] && words=FILE
     elif [[ $cur == -* ]]; then
         "$program" help "$command" 2>/dev/null | sed -n 's/^  \(--[a-z-]\+\)\( [^ ]*\)\? \+/\1\t/p'
-    else
+    else # a run, beside any file
         words=FILE
+        if "$program" help "$command" 2>/dev/null | grep -q '^usage: .*RUN'; then
+            for word in "$cur"*/ "$cur"*/*/; do
+                [[ -e ${word}run.sqlite && $word != *[[:space:]]* ]] && words+=" ${word%/}"
+            done
+        fi
     fi
     for word in $words; do echo "$before$word"; done
 }
