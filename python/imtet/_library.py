@@ -7,12 +7,14 @@ import os
 import re
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Path = Union[str, "os.PathLike[str]"]
+Catch = Union[type[BaseException], tuple[type[BaseException], ...]]
 
 
 class ImtetError(Exception):

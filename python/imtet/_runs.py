@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._library import Array, ImtetError
+from ._library import Array, ImtetError, Path
 from ._scene import Copied, Result, Scene
 from ._tables import Tabular
 
@@ -72,7 +72,7 @@ class Run(Copied, Tabular):
     variables, objectives : list of str
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
         name = os.path.join(path, "run.sqlite")
         if not os.path.exists(name):
@@ -231,15 +231,15 @@ class Run(Copied, Tabular):
         d = self.designs
         columns = {name: d[name] for name in d.dtype.names or () if name != "id"}
         signs = [self._sense(k, name) for k, name in enumerate(self.objectives)]
-        return columns, d.id, self.objectives, signs, np.isin(d.id, self.front.id)
+        return columns, d.id, self.objectives, signs, np.isin(d.id, self.front.id), (d.outcome == "ok") & ~(d.violation > 0)
 
 
-def open_run(path: str | os.PathLike[str]) -> Run:
+def open_run(path: Path) -> Run:
     """The `Run` of a folder that `imtet optimize` made."""
     return Run(path)
 
 
-def merge_fronts(*paths: str | os.PathLike[str]) -> tuple[Records, npt.NDArray[np.int64]]:
+def merge_fronts(*paths: Path) -> tuple[Records, npt.NDArray[np.int64]]:
     """The front of several runs of one problem; a design that several runs have stands there once.
 
     Returns

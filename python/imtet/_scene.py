@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as library
-from ._library import Array, assignments, call, lib, pointer, word_list
+from ._library import Array, Path, assignments, call, lib, pointer, word_list
 
 
 class Copied:
@@ -116,7 +116,7 @@ class Scene(library.Handle):
 
     _instead = "open another imtet.Scene of the same settings; threads may share one"
 
-    def __init__(self, path: str | os.PathLike[str] | None = None, settings: Iterable[str] = (), **changes: Any) -> None:
+    def __init__(self, path: Path | None = None, settings: Iterable[str] = (), **changes: Any) -> None:
         self._scene = library.handle()
         changes = {k: os.path.abspath(v) if k in ("record", "motion.record") and os.path.exists(v) else v
                    for k, v in changes.items()}
@@ -214,7 +214,7 @@ class Scene(library.Handle):
         return [r[name] for name in self.objectives]
 
 
-def read_motion(path: str | os.PathLike[str], **settings: object) -> tuple[float, Array, dict[str, str]]:
+def read_motion(path: Path, **settings: object) -> tuple[float, Array, dict[str, str]]:
     """A ground motion in any format that the program reads.
 
     Parameters

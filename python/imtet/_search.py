@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as library
-from ._library import Array, ImtetError, State, call, pointer
+from ._library import Array, Catch, ImtetError, Path, State, call, pointer
 from ._tables import Tabular, frame
 
 _CLOSE = 1e-6  # of the box: rows that differ by less are one design
@@ -147,7 +147,7 @@ class Search(library.Handle, Tabular):
         self._changed = threading.Condition()
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Search:
+    def load(cls, path: Path) -> Search:
         """A search from the file that `save` wrote, as it was then.
 
         Designs that were asked for and not told are asked for again. On a processor whose linear algebra differs in
@@ -159,7 +159,7 @@ class Search(library.Handle, Tabular):
         self._open()
         return self
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: Path) -> None:
         """Write everything into a file.
 
         The file is replaced when the new one is whole on the disk, so that a kill loses nothing; the one before is kept
@@ -358,7 +358,7 @@ class Search(library.Handle, Tabular):
                 and (self.objectives == 1 or np.ndim(y[0]) == 1))
 
     def evaluate(self, f: Callable[[Array], Any], X: npt.ArrayLike, threads: int = 1,
-                 catch: type[BaseException] | tuple[type[BaseException], ...] = Exception) -> list[Any]:
+                 catch: Catch = Exception) -> list[Any]:
         """[f(x) for x in X], for `tell`.
 
         A design fails where f raises what is to be caught, returns None, or numbers that are not finite. Where anything
@@ -417,7 +417,7 @@ class Search(library.Handle, Tabular):
                 pool.shutdown(cancel_futures=True)
 
     def run(self, f: Callable[[Array], Any], batch: int = 8, threads: int = 1,
-            catch: type[BaseException] | tuple[type[BaseException], ...] = Exception,
+            catch: Catch = Exception,
             callback: Callable[[Search], object] | None = None) -> tuple[Array, Array]:
         """Ask, evaluate and tell until the search is done.
 
@@ -478,9 +478,10 @@ class Search(library.Handle, Tabular):
     def _table(self) -> Any:
         ids, X, F, G = self._designs(1)
         on_front = np.isin(ids, self._designs(0)[0])
+        is_fit = np.isfinite(F).all(axis=1) & (G <= 0).all(axis=1)
         columns = {name: column for letter, array in (("x", X), ("f", F), ("g", G))
                    for name, column in zip(self._names(letter, array.shape[1]), array.T)}
-        return columns, ids, self._names("f", self.objectives), self._signs, on_front
+        return columns, ids, self._names("f", self.objectives), self._signs, on_front, is_fit
 
 
 def _reason(fault: BaseException | None) -> str:

@@ -36,9 +36,10 @@ def growth(F: Array, front: npt.NDArray[np.bool_]) -> Array:
 
 
 class Tabular:
-    """Needs _table: columns by name, ids, names of the objectives, signs (-1: larger is better), who is on the front."""
+    """Needs _table: columns by name, ids, names of the objectives, signs (-1: larger is better), which designs are on the
+    front, which succeeded and keep their constraints."""
 
-    def _table(self) -> tuple[dict[str, Array], npt.NDArray[np.int64], list[str], list[float], npt.NDArray[np.bool_]]:
+    def _table(self) -> Any:
         raise NotImplementedError
 
     def to_frame(self, front: bool = False) -> Any:
@@ -54,7 +55,7 @@ class Tabular:
         pandas.DataFrame
             One row per design, indexed by id: variables, objectives, and what else was measured.
         """
-        columns, ids, _, _, on_front = self._table()
+        columns, ids, _, _, on_front, _ = self._table()
         chosen = on_front if front else np.ones(len(ids), dtype=bool)
         return frame({name: values[chosen] for name, values in columns.items()}, ids[chosen])
 
@@ -73,7 +74,7 @@ class Tabular:
             `savefig` writes it; a notebook shows it.
         """
         plt = module("matplotlib.pyplot", "python3-matplotlib", "plot")
-        columns, ids, names, signs, front = self._table()
+        columns, ids, names, signs, front, is_fit = self._table()
         F = np.column_stack([columns[name] for name in names])
         n = len(names)
         if kind not in ("pairs", "parallel", "history"):
@@ -92,7 +93,7 @@ class Tabular:
             return figure
         figure, axis = plt.subplots(figsize=(8, 4))
         if kind == "history":
-            axis.step(np.arange(1, len(ids) + 1), growth(np.where(np.isfinite(F), F * signs, np.inf), front), where="post")
+            axis.step(np.arange(1, len(ids) + 1), growth(np.where(is_fit[:, None], F * signs, np.inf), front), where="post")
             axis.set(xlabel="designs", ylabel="hypervolume of the front's box", ylim=(0, None))
             return figure
         low, high = F[front].min(axis=0), F[front].max(axis=0)

@@ -153,7 +153,7 @@ const Command CMD_SIMPLIFY = {
     .name = "simplify",
     .group = GROUP_DECIDE,
     .operand = "RUN",
-    .summary = "a design that can be built: fewer stops, gaps and plates as sold",
+    .summary = "a design that can be built: fewer stops, standard gaps, stock plates",
     .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
     .details =
 

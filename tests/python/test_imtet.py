@@ -224,6 +224,7 @@ class Searching(unittest.TestCase):
         np.testing.assert_array_equal(whole.f1, whole.x1)
         np.testing.assert_array_equal(front[["f1", "f2"]], s.front()[0])
         self.assertTrue((front.g1 <= 0).all())
+        np.testing.assert_array_equal(s._table()[-1], whole.g1 <= 0)
 
     def test_pictures_are_drawn_and_the_history_grows_to_the_area_that_is_dominated(self):
         from imtet._tables import growth
