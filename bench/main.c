@@ -234,7 +234,7 @@ static Status run_laws(const Args *args, Err *err)
 
 static const ArgOption LAWS_OPTIONS[] = {
     {"--csv", "FILE", NULL, 0, "the rebound curves"},
-    {"--tower", "FILE", NULL, 0, "what law and smallest approach speed change in the tower, as CSV"},
+    {"--tower", "FILE", NULL, 0, "what the law changes in the tower, as CSV"},
     {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"},
     OPTION_END,
 };
@@ -246,8 +246,7 @@ static Status run_factors(const Args *args, Err *err)
     Settings s;
     FactorPlan plan = {.settings = &s,
                        .problems = args_value(args, "--problem"),
-                       .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside"),
-                       .keep = args_value(args, "--keep")};
+                       .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside")};
     const long budgets[] = {300, 500, 1000};
     settings_defaults(&s);
     TRY(args_apply(args, &s, NULL, NULL, err));
@@ -268,7 +267,6 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
-    {"--keep", "FOLDER", NULL, 0, "of all evaluations: what is there is not run again"},
     OPTION_SET,
     OPTION_END,
 };

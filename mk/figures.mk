@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise pages paper chart ablation pictures ladder study web setup-browser report-bench serve-bench
+.PHONY: setup-figures bench promise pages paper chart pictures ladder study web setup-browser report-bench serve-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -26,11 +26,6 @@ paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the numbers and pictu
 	@scripts/paper --program ./$(PROGRAM) --bench $(BENCH) $(ARGS)
 	@scripts/tables paper
 
-ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
-	@rm -f build/constants.md
-	@scripts/ablation --out build/constants.md $(ARGS)
-	@if [ -e build/constants.md ]; then scripts/tables --from build/constants.md constants; fi
-
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@mkdir -p $(BUILD)/pictures
 	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
@@ -50,7 +45,7 @@ ladder: $(PROGRAM) ## docs/ladder.md: which effects five scenes need
 
 study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
 	@scripts/study --program ./$(PROGRAM) $(ARGS)
-	@scripts/tables building study trust
+	@scripts/tables study
 
 pages: promise study paper ## every page that names designs, of one study and one program
 

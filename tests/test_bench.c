@@ -283,29 +283,6 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
     }
 }
 
-TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
-{
-    Course c, back = {0};
-    int found;
-    char path[] = "/tmp/imtet-course-XXXXXX";
-    close(mkstemp(path));
-    CHECK_OK(course_create(&c, 3, 2, &err), &err);
-    for (int i = 0; i < 3; i++)
-        course_add(&c, (double[]){i, -i}, i != 1);
-    CHECK_OK(course_save(&c, path, &err), &err);
-    CHECK_OK(course_load(&back, path, 3, 2, &found, &err), &err);
-    assert_true(found);
-    assert_memory_equal(back.F, c.F, 6 * sizeof *c.F);
-    assert_memory_equal(back.counts, "\1\0\1", 3);
-    course_free(&back);
-    CHECK_OK(course_load(&back, path, 4, 2, &found, &err), &err);
-    assert_false(found);
-    CHECK_OK(course_load(&back, "/nowhere/x.course", 3, 2, &found, &err), &err);
-    assert_false(found);
-    unlink(path);
-    course_free(&c);
-}
-
 /* Of dtlz2: simulations of the first sample, after the last iteration, with the last population, of the search. */
 static void loop_simulations(double error_max, size_t found[4], double volume[2])
 {

@@ -79,23 +79,29 @@ static void specimen_path(const char *file, char path[128])
     snprintf(path, 128, "tests/motion/%s", file);
 }
 
+/* Format, samples, step and the largest sample; the channel's name where it is given. */
+static void check_specimen(const char *file, const char *format, const MotionHow *how, int component, const char *name,
+                           double tolerance)
+{
+    char path[128];
+    Motion m;
+    specimen_path(file, path);
+    CHECK_OK(motion_read(&m, path, how, &err), &err);
+    const double want = 0.01 * PEAK_GAL[component];
+    if (strcmp(m.format, format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
+        !(fabs(m.accel[PEAK_AT] - want) <= tolerance * fabs(want)) || motion_peak(&m) != fabs(m.accel[PEAK_AT]))
+        fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", path, m.format, m.n, m.dt_s,
+                 m.accel[PEAK_AT], want);
+    if (name)
+        assert_string_equal(m.channel, name);
+    motion_free(&m);
+}
+
 TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
 {
-    for (int i = 0; i < N_SPECIMENS; i++) {
-        char path[128];
-        Motion m;
-        specimen_path(SPECIMENS[i].file, path);
-        CHECK_OK(motion_read(&m, path, &(MotionHow){.channel = SPECIMENS[i].channel}, &err), &err);
-        const double want = 0.01 * PEAK_GAL[SPECIMENS[i].component];
-        if (strcmp(m.format, SPECIMENS[i].format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
-            !(fabs(m.accel[PEAK_AT] - want) <= SPECIMENS[i].tolerance * fabs(want)) ||
-            motion_peak(&m) != fabs(m.accel[PEAK_AT]))
-            fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", path, m.format, m.n, m.dt_s,
-                     m.accel[PEAK_AT], want);
-        if (SPECIMENS[i].name)
-            assert_string_equal(m.channel, SPECIMENS[i].name);
-        motion_free(&m);
-    }
+    for (int i = 0; i < N_SPECIMENS; i++)
+        check_specimen(SPECIMENS[i].file, SPECIMENS[i].format, &(MotionHow){.channel = SPECIMENS[i].channel},
+                       SPECIMENS[i].component, SPECIMENS[i].name, SPECIMENS[i].tolerance);
 }
 
 /* What is no text, or text whose unit is asked for. */
@@ -127,19 +133,9 @@ enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
 
 TEST(binary_files_and_archives_are_read_to_their_samples)
 {
-    for (int i = 0; i < N_BINARY; i++) {
-        char path[128];
-        Motion m;
-        specimen_path(BINARY[i].file, path);
-        CHECK_OK(motion_read(&m, path, &BINARY[i].how, &err), &err);
-        const double want = 0.01 * PEAK_GAL[BINARY[i].component];
-        if (strcmp(m.format, BINARY[i].format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
-            !(fabs(m.accel[PEAK_AT] - want) <= BINARY[i].tolerance * fabs(want)))
-            fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", path, m.format, m.n, m.dt_s,
-                     m.accel[PEAK_AT], want);
-        assert_string_equal(m.channel, BINARY[i].name);
-        motion_free(&m);
-    }
+    for (int i = 0; i < N_BINARY; i++)
+        check_specimen(BINARY[i].file, BINARY[i].format, &BINARY[i].how, BINARY[i].component, BINARY[i].name,
+                       BINARY[i].tolerance);
 }
 
 /* ---- changed specimens ---------------------------------------------------------------------------------------- */

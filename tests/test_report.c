@@ -522,12 +522,10 @@ TEST(names_cannot_break_out_of_the_page)
     json_decref(run);
 }
 
-TEST(designs_records_and_floors_that_are_not_there_are_refused)
+TEST(designs_and_records_that_are_not_there_are_refused)
 {
     expect(65, "", "report @/tower --design 999999");
     expect(65, "", "report @/tower --design kne");
-    expect(65, "", "report @/tower --floor 7");
-    expect(2, "", "report @/tower --floor 0");
     expect(66, "", "report @/tower --record no-such-file.at2");
     expect(65, "", "report @/tower --set motion.record=tests/motion/one.esm");
     expect(2, "", "report @/tower --set sim.accuracy=fine");

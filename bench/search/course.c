@@ -1,11 +1,8 @@
 #include "bench/search/course.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-#include "store/output.h"
 
 static double processor_s(void)
 {
@@ -41,37 +38,4 @@ void course_add(Course *c, const double f[], int counts)
     memcpy(c->F + c->n * c->n_obj, f, c->n_obj * sizeof *f);
     c->cpu_s[c->n] = processor_s() - c->start_s;
     c->counts[c->n++] = counts != 0;
-}
-
-/* -- file ---------------------------------------------------------------------------------------------------------- */
-
-Status course_save(const Course *c, const char *path, Err *err)
-{
-    Output o;
-    TRY(output_open(&o, path, err));
-    const size_t head[] = {c->n, c->n_obj};
-    fwrite(head, sizeof head, 1, o.stream);
-    fwrite(c->F, sizeof *c->F, c->n * c->n_obj, o.stream);
-    fwrite(c->cpu_s, sizeof *c->cpu_s, c->n, o.stream);
-    fwrite(c->counts, 1, c->n, o.stream);
-    return output_close(&o, err);
-}
-
-Status course_load(Course *c, const char *path, size_t n, size_t n_obj, int *found, Err *err)
-{
-    size_t head[2] = {0};
-    *found = 0;
-    FILE *in = fopen(path, "rb");
-    if (!in)
-        return STATUS_OK;
-    Status status = course_create(c, n, n_obj, err);
-    if (status == STATUS_OK)
-        *found = fread(head, sizeof head, 1, in) == 1 && head[0] == n && head[1] == n_obj &&
-                 fread(c->F, sizeof *c->F, n * n_obj, in) == n * n_obj &&
-                 fread(c->cpu_s, sizeof *c->cpu_s, n, in) == n && fread(c->counts, 1, n, in) == n;
-    c->n = *found ? n : 0;
-    fclose(in);
-    if (!*found)
-        course_free(c);
-    return status;
 }

@@ -1,8 +1,7 @@
-/* bench/search/course.h -- all evaluations of one search in their order, kept in a file so that none is made twice.
+/* bench/search/course.h -- all evaluations of one search in their order.
  *
- * Life cycle  course_create -> course_add ... -> course_save, course_free; or course_load
+ * Life cycle  course_create -> course_add ... -> course_free
  * Shapes      row-major F (n, n_obj), minimised
- * File        of the machine that wrote it (order of bytes); replaced whole
  * Threads     one Course per thread */
 #ifndef IMTET_BENCH_SEARCH_COURSE_H
 #define IMTET_BENCH_SEARCH_COURSE_H
@@ -20,9 +19,5 @@ typedef struct {
 Status course_create(Course *c, size_t n_max, size_t n_obj, Err *err);
 void course_free(Course *c); /* a Course of zeros is fine */
 void course_add(Course *c, const double f[], int counts);
-
-Status course_save(const Course *c, const char *path, Err *err);
-/* *found is 0 where there is no such file, or not one of so many evaluations. */
-Status course_load(Course *c, const char *path, size_t n, size_t n_obj, int *found, Err *err);
 
 #endif

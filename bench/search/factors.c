@@ -1,10 +1,8 @@
 #include "bench/search/factors.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "base/stat.h"
 #include "bench/search/families.h"
@@ -65,32 +63,14 @@ Status search_course(const Settings *settings, const Problem *p, SurrogateUse su
     return search_run(p, &config, note, c, &reason, err);
 }
 
-static Status make_course(const FactorPlan *plan, const Problem *p, Which which, long seed, size_t n, Course *c,
-                          Err *err)
-{
-    Settings s = *plan->settings;
-    s.search.seed = seed;
-    TRY(course_create(c, n, p->n_obj, err));
-    return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
-}
-
-/* From the folder where it is there. The plain search has as many evaluations as the largest factor takes. */
-static Status get_course(const FactorPlan *plan, const Problem *p, const Family *a, Which which, long seed, Course *c,
-                         Err *err)
+/* The plain search has as many evaluations as the largest factor takes. */
+static Status make_course(const FactorPlan *plan, const Problem *p, Which which, long seed, Course *c, Err *err)
 {
     const double most = which == PLAIN ? FACTOR_MAX : 1.0;
-    const size_t n = (size_t)(most * (double)plan->budgets[n_budgets(plan) - 1]);
-    char path[PATH_MAX];
-    int found = 0;
-    if (!plan->keep)
-        return make_course(plan, p, which, seed, n, c, err);
-    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, which == OURS ? "imtet" : "plain", n,
-             seed);
-    TRY(course_load(c, path, n, p->n_obj, &found, err));
-    if (found)
-        return STATUS_OK;
-    TRY(make_course(plan, p, which, seed, n, c, err));
-    return course_save(c, path, err);
+    Settings s = *plan->settings;
+    s.search.seed = seed;
+    TRY(course_create(c, (size_t)(most * (double)plan->budgets[n_budgets(plan) - 1]), p->n_obj, err));
+    return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
 }
 
 /* -- scores -------------------------------------------------------------------------------------------------------- */
@@ -224,14 +204,13 @@ static void take_seed(const Tables *t, const Curve curve[], size_t seed, Sample 
         }
 }
 
-static Status run_seed(Tables *t, const Problem *p, const Family *a, const Course *reference, size_t seed,
-                       Sample factor, Err *err)
+static Status run_seed(Tables *t, const Problem *p, const Course *reference, size_t seed, Sample factor, Err *err)
 {
     Curve curve[SEARCHES] = {0};
     double lower[FAMILY_OBJ_MAX], upper[FAMILY_OBJ_MAX];
     Status status = STATUS_OK;
     for (int v = 0; status == STATUS_OK && v < SEARCHES; v++)
-        status = get_course(t->plan, p, a, (Which)v, t->plan->first_seed + (long)seed, &curve[v].course, err);
+        status = make_course(t->plan, p, (Which)v, t->plan->first_seed + (long)seed, &curve[v].course, err);
     if (status == STATUS_OK)
         find_box(&curve[OURS].course, &curve[PLAIN].course, lower, upper);
     for (int v = 0; status == STATUS_OK && v < SEARCHES; v++)
@@ -260,7 +239,6 @@ static double median(size_t n, double x[])
 
 static Status run_problem(Tables *t, size_t which, Err *err)
 {
-    const Family *a = family(which);
     const size_t n = (size_t)t->plan->n_seeds < SEEDS_MAX ? (size_t)t->plan->n_seeds : SEEDS_MAX;
     Sample factor;
     Course reference = {0};
@@ -269,12 +247,12 @@ static Status run_problem(Tables *t, size_t which, Err *err)
     if (status == STATUS_OK)
         status = reference_make(&p, &reference, err);
     for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        status = run_seed(t, &p, a, &reference, i, factor, err);
+        status = run_seed(t, &p, &reference, i, factor, err);
     for (size_t b = 0; status == STATUS_OK && b < n_budgets(t->plan); b++)
         for (int score = 0; score < SCORES; score++)
             t->factor[t->n_problems][b][score] = median(n, factor[b][score]);
     if (status == STATUS_OK)
-        t->name[t->n_problems++] = a->name;
+        t->name[t->n_problems++] = family(which)->name;
     course_free(&reference);
     problem_close(&p);
     return status;
@@ -349,8 +327,6 @@ static int is_wanted(const FactorPlan *plan, const Family *a)
 Status factors_run(const FactorPlan *plan, FILE *out, Err *err)
 {
     Tables t = {.plan = plan, .distinct = 1.0};
-    if (plan->keep)
-        mkdir(plan->keep, 0777);
     for (size_t i = 0; i < family_count(); i++) {
         if (!is_wanted(plan, family(i)))
             continue;

@@ -23,8 +23,7 @@ typedef struct {
     const char *problems;     /* comma list; NULL: those not kept aside */
     int aside;                /* Family.is_aside of those that are run */
     long n_seeds, first_seed;
-    long budgets[4];  /* evaluations, ascending; 0: none further */
-    const char *keep; /* folder of the courses, which are not run again; NULL: none */
+    long budgets[4]; /* evaluations, ascending; 0: none further */
 } FactorPlan;
 
 /* A search that fills an empty course. */

@@ -26,14 +26,11 @@ static Status open_report(const Args *args, const Run *run, OtherRecords *record
     const char *design = args_value(args, "--design");
     Settings other = *run->settings;
     size_t row;
-    long floor;
     DetailOptions options = {.other = &other, .records = records->source, .with_ladder = !args_has(args, "--pictures")};
     TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, records, err));
     options.n_records = records->n;
-    TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
-    options.floor = (int)floor - 1;
     TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
     return report_open(r, run, row, &options, err);
 }
@@ -118,7 +115,6 @@ static const ArgOption OPTIONS[] = {
            "another earthquake for it, or every one of a folder or list, behind those of the study; may be repeated "
            "(default: the built-in ones)"),
     SWITCH("--json", "where it was written, as an object"),
-    VALUE("--floor", "N", "whose displacement is shown over time (default: the middle one)"),
     OPTION_MOVED,
     OPTION_CHANNEL,
     OPTION_PGA,

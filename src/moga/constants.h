@@ -1,8 +1,7 @@
 /* moga/constants.h -- every tuned constant of the search, one a line.
  *
- * docs/search.md lists them with their sources and with what turning each off costs. scripts/ablation measures that: it
- * builds a copy of the sources in which these are variables. What follows from a definition or guards against overflow
- * stands where it is used. */
+ * docs/measured/constants.csv has their sources and what turning each off costs. What follows from a definition or guards
+ * against overflow stands where it is used. */
 #pragma once
 
 /* -- generation.c: initial sample ---------------------------------------------------------------------------------- */

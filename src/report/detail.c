@@ -133,17 +133,6 @@ static Status take_histories(const Scenario *w, const double x[], Detail *d, Err
     return STATUS_OK;
 }
 
-static Status check_here(const Problem *p, int n_var, const DetailOptions *options, Detail *d, Err *err)
-{
-    d->n_floors = scene_n_floors(tower_record(tower_of(p), 0)->scene);
-    d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
-    if ((int)p->n_var != n_var)
-        return bad_data(err, "the front has designs of %d variables, the building has %zu", n_var, p->n_var);
-    if (d->floor >= d->n_floors)
-        return bad_data(err, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
-    return STATUS_OK;
-}
-
 static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
@@ -198,7 +187,11 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     once.sim.forces = FORCES_YES; /* what the design has to bear */
     memset(out, 0, sizeof *out);
     TRY(tower_open(&p, &once, TOWER_AS_SET, N_SCENES, err));
-    Status status = check_here(&p, n_var, options, out, err);
+    Status status = STATUS_OK;
+    out->n_floors = scene_n_floors(tower_record(tower_of(&p), 0)->scene);
+    out->floor = (out->n_floors - 1) / 2;
+    if ((int)p.n_var != n_var)
+        status = bad_data(err, "the front has designs of %d variables, the building has %zu", n_var, p.n_var);
     if (status == STATUS_OK && options->n_records > 0) {
         out->elsewhere = calloc(options->n_records, sizeof *out->elsewhere);
         if (!out->elsewhere)

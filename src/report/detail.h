@@ -52,7 +52,6 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    int floor;           /* from 0; -1: in the middle */
     RecordPaths moved;   /* where the run's own records are now */
     int with_ladder;     /* of the engine fast: which effects the design needs */
     int without_devices; /* only no core and rigidly connected beside it: no parameters are searched for */

@@ -134,8 +134,7 @@ static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err
     TRY(record_paths_find(&s, run->provenance, o->moved, err));
     run_steps(run, row, &s.sim);
     TRY(elsewhere_otherwise(&others, &s.motion, err));
-    const DetailOptions options = {.floor = -1,
-                                   .moved = *o->moved,
+    const DetailOptions options = {.moved = *o->moved,
                                    .with_ladder = with_devices,
                                    .other = &s,
                                    .without_devices = !with_devices,
