@@ -8,6 +8,7 @@
 #include <limits.h>
 #include <omp.h>
 #include <spawn.h>
+#include <sqlite3.h>
 
 #include "settings/settings.h"
 #include "store/export.h"
@@ -27,6 +28,30 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
 {
     snprintf(path, PATH_MAX, "%s/%s", place.folder, name);
     return path;
+}
+
+/* In the test's own folder. */
+__attribute__((format(printf, 1, 2))) static inline void shell_in_place(const char *format, ...)
+{
+    char spread[1024], command[2048];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(spread, sizeof spread, format, list);
+    va_end(list);
+    snprintf(command, sizeof command, "cd '%s' && %s", place.folder, spread);
+    if (system(command) != 0)
+        fail_msg("%s", command);
+}
+
+/* `database` is a file there. */
+static inline void change_database(const char *database, const char *statements)
+{
+    char path[PATH_MAX], *why = NULL;
+    sqlite3 *db;
+    assert_int_equal(sqlite3_open(path_of(database, path), &db), SQLITE_OK);
+    if (sqlite3_exec(db, statements, NULL, NULL, &why) != SQLITE_OK)
+        fail_msg("%s: %s", statements, why);
+    sqlite3_close(db);
 }
 
 static inline Run run_in(const char *name)

@@ -2,36 +2,12 @@
  * said, nothing is overwritten, and what can go on goes on to the same end. */
 #include "runs.h"
 
-#include <sqlite3.h>
-
 #include "store/folder.h"
 
 /* Generations of some ten designs, which take 10 ms each. */
 static const char SLOW[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                            "objectives = 2\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 60\n"
                            "threads = 2\n";
-
-__attribute__((format(printf, 1, 2))) static void shell(const char *format, ...)
-{
-    char spread[1024], command[2048];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(spread, sizeof spread, format, list);
-    va_end(list);
-    snprintf(command, sizeof command, "cd '%s' && %s", place.folder, spread);
-    if (system(command) != 0)
-        fail_msg("%s", command);
-}
-
-static void sql(const char *database, const char *statements)
-{
-    char path[PATH_MAX], *why = NULL;
-    sqlite3 *db;
-    assert_int_equal(sqlite3_open(path_of(database, path), &db), SQLITE_OK);
-    if (sqlite3_exec(db, statements, NULL, NULL, &why) != SQLITE_OK)
-        fail_msg("%s: %s", statements, why);
-    sqlite3_close(db);
-}
 
 /* A study that has finished a generation or two and is at work. */
 static pid_t start_and_wait(const char *out)
@@ -57,7 +33,7 @@ TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
     char path[PATH_MAX], host[65] = "", text[96];
     Folder folder;
     gethostname(host, sizeof host - 1);
-    shell("mkdir race");
+    shell_in_place("mkdir race");
     CHECK_OK(folder_take(&folder, path_of("race", path), 0, &err), &err);
     snprintf(text, sizeof text, "%d %s\n", 0x3fffff, host);
     assert_int_equal(pwrite(folder.lock, text, strlen(text), 0), strlen(text));
@@ -68,17 +44,17 @@ TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
         _exit(freopen(in_place("new.txt"), "w", stdout) ? execv(words[0], words) : 127);
     }
     rest(0.3);
-    shell("cp sound/run.sqlite race/");
+    shell_in_place("cp sound/run.sqlite race/");
     folder_release(&folder);
     assert_int_equal(wait_end(pid), 0);
-    shell("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
+    shell_in_place("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
 }
 
 /* The second one takes the folder, and what the first one goes on with is not mixed into its rows. */
 TEST(where_the_lock_is_removed_one_of_two_processes_ends_and_the_run_is_whole)
 {
     const pid_t first = start_and_wait("two");
-    shell("rm two/lock");
+    shell_in_place("rm two/lock");
     const pid_t second = start("slow.ini", "two");
     const int a = WEXITSTATUS(wait_end(first)), b = WEXITSTATUS(wait_end(second));
     if ((a != 0 || b != 74) && (a != 74 || b != 0))
@@ -92,13 +68,13 @@ TEST(where_the_lock_is_removed_one_of_two_processes_ends_and_the_run_is_whole)
 TEST(a_lost_journal_is_noticed)
 {
     killed_run("lost");
-    shell("mv lost/run.sqlite-wal kept && cp -r lost other");
+    shell_in_place("mv lost/run.sqlite-wal kept && cp -r lost other");
     expect_output("evaluations more were stored, as its file `lock` says", "status @/lost");
     expect(74, "evaluations were stored, as its file `lock` says; run.sqlite has", "optimize @/lost");
-    shell("mv kept lost/run.sqlite-wal");
+    shell_in_place("mv kept lost/run.sqlite-wal");
     free(output_of("optimize @/lost"));
     assert_same_run("slow", "lost");
-    shell("rm other/lock"); /* as the message says */
+    shell_in_place("rm other/lock"); /* as the message says */
     free(output_of("optimize @/slow.ini --out @/other"));
     assert_same_run("slow", "other");
 }
@@ -106,7 +82,7 @@ TEST(a_lost_journal_is_noticed)
 TEST(the_journal_of_another_run_stays_out_of_a_new_database)
 {
     killed_run("left");
-    shell("mkdir next && cp left/run.sqlite-wal left/run.sqlite-shm next");
+    shell_in_place("mkdir next && cp left/run.sqlite-wal left/run.sqlite-shm next");
     free(output_of("optimize @/textbook.ini --out @/next"));
     assert_same_run("sound", "next");
 }
@@ -118,7 +94,7 @@ TEST(a_database_that_is_removed_in_flight_is_put_back)
     static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal", "run.sqlite*"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
         const pid_t pid = start_and_wait("flight");
-        shell("rm flight/%s", FILES[i]);
+        shell_in_place("rm flight/%s", FILES[i]);
         const int status = wait_end(pid);
         char *said = read_in_place("said");
         if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "the same command resumes the run"))
@@ -126,14 +102,14 @@ TEST(a_database_that_is_removed_in_flight_is_put_back)
         free(said);
         free(output_of("optimize @/flight"));
         assert_same_run("slow", "flight");
-        shell("rm -r flight");
+        shell_in_place("rm -r flight");
     }
 }
 
 TEST(another_database_in_the_place_of_a_run_ends_it)
 {
     const pid_t pid = start_and_wait("taken");
-    shell("cp sound/run.sqlite taken/new && mv taken/new taken/run.sqlite");
+    shell_in_place("cp sound/run.sqlite taken/new && mv taken/new taken/run.sqlite");
     const int status = wait_end(pid);
     char *said = read_in_place("said");
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "another file took its place"))
@@ -147,9 +123,9 @@ TEST(a_damaged_state_gives_way_to_its_copy_with_the_same_end_also_where_there_is
 {
     Said said;
     static const char FURTHER[] = "optimize @/%s --max-evals 60 --force-settings";
-    shell("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
-    sql("damaged/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes)) WHERE copy = 1");
-    sql("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes))");
+    shell_in_place("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
+    change_database("damaged/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes)) WHERE copy = 1");
+    change_database("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes))");
     run(&said, FURTHER, "whole");
     assert_int_equal(said.code, 0);
     forget(&said);
@@ -171,7 +147,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
 {
     char path[PATH_MAX], bytes[8192];
     static const char WORDS[] = "PRIMARY KEY, entered";
-    shell("cp -r sound bit");
+    shell_in_place("cp -r sound bit");
     FILE *f = fopen(path_of("bit/run.sqlite", path), "r+b");
     assert_non_null(f);
     const size_t n = fread(bytes, 1, sizeof bytes, f);
@@ -188,25 +164,26 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
 {
     char advice[PATH_MAX];
     snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
-    shell("cp -r sound hurt");
-    sql("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
+    shell_in_place("cp -r sound hurt");
+    change_database("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
     expect(74, advice, "status @/hurt");
     expect(74, advice, "optimize @/hurt");
     expect(74, advice, "optimize @/hurt --max-evals 60 --force-settings"); /* read while the search is built of it */
-    shell("dd if=/dev/zero of=hurt/run.sqlite bs=4096 count=1 conv=notrunc status=none"); /* the first page */
+    shell_in_place("dd if=/dev/zero of=hurt/run.sqlite bs=4096 count=1 conv=notrunc status=none"); /* the first page */
     expect(74, advice, "status @/hurt");
-    shell("rm hurt/run.sqlite* && touch hurt/run.sqlite");
+    shell_in_place("rm hurt/run.sqlite* && touch hurt/run.sqlite");
     expect(74, advice, "export @/hurt --csv -");
     free(output_of("optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
                    place.folder));
     char *all = all_of("hurt-2");
     write_in_place("all.csv", all);
     free(all);
-    shell("cut -d, -f2-7 sound/front.csv | tail -n +2 | head -5 > was; cut -d, -f6-11 all.csv | tail -n +2 | head -5 | "
-          "diff was -");
-    shell("rm hurt/front.csv");
+    shell_in_place(
+        "cut -d, -f2-7 sound/front.csv | tail -n +2 | head -5 > was; cut -d, -f6-11 all.csv | tail -n +2 | head -5 | "
+        "diff was -");
+    shell_in_place("rm hurt/front.csv");
     expect(74, "is empty, no database of a run; remove it and `lock`, and the run begins again", "status @/hurt");
-    shell("rm hurt/run.sqlite hurt/lock");
+    shell_in_place("rm hurt/run.sqlite hurt/lock");
     free(output_of("optimize @/textbook.ini --out @/hurt"));
     assert_same_run("sound", "hurt");
 }

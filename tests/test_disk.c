@@ -52,13 +52,12 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 {
     Said s;
     Run before;
-    char command[512], path[PATH_MAX];
+    char path[PATH_MAX];
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/unlimited"));
     int refused = 0;
     for (int blocks = 8; blocks < 400; blocks += SANITIZED ? 72 : 24) {
-        snprintf(command, sizeof command, "rm -rf '%s/small'", place.folder);
-        assert_int_equal(system(command), 0);
+        shell_in_place("rm -rf small");
         snprintf(place.under, sizeof place.under, "ulimit -f %d;", blocks);
         run(&s, "optimize @/textbook.ini --out @/small");
         place.under[0] = 0;
@@ -173,7 +172,7 @@ static size_t simulated_in(const char *name)
 /* Killed, then put where nothing can be written, with and without what SQLite shares between processes (-shm). */
 TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
 {
-    char folder[PATH_MAX], command[1024], path[PATH_MAX];
+    char folder[PATH_MAX], path[PATH_MAX];
     struct stat journal;
     const pid_t pid = start("steady.ini", "killed");
     do {
@@ -184,10 +183,7 @@ TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
     assert_int_equal(mkdir(path_of("archive", folder), 0777), 0);
     if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
         skip();
-    snprintf(command, sizeof command,
-             "cd '%s' && cp -r killed archive/all && cp -r killed archive/two && rm archive/two/run.sqlite-shm",
-             place.folder);
-    assert_int_equal(system(command), 0);
+    shell_in_place("cp -r killed archive/all && cp -r killed archive/two && rm archive/two/run.sqlite-shm");
     assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
     const size_t n_all = simulated_in("archive/all"), n_two = simulated_in("archive/two");
     Said said;
@@ -225,14 +221,12 @@ static void overwrite(const char *name, long offset, const char *bytes, size_t n
 TEST(damage_is_found_on_opening_whatever_was_hit)
 {
     static const char JUNK[4096] = "junk";
-    char command[512], path[PATH_MAX];
+    char path[PATH_MAX];
     struct stat size;
     free(output_of("optimize @/textbook.ini --max-evals 30 --out @/sound"));
     assert_int_equal(stat(path_of("sound/run.sqlite", path), &size), 0);
     for (long page = 1; page < size.st_size / 4096; page += 5) {
-        snprintf(command, sizeof command, "rm -rf '%s/hurt'; cp -r '%s/sound' '%s/hurt'", place.folder, place.folder,
-                 place.folder);
-        assert_int_equal(system(command), 0);
+        shell_in_place("rm -rf hurt; cp -r sound hurt");
         overwrite("hurt/run.sqlite", 4096 * page, JUNK, sizeof JUNK);
         expect(74, "hurt/run.sqlite: ", "status @/hurt");
         expect(74, "hurt/run.sqlite: ", "optimize @/hurt");
@@ -279,20 +273,12 @@ TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
         "ALTER TABLE state RENAME TO was; CREATE TABLE state(id INTEGER, generation INTEGER, bytes AS "
         "(zeroblob(900000000))); INSERT INTO state VALUES (1, 0)",
     };
-    char command[512], path[PATH_MAX];
     free(output_of("optimize @/textbook.ini --max-evals 30 --out @/own"));
     free(output_of("status @/own"));
     const long usual = peak_kib();
     for (size_t i = 0; i < sizeof CHANGES / sizeof CHANGES[0]; i++) {
-        sqlite3 *db;
-        char *why = NULL;
-        snprintf(command, sizeof command, "rm -rf '%s/sent'; cp -r '%s/own' '%s/sent'", place.folder, place.folder,
-                 place.folder);
-        assert_int_equal(system(command), 0);
-        assert_int_equal(sqlite3_open(path_of("sent/run.sqlite", path), &db), SQLITE_OK);
-        if (sqlite3_exec(db, CHANGES[i], NULL, NULL, &why) != SQLITE_OK)
-            fail_msg("%s: %s", CHANGES[i], why);
-        sqlite3_close(db);
+        shell_in_place("rm -rf sent; cp -r own sent");
+        change_database("sent/run.sqlite", CHANGES[i]);
         expect(74, "sent/run.sqlite: ", "status @/sent");
         expect(74, "sent/run.sqlite: ", "optimize @/sent --max-evals 40 --force-settings");
     }

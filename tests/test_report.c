@@ -444,10 +444,7 @@ static void expect_openings(size_t most, const char *file, const char *arguments
 
 TEST(a_report_needs_the_database_alone)
 {
-    char command[512];
-    snprintf(command, sizeof command, "mkdir '%s/bare' && cp '%s'/tower/run.sqlite '%s/bare'", place.folder,
-             place.folder, place.folder);
-    assert_int_equal(system(command), 0);
+    shell_in_place("mkdir bare && cp tower/run.sqlite bare");
     expect_openings(1, "run.sqlite\"", "report @/bare --design knee --record @/own.csv --unit m_s2");
     json_t *bare = run_of("bare"), *whole = run_of("tower");
     static const char *const PARTS[] = {"schema", "knee",     "evaluated", "convergence",

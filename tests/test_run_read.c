@@ -1,31 +1,16 @@
 /* A run read back from its database: what is wrong in one cell is named, and who is on the front is worked out anew. */
 #include "runs.h"
 
-#include <sqlite3.h>
-
 #include "store/run.h"
 #include "base/dominance.h"
 #include "store/folder.h"
 #include "study/merged.h"
 
-static void change(const char *database, const char *sql)
-{
-    char path[PATH_MAX], *why = NULL;
-    sqlite3 *db;
-    assert_int_equal(sqlite3_open(path_of(database, path), &db), SQLITE_OK);
-    if (sqlite3_exec(db, sql, NULL, NULL, &why) != SQLITE_OK)
-        fail_msg("%s: %s", sql, why);
-    sqlite3_close(db);
-}
-
 /* The sound run, copied, with that change. */
 static const char *changed(const char *sql, char folder[PATH_MAX])
 {
-    char command[512];
-    snprintf(command, sizeof command, "rm -rf '%s/other'; cp -r '%s/sound' '%s/other'", place.folder, place.folder,
-             place.folder);
-    assert_int_equal(system(command), 0);
-    change("other/run.sqlite", sql);
+    shell_in_place("rm -rf other; cp -r sound other");
+    change_database("other/run.sqlite", sql);
     return path_of("other", folder);
 }
 
@@ -75,7 +60,7 @@ TEST(what_is_wrong_in_one_cell_is_named)
 TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 {
     free(output_of("optimize @/textbook.ini " EXACT "--out @/sound --new"));
-    change("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
+    change_database("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
     expect(74, "evaluation 20 is missing; --new --set search.start=",
            "optimize @/textbook.ini " EXACT "--out @/sound-2 --max-evals 50");
 }

@@ -154,8 +154,7 @@ static void refused_with(const Settings *s, int force, const char *said, const c
 
 TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_changed)
 {
-    char path[PATH_MAX], command[3 * PATH_MAX];
-    sqlite3 *db;
+    char command[256];
     StudySummary summary;
     int left = 15;
     const Settings s = settings_of(TOWER, "version");
@@ -165,15 +164,11 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     snprintf(command, sizeof command, "UPDATE state SET bytes = x'0100000000000000', digest = %ld",
              state_digest(stopped.generation[stopped.n_generations - 1].number, "\1\0\0\0\0\0\0", 8));
     run_free(&stopped);
-    assert_int_equal(sqlite3_open(path_of("version/run.sqlite", path), &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, command, NULL, NULL, NULL), SQLITE_OK);
-    assert_int_equal(sqlite3_close(db), SQLITE_OK);
-    snprintf(command, sizeof command, "cp -r %s/version %s/as-it-was", place.folder, place.folder);
-    assert_int_equal(system(command), 0);
+    change_database("version/run.sqlite", command);
+    shell_in_place("cp -r version as-it-was");
     refused_with(&s, 0, "another version of the program interrupted this search", "");
     refused_with(&s, 1, "nothing was changed", "");
-    snprintf(command, sizeof command, "diff -r -x lock %s/version %s/as-it-was", place.folder, place.folder);
-    assert_int_equal(system(command), 0);
+    shell_in_place("diff -r -x lock version as-it-was");
 }
 
 TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
