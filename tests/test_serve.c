@@ -807,7 +807,7 @@ TEST(a_run_that_is_not_asked_for_any_more_is_released)
     CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
-    assert_ptr_equal(first.look, again.look);
+    assert_ptr_equal(first.snapshot, again.snapshot);
     watch_give(&again);
     again = first;
     for (int i = 0; i < 200 && again.version == first.version;
@@ -820,7 +820,7 @@ TEST(a_run_that_is_not_asked_for_any_more_is_released)
     assert_less(first.version, again.version);
     CHECK_OK(watch_take(w, 0, 60, &kept, &err), &err);
     watch_give(&kept);
-    assert_same_number(first.look->run.n_front, again.look->run.n_front); /* whoever holds it has it */
+    assert_same_number(first.snapshot->run.n_front, again.snapshot->run.n_front); /* whoever holds it has it */
     watch_give(&first);
     watch_give(&again);
     rest(0.7);

@@ -48,8 +48,7 @@ static void throw_mass(Trial *t, const Throw *x, Thrown *out)
     const Bob bob = {.mass = x->mass, .gap = x->v * 4 * x->dt};
     const Contact contact = law_of(x);
     out->penetration = contact_hertz_indentation(x->k, x->mass, x->v);
-    out->duration =
-        contact_duration_min(contact_hertz_duration(x->k, x->mass, x->v), contact_bumper_duration(&contact, x->mass));
+    out->duration = hypot(contact_hertz_duration(x->k, x->mass, x->v), contact_bumper_duration(&contact, x->mass));
     out->closing = 5 * x->dt;
     out->energy = 0.5 * x->mass * x->v * x->v;
     out->end = x->until > 0 ? x->until : 2 * out->closing - x->dt + 2 * out->duration;
@@ -109,8 +108,7 @@ static void bumper_impact(Trial *t)
             for (int damped = 0; damped < 2; damped++) {
                 Throw x = throw_of(280000, STEEL, 0.4, damped ? 0.7 : 1);
                 x.bumper = bumper;
-                x.dt =
-                    7.3 * contact_duration_min(contact_hertz_duration(x.k, x.mass, x.v), M_PI * sqrt(x.mass / bumper));
+                x.dt = 7.3 * hypot(contact_hertz_duration(x.k, x.mass, x.v), M_PI * sqrt(x.mass / bumper));
                 const Contact law = law_of(&x);
                 const double want = contact_rebound(law.a);
                 Thrown out;

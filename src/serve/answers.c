@@ -8,9 +8,9 @@
 json_t *answer_status(const View *view, const char *name)
 {
     json_t *o = json_of("name=%s", name);
-    if (view->look) {
-        const Run *run = &view->look->run;
-        const Standing *s = &view->look->standing;
+    if (view->snapshot) {
+        const Run *run = &view->snapshot->run;
+        const Standing *s = &view->snapshot->standing;
         const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
         json_put(o,
                  "state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld generation=%ld finished=%s "
@@ -32,9 +32,9 @@ static json_t *json_of_front(const Run *run)
     return list;
 }
 
-json_t *answer_front(const Look *look)
+json_t *answer_front(const Snapshot *snapshot)
 {
-    const Run *run = &look->run;
+    const Run *run = &snapshot->run;
     json_t *ids = json_array(), *answer = growth_json(run);
     for (size_t i = 0; i < run->n_front; i++)
         json_array_append_new(ids, json_integer(run->table.row[run->front[i]].id));
@@ -92,20 +92,20 @@ static void name_difference(const char *key, unsigned flags, const char *was, co
         json_object_set_new(user, key, json_true());
 }
 
-Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err)
+Status answer_against(size_t n, const Snapshot *const snapshot[], const char *const name[], json_t **out, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX], f[OBJECTIVES_MAX];
-    const Schema *a = &look[0]->run.schema;
+    const Schema *a = &snapshot[0]->run.schema;
     for (size_t r = 0; r < n; r++) {
-        const Schema *b = &look[r]->run.schema;
-        if (look[r]->run.n_front == 0)
-            return fail(err, STATUS_MISSING, "%s: has no front yet", look[r]->run.folder);
+        const Schema *b = &snapshot[r]->run.schema;
+        if (snapshot[r]->run.n_front == 0)
+            return fail(err, STATUS_MISSING, "%s: has no front yet", snapshot[r]->run.folder);
         int same = a->n_obj == b->n_obj;
         for (size_t k = 0; same && k < a->n_obj; k++)
             same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
                    schema_objective(a, k)->sense == schema_objective(b, k)->sense;
         if (!same)
-            return bad_data(err, "%s: has other objectives: its front cannot be compared", look[r]->run.folder);
+            return bad_data(err, "%s: has other objectives: its front cannot be compared", snapshot[r]->run.folder);
     }
 
     /* A box of all fronts: from a fifth of their range below the best to the worst. */
@@ -114,8 +114,8 @@ Status answer_against(size_t n, const Look *const look[], const char *const name
         reference[k] = -INFINITY;
     }
     for (size_t r = 0; r < n; r++)
-        for (size_t i = 0; i < look[r]->run.n_front; i++) {
-            run_minimise(&look[r]->run, look[r]->run.front[i], f);
+        for (size_t i = 0; i < snapshot[r]->run.n_front; i++) {
+            run_minimise(&snapshot[r]->run, snapshot[r]->run.front[i], f);
             for (size_t k = 0; k < a->n_obj; k++) {
                 lower[k] = fmin(lower[k], f[k]);
                 reference[k] = fmax(reference[k], f[k]);
@@ -125,10 +125,10 @@ Status answer_against(size_t n, const Look *const look[], const char *const name
     json_t *runs = json_array(), *differences = json_object(), *keys = json_array();
     Status status = STATUS_OK;
     for (size_t r = 0; r < n && status == STATUS_OK; r++) {
-        json_t *one = json_of("name=%s f=%p", name[r], json_of_front(&look[r]->run));
-        status = growth_in(&look[r]->run, lower, reference, one, err);
+        json_t *one = json_of("name=%s f=%p", name[r], json_of_front(&snapshot[r]->run));
+        status = growth_in(&snapshot[r]->run, lower, reference, one, err);
         json_array_append_new(runs, one);
-        settings_compare(look[0]->run.settings, look[r]->run.settings, name_difference, differences);
+        settings_compare(snapshot[0]->run.settings, snapshot[r]->run.settings, name_difference, differences);
     }
     for (void *at = json_object_iter(differences); at; at = json_object_iter_next(differences, at))
         json_array_append_new(keys, json_string(json_object_iter_key(at)));

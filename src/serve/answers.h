@@ -19,7 +19,7 @@
 #include "serve/watch.h"
 
 json_t *answer_status(const View *view, const char *name);
-json_t *answer_front(const Look *look);
+json_t *answer_front(const Snapshot *snapshot);
 
 /* Other objectives: STATUS_BAD_DATA. A front that is empty: STATUS_MISSING. */
-Status answer_against(size_t n, const Look *const look[], const char *const name[], json_t **out, Err *err);
+Status answer_against(size_t n, const Snapshot *const snapshot[], const char *const name[], json_t **out, Err *err);

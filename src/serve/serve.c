@@ -202,13 +202,13 @@ static const char NO_FRONT[] =
 /* The report of a run that has a front; before, how far the search is, by a page that looks again. */
 static Status show_page(Visit *v, Answer *a, Err *err)
 {
-    const Look *look = v->view.look;
+    const Snapshot *snapshot = v->view.snapshot;
     Err why = {0};
     *a = (Answer){.code = MHD_HTTP_OK, .type = "text/html; charset=utf-8"};
-    if (look->run.n_front > 0)
-        return report_live(&look->run, &a->text, err);
-    const int is_over = look->standing.state == RUN_FINISHED && run_why_empty(&look->run, &why) == STATUS_UNMET;
-    return asprintf(&a->text, NO_FRONT, look->standing.progress.simulated, look->standing.n_failed,
+    if (snapshot->run.n_front > 0)
+        return report_live(&snapshot->run, &a->text, err);
+    const int is_over = snapshot->standing.state == RUN_FINISHED && run_why_empty(&snapshot->run, &why) == STATUS_UNMET;
+    return asprintf(&a->text, NO_FRONT, snapshot->standing.progress.simulated, snapshot->standing.n_failed,
                     is_over ? "no design meets search.limits" : "no design is on a front yet") > 0
                ? STATUS_OK
                : fail_memory(err, 1, "a page");
@@ -217,13 +217,13 @@ static Status show_page(Visit *v, Answer *a, Err *err)
 static Status show_front(Visit *v, Answer *a, Err *err)
 {
     (void)err;
-    return answer_json(answer_front(v->view.look), 6, a);
+    return answer_json(answer_front(v->view.snapshot), 6, a);
 }
 
 /* Which variables move which objectives. */
 static Status show_importance(Visit *v, Answer *a, Err *err)
 {
-    const Run *run = &v->view.look->run;
+    const Run *run = &v->view.snapshot->run;
     Importance m = {0};
     TRY(importance_of(run, &m, err));
     const Status status = answer_json(importance_json(&m, &run->schema), 6, a);
@@ -234,35 +234,36 @@ static Status show_importance(Visit *v, Answer *a, Err *err)
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
-    return on_demand_design(v->view.look->on_demand, &v->view.look->run, v->request->path.number[0], &a->text, err);
+    return on_demand_design(v->view.snapshot->on_demand, &v->view.snapshot->run, v->request->path.number[0], &a->text,
+                            err);
 }
 
 static Status show_bounds(Visit *v, Answer *a, Err *err)
 {
     json_t *bounds;
-    TRY(on_demand_bounds(v->view.look->on_demand, &v->view.look->run, &bounds, err));
+    TRY(on_demand_bounds(v->view.snapshot->on_demand, &v->view.snapshot->run, &bounds, err));
     return answer_json(bounds, 17, a);
 }
 
 static Status show_what_if(Visit *v, Answer *a, Err *err)
 {
-    const Look *look = v->view.look;
+    const Snapshot *snapshot = v->view.snapshot;
     json_t *answer;
-    TRY(on_demand_what_if(look->on_demand, &look->run, v->request->body, v->request->n, &answer, err));
+    TRY(on_demand_what_if(snapshot->on_demand, &snapshot->run, v->request->body, v->request->n, &answer, err));
     return answer_json(answer, 17, a);
 }
 
 static Status show_notes(Visit *v, Answer *a, Err *err)
 {
     json_t *notes;
-    TRY(notes_read(v->view.look->run.folder, &notes, err));
+    TRY(notes_read(v->view.snapshot->run.folder, &notes, err));
     return answer_json(notes, 6, a);
 }
 
 /* Of a design of the run; what is noted then is the answer. */
 static Status take_note(Visit *v, Answer *a, Err *err)
 {
-    const Run *run = &v->view.look->run;
+    const Run *run = &v->view.snapshot->run;
     json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
     const json_t *id = json_object_get(given, "id");
     const char *text = json_string_value(json_object_get(given, "text"));
@@ -285,17 +286,17 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     Watch *w = v->server->watch;
     const ServePath *path = &v->request->path;
     View other[PATH_NUMBERS] = {0};
-    const Look *look[PATH_NUMBERS + 1] = {v->view.look};
+    const Snapshot *snapshot[PATH_NUMBERS + 1] = {v->view.snapshot};
     const char *name[PATH_NUMBERS + 1] = {watch_name(w, v->run)};
     json_t *all = NULL;
     Status status = STATUS_OK;
     for (size_t i = 0; i < path->n_numbers && status == STATUS_OK; i++) {
         status = path->number[i] >= (long)watch_n(w) ? fail(err, STATUS_MISSING, "there is no run %ld", path->number[i])
                                                      : watch_take(w, path->number[i], PAGE_S, &other[i], err);
-        look[i + 1] = other[i].look;
+        snapshot[i + 1] = other[i].snapshot;
         name[i + 1] = status == STATUS_OK ? watch_name(w, path->number[i]) : NULL;
     }
-    THEN(status, answer_against(path->n_numbers + 1, look, name, &all, err));
+    THEN(status, answer_against(path->n_numbers + 1, snapshot, name, &all, err));
     for (size_t i = 0; i < path->n_numbers; i++)
         watch_give(&other[i]);
     TRY(status);
@@ -335,7 +336,7 @@ static Status show_newest(Visit *v, Answer *a, Err *err)
         View view;
         if (watch_take(w, i, GLANCE_S, &view, &(Err){0}) != STATUS_OK)
             continue;
-        const Run *run = &view.look->run;
+        const Run *run = &view.snapshot->run;
         const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
         if (strcmp(started, latest) >= 0) {
             snprintf(latest, sizeof latest, "%s", started);
@@ -363,9 +364,9 @@ static ssize_t read_events(void *user, uint64_t position, char *out, size_t room
     Watch *w = e->server->watch;
     (void)position;
     View view = watch_next(w, e->run, e->seen, BEAT_S);
-    if (!view.look && watch_is_stopped(w))
+    if (!view.snapshot && watch_is_stopped(w))
         return MHD_CONTENT_READER_END_OF_STREAM;
-    json_t *status = view.look ? answer_status(&view, watch_name(w, e->run)) : NULL;
+    json_t *status = view.snapshot ? answer_status(&view, watch_name(w, e->run)) : NULL;
     char *text = status ? json_dumps(status, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
     const size_t n = text ? strlen(text) : 0, whole = n + sizeof "data: \n\n";
     const int sent = text && whole <= room ? snprintf(out, room, "data: %s\n\n", text) : snprintf(out, room, ":\n\n");

@@ -21,8 +21,8 @@ typedef struct {
 typedef struct {
     char folder[PATH_MAX], name[NAME_MAX + 1];
     pthread_mutex_t mutex; /* of the rest, held while the run is read */
-    View view;             /* the newest; its look NULL: none */
-    Stamp stamp;           /* of that look */
+    View view;             /* the newest; its snapshot NULL: none */
+    Stamp stamp;           /* of that snapshot */
     double next;           /* of the clock, before which it is not read again */
     double kept_to;        /* of the clock, after which it is released */
 } Watched;
@@ -39,12 +39,12 @@ struct Watch {
 
 /* -- reading ------------------------------------------------------------------------------------------------------- */
 
-static void release(Look *look)
+static void release(Snapshot *snapshot)
 {
-    if (look && atomic_fetch_sub(&look->n_users, 1) == 1) {
-        on_demand_close(look->on_demand);
-        run_free(&look->run);
-        free(look);
+    if (snapshot && atomic_fetch_sub(&snapshot->n_users, 1) == 1) {
+        on_demand_close(snapshot->on_demand);
+        run_free(&snapshot->run);
+        free(snapshot);
     }
 }
 
@@ -66,7 +66,7 @@ static void read_again(const Watch *w, Watched *r)
     LockHolder holder;
     Stamp stamp;
     Err err = {0};
-    if (clock_seconds() < r->next && (v->look || v->why.code != STATUS_OK))
+    if (clock_seconds() < r->next && (v->snapshot || v->why.code != STATUS_OK))
         return;
 
     /* 1. Has any of it changed? */
@@ -79,30 +79,30 @@ static void read_again(const Watch *w, Watched *r)
         }
     }
     stamp.held = folder_is_held(r->folder, &holder);
-    if (v->look && v->why.code == STATUS_OK && memcmp(&stamp, &r->stamp, sizeof stamp) == 0)
+    if (v->snapshot && v->why.code == STATUS_OK && memcmp(&stamp, &r->stamp, sizeof stamp) == 0)
         return;
 
     /* 2. The run as it is now. What was simulated on demand stays while no other run is made in its place. */
     const double start = worked_s();
-    Look *fresh = calloc(1, sizeof *fresh);
+    Snapshot *fresh = calloc(1, sizeof *fresh);
     Status status = fresh ? run_read(&fresh->run, r->folder, &err) : fail_memory(&err, 1, "a run");
     if (status == STATUS_OK) {
         fresh->n_users = 1;
         standing_of(&fresh->standing, r->folder, &fresh->run);
-        if (v->look && on_demand_is_of(v->look->on_demand, &fresh->run))
-            fresh->on_demand = on_demand_share(v->look->on_demand);
+        if (v->snapshot && on_demand_is_of(v->snapshot->on_demand, &fresh->run))
+            fresh->on_demand = on_demand_share(v->snapshot->on_demand);
         else
             status = on_demand_open(&fresh->on_demand, &fresh->run, w->moved, &err);
     }
 
-    /* 3. It takes the place of the look before, or the reason does why it cannot be read. */
+    /* 3. It takes the place of the snapshot before, or the reason does why it cannot be read. */
     r->next = clock_seconds() + (status == STATUS_OK ? READ_SHARE * (worked_s() - start) : AGAIN_S);
     err.code = status;
     v->version += status == STATUS_OK || v->why.code == STATUS_OK;
     v->why = err;
     if (status == STATUS_OK) {
-        release(v->look);
-        v->look = fresh;
+        release(v->snapshot);
+        v->snapshot = fresh;
         r->stamp = stamp;
     } else if (fresh) {
         run_free(&fresh->run);
@@ -185,7 +185,7 @@ int watch_is_stopped(Watch *w)
 void watch_close(Watch *w)
 {
     for (size_t i = 0; i < w->n; i++) {
-        release(w->run[i]->view.look);
+        release(w->run[i]->view.snapshot);
         pthread_mutex_destroy(&w->run[i]->mutex);
         free(w->run[i]);
     }
@@ -206,28 +206,28 @@ Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err)
         if (pthread_mutex_trylock(&other->mutex) != 0)
             continue;
         if (clock_seconds() > other->kept_to) {
-            release(other->view.look);
-            other->view.look = NULL;
+            release(other->view.snapshot);
+            other->view.snapshot = NULL;
         }
         pthread_mutex_unlock(&other->mutex);
     }
     pthread_mutex_lock(&r->mutex);
     read_again(w, r);
     r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);
-    if (r->view.look) {
+    if (r->view.snapshot) {
         *view = r->view;
-        atomic_fetch_add(&view->look->n_users, 1);
+        atomic_fetch_add(&view->snapshot->n_users, 1);
     } else {
         *err = r->view.why;
     }
     pthread_mutex_unlock(&r->mutex);
-    return view->look ? STATUS_OK : err->code;
+    return view->snapshot ? STATUS_OK : err->code;
 }
 
 void watch_give(View *view)
 {
-    release(view->look);
-    view->look = NULL;
+    release(view->snapshot);
+    view->snapshot = NULL;
 }
 
 View watch_next(Watch *w, size_t i, long seen, double seconds)

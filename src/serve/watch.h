@@ -6,7 +6,7 @@
  * it.
  *
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
- * Ownership   a Look is shared and read-only; it is released by the last watch_give
+ * Ownership   a Snapshot is shared and read-only; it is released by the last watch_give
  * Threads     any */
 #pragma once
 
@@ -22,12 +22,12 @@ typedef struct {
     Standing standing;
     OnDemand *on_demand; /* the same for all readings of one run */
     atomic_int n_users;
-} Look;
+} Snapshot;
 
 typedef struct {
-    Look *look;
+    Snapshot *snapshot;
     long version; /* 1, 2, ...: of this run, each a change */
-    Err why;      /* code: of the last reading; where it failed the look is of an earlier one */
+    Err why;      /* code: of the last reading; where it failed the snapshot is of an earlier one */
 } View;
 
 /* folder: a run, or a folder that holds runs; moved: borrowed. */
@@ -41,10 +41,10 @@ size_t watch_n(Watch *w);
 const char *watch_name(Watch *w, size_t i);
 
 /* The run as it is now, kept for so many seconds more. One that could not be read is tried again
- * after AGAIN_S; until then the reason is the answer, or stands beside the look before. */
+ * after AGAIN_S; until then the reason is the answer, or stands beside the snapshot before. */
 Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err);
-void watch_give(View *view); /* one without a look is fine */
+void watch_give(View *view); /* one without a snapshot is fine */
 
-/* A view later than version `seen`, within so many seconds, for which the run is kept too; else without a look. */
+/* A view later than version `seen`, within so many seconds, for which the run is kept too; else without a snapshot. */
 View watch_next(Watch *w, size_t i, long seen, double seconds);
 int watch_is_stopped(Watch *w);

@@ -48,12 +48,6 @@ double contact_bumper_duration(const Contact *c, double m)
     return c->bumper > 0 ? M_PI * sqrt(m / c->bumper) : 0;
 }
 
-/* Springs in series add their squares; the Hertz contact meets less force than alone and lasts longer. */
-double contact_duration_min(double hertz, double bumper)
-{
-    return bumper > 0 ? hypot(hertz, bumper) : hertz;
-}
-
 ContactShare contact_share(const Contact *c, double p)
 {
     /* y > 0 with y^3 + y^2 = q by Halley's method, which here converges from any start: sqrt(p_h) in units of k_b/k. */

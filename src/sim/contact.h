@@ -58,9 +58,6 @@ double contact_hertz_duration(double k, double m, double v);
 /* pi sqrt(m/k_b) [s], of an impact on the bumper alone; 0 without a bumper. */
 double contact_bumper_duration(const Contact *c, double m);
 
-/* No impact is shorter, where Hertz's alone and the bumper's alone last so long [s]. */
-double contact_duration_min(double hertz, double bumper);
-
 /* How the approach p > 0 [m] and its increments are shared between steel and bumper. */
 typedef struct {
     double root;  /* [sqrt(m)] of the indentation p_h of the steel */
