@@ -6,22 +6,21 @@
  * objectives and one, but no more than this. Jaszkiewicz and Lust, section V. */
 enum { LEAF_MAX = 40, CHILDREN_MAX = 8 };
 
-/* Bounds of a node stand with its parent, points of a leaf in it: what is looked at lies together. */
+/* Bounds of a node stand with its parent: what is looked at lies together. */
 typedef struct Node Node;
 struct Node {
-    size_t n_child; /* 0: a leaf */
-    Node *child[CHILDREN_MAX];
-    double *bounds; /* (n_child, 2, n_obj) ideal and nadir of the children */
-    size_t n, n_max;
-    size_t *row; /* (n_max) of a leaf */
-    double *f;   /* (n_max, n_obj) of them */
+    size_t n_child;          /* 0: a leaf */
+    Node **child;            /* (n_child) */
+    double *bounds;          /* (n_child, 2, n_obj) ideal and nadir of the children */
+    uint32_t n, n_max, *row; /* (n_max) of a leaf */
 };
 
 struct NdTree {
     size_t n_obj, n_children;
-    Node *root;     /* NULL: no point */
-    double *bounds; /* (2, n_obj) of the root */
-    double *weight; /* (n_obj) 1 / width of all points */
+    const double *F; /* (.., n_obj) of this call */
+    Node *root;      /* NULL: no point */
+    double *bounds;  /* (2, n_obj) of the root */
+    double *weight;  /* (n_obj) 1 / width of all points */
     size_t n_removed, n_removed_max, *removed;
     int lacks_memory;
 };
@@ -34,9 +33,9 @@ static void node_free(Node *q)
         return;
     for (size_t c = 0; c < q->n_child; c++)
         node_free(q->child[c]);
+    free(q->child);
     free(q->bounds);
     free(q->row);
-    free(q->f);
     free(q);
 }
 
@@ -82,6 +81,11 @@ void nd_tree_free(NdTree *t)
     free(t);
 }
 
+static const double *point(const NdTree *t, const Node *q, size_t i)
+{
+    return t->F + q->row[i] * t->n_obj;
+}
+
 /* -- dominance ----------------------------------------------------------------------------------------------------- */
 
 /* Most pairs differ in the first objective: it is looked at here. */
@@ -100,7 +104,7 @@ static int is_dominated(const NdTree *t, const Node *q, const double bounds[], c
     if (is_dominating(m, bounds + m, f))
         return 1;
     for (size_t i = 0; i < q->n; i++)
-        if (is_dominating(m, q->f + i * m, f))
+        if (is_dominating(m, point(t, q, i), f))
             return 1;
     for (size_t c = 0; c < q->n_child; c++)
         if (is_dominated(t, q->child[c], q->bounds + 2 * c * m, f))
@@ -118,19 +122,12 @@ static void remove_all(NdTree *t, Node *q)
 
 static void remove_points(NdTree *t, Node *q, const double f[])
 {
-    const size_t m = t->n_obj;
-    size_t kept = 0;
-    for (size_t i = 0; i < q->n; i++) {
-        if (is_dominating(m, f, q->f + i * m)) {
+    uint32_t kept = 0;
+    for (size_t i = 0; i < q->n; i++)
+        if (is_dominating(t->n_obj, f, point(t, q, i)))
             note_removed(t, q->row[i]);
-            continue;
-        }
-        if (kept < i) {
-            q->row[kept] = q->row[i];
-            memcpy(q->f + kept * m, q->f + i * m, m * sizeof *q->f);
-        }
-        kept++;
-    }
+        else
+            q->row[kept++] = q->row[i];
     q->n = kept;
 }
 
@@ -242,7 +239,6 @@ static size_t nearest_child(const NdTree *t, const Node *q, const double f[])
  * how many. Equal ones are not far. */
 static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN_MAX])
 {
-    const size_t m = t->n_obj;
     const size_t step = 1 + (q->n - 1) / (LEAF_MAX + 1);
     size_t n = 1;
     for (seeds[0] = 0; n < t->n_children; n++) {
@@ -250,7 +246,7 @@ static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN
         for (size_t i = 0; i < q->n; i += step) {
             double nearest = INFINITY;
             for (size_t s = 0; s < n; s++)
-                nearest = fmin(nearest, square_between(t, q->f + i * m, q->f + seeds[s] * m));
+                nearest = fmin(nearest, square_between(t, point(t, q, i), point(t, q, seeds[s])));
             if (nearest > farthest) {
                 farthest = nearest;
                 seeds[n] = i;
@@ -262,24 +258,18 @@ static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN
     return n;
 }
 
-static int leaf_widen(size_t m, Node *q)
+static int leaf_add(Node *q, size_t row)
 {
-    const size_t wide = q->n_max < LEAF_MAX / 2 || q->n_max > LEAF_MAX ? q->n_max : LEAF_MAX / 2,
-                 n_max = q->n_max == 0 ? 4 : q->n_max + wide;
-    size_t *row = realloc(q->row, n_max * sizeof *row);
-    q->row = row ? row : q->row;
-    double *f = row ? realloc(q->f, n_max * m * sizeof *f) : NULL;
-    q->f = f ? f : q->f;
-    q->n_max = f ? n_max : q->n_max;
-    return f != NULL;
-}
-
-static int leaf_add(size_t m, Node *q, const double f[], size_t row)
-{
-    if (q->n == q->n_max && !leaf_widen(m, q))
-        return 0;
-    memcpy(q->f + q->n * m, f, m * sizeof *f);
-    q->row[q->n++] = row;
+    enum { STEP = 8 };
+    if (q->n == q->n_max) {
+        const uint32_t n_max = q->n_max + (q->n_max > LEAF_MAX ? q->n_max : STEP);
+        uint32_t *wider = realloc(q->row, n_max * sizeof *wider);
+        if (!wider)
+            return 0;
+        q->row = wider;
+        q->n_max = n_max;
+    }
+    q->row[q->n++] = (uint32_t)row;
     return 1;
 }
 
@@ -288,49 +278,44 @@ static int hand_down(const NdTree *t, const Node *q, size_t i, size_t n, const s
                      double bounds[])
 {
     const size_t m = t->n_obj;
-    const double *f = q->f + i * m;
+    const double *f = point(t, q, i);
     size_t nearest = 0;
     double min = INFINITY;
     for (size_t s = 0; s < n; s++) {
-        const double square = square_between(t, f, q->f + seeds[s] * m);
+        const double square = square_between(t, f, point(t, q, seeds[s]));
         if (square < min) {
             min = square;
             nearest = s;
         }
     }
     extend(m, bounds + 2 * nearest * m, f);
-    return leaf_add(m, child[nearest], f, q->row[i]);
+    return leaf_add(child[nearest], q->row[i]);
 }
 
 /* Leaves about the seeds take the points. Without memory, or where all points are equal, the leaf stays as it is. */
 static void split(NdTree *t, Node *q)
 {
     const size_t m = t->n_obj;
-    size_t seeds[CHILDREN_MAX], made = 0;
+    size_t seeds[CHILDREN_MAX];
     const size_t n = choose_seeds(t, q, seeds);
-    Node *child[CHILDREN_MAX];
-    double *bounds = n > 1 ? malloc(2 * n * m * sizeof *bounds) : NULL;
-    int is_whole = bounds != NULL;
-    for (; is_whole && made < n; made++) {
-        if (!(child[made] = calloc(1, sizeof *q)))
-            break;
-        bound_one(m, bounds + 2 * made * m, q->f + seeds[made] * m);
+    Node made = {.n_child = n};
+    int is_whole = n > 1 && (made.bounds = malloc(2 * n * m * sizeof *made.bounds)) != NULL &&
+                   (made.child = calloc(n, sizeof *made.child)) != NULL;
+    for (size_t s = 0; is_whole && s < n; s++) {
+        is_whole = (made.child[s] = calloc(1, sizeof *q)) != NULL;
+        bound_one(m, made.bounds + 2 * s * m, point(t, q, seeds[s]));
     }
-    is_whole = is_whole && made == n;
     for (size_t i = 0; is_whole && i < q->n; i++)
-        is_whole = hand_down(t, q, i, n, seeds, child, bounds);
+        is_whole = hand_down(t, q, i, n, seeds, made.child, made.bounds);
     for (size_t s = 0; is_whole && s < n; s++)
-        is_whole = child[s]->n > 0; /* none is, where numbers are so large that distances are not known */
-    if (!is_whole) {
-        for (size_t s = 0; s < made; s++)
-            node_free(child[s]);
-        free(bounds);
-        return;
-    }
-    free(q->row);
-    free(q->f);
-    *q = (Node){.n_child = n, .bounds = bounds};
-    memcpy(q->child, child, n * sizeof *child);
+        is_whole = made.child[s]->n > 0; /* none is, where numbers are so large that distances are not known */
+    Node *gone = is_whole ? q : &made, kept = is_whole ? made : *q;
+    for (size_t s = 0; made.child && !is_whole && s < n; s++)
+        node_free(made.child[s]);
+    free(gone->child);
+    free(gone->bounds);
+    free(gone->row);
+    *q = kept;
 }
 
 static int insert(NdTree *t, const double f[], size_t row)
@@ -351,7 +336,7 @@ static int insert(NdTree *t, const double f[], size_t row)
         extend(m, q->bounds + 2 * c * m, f);
         q = q->child[c];
     }
-    if (!leaf_add(m, q, f, row))
+    if (!leaf_add(q, row))
         return 0;
     if (q->n > LEAF_MAX)
         split(t, q);
@@ -361,6 +346,7 @@ static int insert(NdTree *t, const double f[], size_t row)
 Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change, Err *err)
 {
     const double *f = F + row * t->n_obj;
+    t->F = F;
     t->n_removed = 0;
     *change = (NdChange){.is_in = !t->root || !is_dominated(t, t->root, t->bounds, f)};
     if (change->is_in && t->root)
@@ -384,13 +370,14 @@ static void split_deeply(NdTree *t, Node *q)
 Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err)
 {
     const size_t m = t->n_obj;
+    t->F = F;
     int is_whole = n == 0 || (t->root = calloc(1, sizeof *t->root)) != NULL;
     for (size_t i = 0; is_whole && i < n; i++) {
         const double *f = F + rows[i] * m;
         if (i == 0)
             bound_one(m, t->bounds, f);
         extend(m, t->bounds, f);
-        is_whole = leaf_add(m, t->root, f, rows[i]);
+        is_whole = leaf_add(t->root, rows[i]);
     }
     if (!is_whole)
         return fail(err, STATUS_NO_MEMORY, "no memory for the front");

@@ -6,7 +6,7 @@
  *
  * Dominance  base/dominance.h; equal points do not dominate each other, all of them stay
  * Life cycle nd_tree_create -> (nd_tree_fill) -> nd_tree_insert ... -> nd_tree_free
- * Memory     grows with the points that are in, some 140 bytes each of 7 objectives
+ * Memory     grows with the points that are in, some 40 bytes each; the points themselves stay in F
  * Threads    one at a time
  * Errors     STATUS_NO_MEMORY
  * Source     Jaszkiewicz and Lust, ND-tree-based update: a fast algorithm for the dynamic nondominance problem,
