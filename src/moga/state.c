@@ -15,7 +15,8 @@ static void layout(void *search, Carve *c)
 {
     Search *s = search;
     const Problem *p = s->common.problem;
-    const size_t n_var = p->n_var, n_pool = s->offspring.pool.n_max, n_members = s->offspring.members.n_max;
+    const size_t n_var = p->n_var, population = s->common.config->population, n_pool = s->offspring.pool.n_max,
+                 n_members = s->offspring.members.n_max;
     Batch *b = &s->batch;
     Offspring *o = &s->offspring;
     Scratch *w = &s->scratch;
@@ -24,8 +25,8 @@ static void layout(void *search, Carve *c)
     CARVE(c, o->allowed, n_members);
     CARVE(c, o->survivors, n_pool);
     CARVE(c, o->bound, n_members * p->n_obj);
-    CARVE(c, o->children, 2 * n_var);
-    CARVE(c, o->mixed, p->kind ? 5 * n_var : 0);
+    CARVE(c, o->children, (population + 1) * n_var);
+    CARVE(c, o->mixed, p->kind ? (2 + 3 * (population + 1) / 2) * n_var : 0);
     CARVE(c, o->descent_vector, 2 * s->criteria.vectors.n);
     CARVE(c, o->descent_X, n_pool * n_var);
     CARVE(c, w->members, n_pool);
