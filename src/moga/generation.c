@@ -205,13 +205,10 @@ static Status fit_surrogate(Search *s, Err *err)
 static void choose_batch(Search *s)
 {
     Breeding w = breeding(s);
-    offspring_make(&s->offspring, &w);
-    offspring_select(&s->offspring, &w, &s->batch);
-    if (s->batch.n > 0 || !w.with_surrogate)
-        return;
-    w.with_surrogate = 0;
-    offspring_make(&s->offspring, &w);
-    offspring_select(&s->offspring, &w, &s->batch);
+    do {
+        offspring_make(&s->offspring, &w);
+        offspring_select(&s->offspring, &w, &s->batch);
+    } while (s->batch.n == 0 && w.with_surrogate--);
 }
 
 /* Where no evaluation is left, designs that were screened may still be finished. */

@@ -42,17 +42,17 @@ static void from_scale(const Problem *p, double x[])
             x[d] = fmin(fmax(exp(x[d]), p->lower[d]), p->upper[d]);
 }
 
-/* Two children of mother and father, pair j, where variables are of several kinds. */
-static void breed_mixed(const Offspring *o, const Problem *p, size_t j, Random *r, const double mother[],
-                        const double father[])
+/* Two children of mother and father, pair j. */
+static void breed_pair(const Offspring *o, const Problem *p, size_t j, Random *r, const double mother[],
+                       const double father[])
 {
     const size_t n = p->n_var;
-    const double *lower = o->mixed, *upper = lower + n;
-    double *child = o->children + 2 * j * n, *parent = o->mixed + (2 + 3 * j) * n, *before = parent + 2 * n;
+    const double *lower = o->scaled, *upper = lower + n;
+    double *child = o->children + 2 * j * n, *parent = o->scaled + (2 + 3 * j) * n, *before = parent + 2 * n;
     to_scale(p, mother, parent);
     to_scale(p, father, parent + n);
     crossover_sbx(r, n, lower, upper, SBX_ETA, parent, parent + n, child, child + n);
-    cross_choices(r, n, p->kind, mother, father, child, child + n);
+    cross_choices(r, p, mother, father, child, child + n);
     for (int i = 0; i < 2; i++, child += n) {
         memcpy(before, child, n * sizeof *child);
         mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, MUTATION_ETA, child);
@@ -61,32 +61,20 @@ static void breed_mixed(const Offspring *o, const Problem *p, size_t j, Random *
     }
 }
 
-static void breed_real(const Offspring *o, const Problem *p, size_t j, Random *r, const double mother[],
-                       const double father[])
-{
-    const size_t n = p->n_var;
-    double *child = o->children + 2 * j * n;
-    crossover_sbx(r, n, p->lower, p->upper, SBX_ETA, mother, father, child, child + n);
-    for (int i = 0; i < 2; i++)
-        mutate_polynomial(r, n, p->lower, p->upper, 1.0 / (double)n, MUTATION_ETA, child + i * n);
-}
-
 /* Appends a population of children of the present members. Pair j of step has its own streams. */
 static void breed(Offspring *o, const Common *c, Population *population, uint32_t step)
 {
     const Problem *p = c->problem;
     const Population parents = *population;
     const size_t n = c->config->population;
-    if (p->kind) {
-        to_scale(p, p->lower, o->mixed);
-        to_scale(p, p->upper, o->mixed + p->n_var);
-    }
+    to_scale(p, p->lower, o->scaled);
+    to_scale(p, p->upper, o->scaled + p->n_var);
 #pragma omp parallel for schedule(static)
     for (size_t j = 0; j < (n + 1) / 2; j++) {
         const uint32_t name = step * (uint32_t)n + (uint32_t)j;
         Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
-        (p->kind ? breed_mixed : breed_real)(o, p, j, &change, mother, father);
+        breed_pair(o, p, j, &change, mother, father);
     }
     for (size_t i = 0; i < n; i++) {
         double *x = o->children + i * p->n_var;

@@ -20,8 +20,8 @@ typedef struct {
     double *bound;          /* (pool, n_obj) lower confidence bounds of the objectives */
     size_t *survivors;      /* (pool) of the environmental selection */
     double *children;       /* (population + 1, n_var) */
-    double *mixed; /* (2 + 3 (population + 1) / 2, n_var) bounds; parents and a child of each pair, on the scale of
-                      variation; of real variables none */
+    double *scaled; /* (2 + 3 (population + 1) / 2, n_var) bounds; parents and a child of each pair: on the scale of
+                       variation */
     size_t *descent_vector; /* (2, vectors) those of this group; all in the order in which they are dealt */
     double *descent_X;      /* (pool, n_var) */
     size_t pending_max;     /* designs that may be pending */

@@ -16,6 +16,7 @@
 #include "moga/screening.h"
 
 #include "base/hypervolume.h"
+#include "moga/normalisation.h"
 
 void screening_begin(Screening *q, const Common *c)
 {
@@ -371,15 +372,9 @@ static Status measure_front(const Screening *q, Archive *a, uint32_t seed, Hyper
     double *lower;
     TRY_ROOM(lower, 2 * m, "corners of objectives", err);
     double *reference = lower + m;
-    for (size_t k = 0; k < m; k++) {
-        double min = INFINITY, max = -INFINITY;
-        for (size_t i = 0; i < q->n_front; i++) {
-            min = fmin(min, a->Y[a->expected[i] * m + k]);
-            max = fmax(max, a->Y[a->expected[i] * m + k]);
-        }
-        lower[k] = min;
-        reference[k] = min + RAY_START * (max > min ? max - min : 1.0);
-    }
+    normalisation_fit_range(&(Normalisation){m, .ideal = lower, .width = reference}, q->n_front, a->expected, a->Y);
+    for (size_t k = 0; k < m; k++)
+        reference[k] = lower[k] + RAY_START * reference[k];
     const Status status = hypervolume_create(out, m, lower, reference, seed, err);
     free(lower);
     pareto_archive_list_front(a);

@@ -26,7 +26,7 @@ static void layout(void *search, Carve *c)
     CARVE(c, o->survivors, n_pool);
     CARVE(c, o->bound, n_members * p->n_obj);
     CARVE(c, o->children, (population + 1) * n_var);
-    CARVE(c, o->mixed, p->kind ? (2 + 3 * (population + 1) / 2) * n_var : 0);
+    CARVE(c, o->scaled, (2 + 3 * (population + 1) / 2) * n_var);
     CARVE(c, o->descent_vector, 2 * s->criteria.vectors.n);
     CARVE(c, o->descent_X, n_pool * n_var);
     CARVE(c, w->members, n_pool);

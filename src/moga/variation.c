@@ -68,11 +68,11 @@ void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var,
     }
 }
 
-void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const double mother[], const double father[],
-                   double child1[], double child2[])
+void cross_choices(Random *r, const Problem *p, const double mother[], const double father[], double child1[],
+                   double child2[])
 {
-    for (size_t d = 0; d < n_var; d++) {
-        if (kind[d] != VARIABLE_CHOICE)
+    for (size_t d = 0; d < p->n_var; d++) {
+        if (problem_kind(p, d) != VARIABLE_CHOICE)
             continue;
         const int swapped = random_uniform(r) < 0.5;
         child1[d] = swapped ? father[d] : mother[d];

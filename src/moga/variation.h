@@ -27,8 +27,8 @@ void mutate_polynomial(Random *r, size_t n_var, const double lower[], const doub
 void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, double X[], size_t slices[]);
 
 /* Children of crossover: of a choice each has that of one parent, whatever became of it. */
-void cross_choices(Random *r, size_t n_var, const VariableKind kind[], const double mother[], const double father[],
-                   double child1[], double child2[]);
+void cross_choices(Random *r, const Problem *p, const double mother[], const double father[], double child1[],
+                   double child2[]);
 
 /* After mutation: what is not real and no longer what it was before moves by 1 at least, to another word, to another
  * value that is sold. */
