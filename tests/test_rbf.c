@@ -79,6 +79,35 @@ TEST(tuning_lowers_the_error_at_unseen_points)
     assert_less(sqrt(square[1]), 5e-3);
 }
 
+/* A product of two variables, as the mass of a section is, and a function of which every centre says something. */
+TEST(an_exact_output_is_told_by_a_few_centres_and_others_by_all)
+{
+    enum { MANY = 160 };
+    double X[MANY * D], F[MANY * OUT], Y[N * D], wanted[N * OUT], f[OUT], J[OUT * D];
+    Rbf *m;
+    scatter(1, MANY, X, F);
+    scatter(2, N, Y, wanted);
+    for (size_t i = 0; i < MANY; i++)
+        F[i * OUT + 1] = (1.0 + X[i * D]) * (2.0 + X[i * D + 1]);
+    for (size_t i = 0; i < MANY; i++)
+        F[i * OUT] = sin(40.0 * X[i * D]) + (double)(i % 7);
+    CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
+    for (int tuned = 0; tuned < 2; tuned++) {
+        CHECK_OK((tuned ? rbf_fit : rbf_tune)(m, MANY, X, F, NULL, &err), &err);
+        assert_same_number(m->output[0].n, MANY);
+        assert_same_number(m->output[1].n, FEW_CENTRES);
+        for (int i = 0; i < N; i++) {
+            const double *y = Y + i * D;
+            rbf_slope(m, 1, y, f, J);
+            assert_close(f[1], (1.0 + y[0]) * (2.0 + y[1]), 1e-3);
+            assert_close(J[D], 2.0 + y[1], 1e-2);
+        }
+        assert_less(1.0 - 1e-9, rbf_explained(m, 1));
+        assert_true(rbf_leave_one_out(m, 1)[MANY - 1] == 0.0);
+    }
+    free(m);
+}
+
 static void set_shape(Rbf *m, size_t output, RbfForm form)
 {
     const double theta[D] = {2.0, 1.0, 0.5, 0.7};

@@ -40,7 +40,7 @@ static const double PENALTY = 10.0;            /* weight of violated limits, in 
 /* -- surrogate.c: fit ---------------------------------------------------------------------------------------------- */
 
 static const double R2_MIN = 0.3;  /* mean leave-one-out R2 of the objectives below which no surrogate is used */
-enum { RETUNE_SHARE = 10 };        /* tuned again when n has grown by n / this */
+enum { RETUNE_SHARE = 10 };        /* tuned again when n has grown by n / this; by twice that beyond surrogate_max */
 enum { SPREAD_CENTRES_SHARE = 4 }; /* beyond surrogate_max: centres / this are spread over all evaluations */
 
 /* -- infill.c: criteria -------------------------------------------------------------------------------------------- */

@@ -233,7 +233,8 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
             s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
     }
     measure_ranges(s, a);
-    const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE;
+    const size_t share = a->n > s->n_max ? RETUNE_SHARE / 2 : RETUNE_SHARE;
+    const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + share - 1) / share;
     TRY((tuning ? rbf_tune : rbf_fit)(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
     s->n_tuned = tuning ? a->n : s->n_tuned;
     s->fitted = 1;

@@ -6,7 +6,7 @@
  * rounded before they are predicted. Beyond `surrogate_max` designs three quarters of the centres are those nearest to
  * the front, the rest is spread evenly over the order of evaluation, which begins
  * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again
- * when the archive has grown by a tenth.
+ * when the archive has grown by a tenth, beyond surrogate_max by a fifth.
  *
  *   chance   probability that a predicted design keeps every limit, each normal about its prediction with the local
  *            leave-one-out error, times that it succeeds: another Rbf on 1 where designs succeeded and 0 where they

@@ -24,6 +24,7 @@ typedef struct {
 /* What the model keeps of one output. */
 typedef struct {
     RbfForm form;
+    size_t n;           /* centres with a weight, the first ones: all, or a few that leave no error */
     size_t n_tail;      /* columns of the tail really used: fewer when there are too few centres */
     double mean, scale; /* of F: the interpolant is built on (f - mean) / scale */
     double explained;
@@ -52,8 +53,8 @@ typedef struct {
     double *theta;                                                        /* (n_dim) of the step under way */
     Shape shape, best_shape;
     RbfForm best_form;
-    double min_error;
-    size_t n_tail; /* columns of the tail in P */
+    double min_error, likeliest[RBF_N_TAILS]; /* likeliest: minus its logarithm, of the kernels with each tail */
+    size_t n_tail;                            /* columns of the tail in P */
 } Worker;
 
 struct Rbf {
@@ -66,6 +67,11 @@ struct Rbf {
     Output *output;
     Worker *worker;
 };
+
+/* An output whose mean square leave-one-out error is below this share of its variance is exact, as the mass of a
+ * section is: a few centres tell it. */
+static const double EXACT_ERROR = 1e-9;
+enum { FEW_CENTRES = 100 };
 
 /* S (n_dim + 1, stride): n centres C (3, n_dim, stride) warped and scaled, and their squares. */
 void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[]);

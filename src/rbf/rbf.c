@@ -229,12 +229,12 @@ static void standardise(const Rbf *m, Output *o, const double f[])
     o->scale = square > 0.0 ? sqrt(square) : 1.0;
 }
 
-/* A w + P b = y, standardised, and the leave-one-out errors; 0: not all of it is finite. A centre that alone
- * determines a coefficient of the tail, as where all others have the same value of a variable, leaves no error to
- * compute. */
+/* A w + P b = y, standardised, and the leave-one-out errors, with the first o->n centres; 0: not all of it is finite. A
+ * centre that alone determines a coefficient of the tail, as where all others have the same value of a variable, leaves
+ * no error to compute. */
 static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
-    const size_t n = m->n;
+    const size_t n = o->n;
     RbfForm form = o->form;
     if (!model_factor(m, k, n, m->C, o->S, &form))
         return 0;
@@ -272,6 +272,12 @@ static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], con
         k->y[i] = (f[i] - o->mean) / o->scale;
     o->is_left_out = 0;
     model_scale(m, m->n, m->C, &o->shape, o->S);
+    o->n = MIN_OF(m->n, FEW_CENTRES);
+    if (o->form.nugget < NUGGET_START && fit_with_tail(m, k, o, o->form.tail) && 1.0 - o->explained < EXACT_ERROR) {
+        memset(o->leave_one_out + o->n, 0, (m->n - o->n) * sizeof *o->leave_one_out);
+        return;
+    }
+    o->n = m->n;
     if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
         leave_out(m, o, f);
 }
@@ -375,8 +381,8 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
     _Alignas(64) double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, square[RBF_BLOCK] = {0}, weights[RBF_BLOCK] = {0};
     scale_points(m, o, P, x);
-    for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
-        const size_t count = MIN_OF(m->n - first, KERNEL_CHUNK);
+    for (size_t first = 0; first < o->n; first += KERNEL_CHUNK) {
+        const size_t count = MIN_OF(o->n - first, KERNEL_CHUNK);
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
         for (size_t p = 0; p < n; p++) {
             kernel_values(o->form.kernel, count, r2[p], phi);
@@ -457,8 +463,8 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
     for (size_t d = 0; d < n_dim; d++)
         kernel_warp_by_u(RBF_BLOCK, P + (n_dim + d) * RBF_BLOCK, P + (2 * n_dim + d) * RBF_BLOCK, o->shape.theta[d],
                          o->shape.warp, s.by_u + d * RBF_BLOCK);
-    for (size_t first = 0; first < m->n; first += KERNEL_CHUNK)
-        slope_chunk(m, o, n, P, first, MIN_OF(m->n - first, KERNEL_CHUNK), &s);
+    for (size_t first = 0; first < o->n; first += KERNEL_CHUNK)
+        slope_chunk(m, o, n, P, first, MIN_OF(o->n - first, KERNEL_CHUNK), &s);
     for (size_t p = 0; p < n; p++) {
         f[p * m->n_out] = o->mean + o->scale * (s.value[p] + tail_sum(m, o, X + p * n_dim));
         for (size_t d = 0; d < n_dim; d++) {

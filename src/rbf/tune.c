@@ -120,13 +120,22 @@ static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, co
     pull_back(m, k, n, shape, gradient);
 }
 
+/* Of the forms that are tried the first time, with the same tail, one goes no further that is clearly less likely after
+ * a few steps than another kernel was: l is minus the logarithm. */
+static int is_hopeless(Worker *k, RbfTail tail, double l)
+{
+    const int is_far = l > k->likeliest[tail] + 20.0;
+    k->likeliest[tail] = fmin(k->likeliest[tail], l);
+    return is_far;
+}
+
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
  * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. Returns
  * whether the last point was the best one: then its factor and weights are at hand. */
 static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *form, Shape *shape, int steps)
 {
     const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
-    double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY, s2;
+    double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY, s2 = 1.0;
     Shape at = {.theta = k->theta};
     int is_best = 0;
     for (size_t i = 0; i < n_p; i++) {
@@ -139,6 +148,8 @@ static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *fo
         read_parameters(m, p, &at, &form->nugget);
         const double l = likelihood(m, k, n, *form, &at, p, &s2, g);
         is_best = l < best;
+        if (step == TUNE_STEPS && step < steps && is_hopeless(k, form->tail, l))
+            steps = step;
         if (is_best) {
             best = l;
             memcpy(k->best_p, p, n_p * sizeof *p);
@@ -187,7 +198,7 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, const Shape *from, int steps)
 {
     const int is_new = form.kernel >= RBF_ADDITIVE && o->form.kernel < RBF_ADDITIVE;
-    if (is_new && k->min_error < ADDITIVE_ERROR)
+    if (k->min_error < (is_new ? ADDITIVE_ERROR : EXACT_ERROR))
         return;
     model_copy_shape(m, &k->shape, from);
     const int is_at_hand = climb(m, k, n, o, &form, &k->shape, steps);
@@ -207,8 +218,12 @@ static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
     const size_t n_forms = RBF_N_KERNELS * RBF_N_TAILS;
     const double nugget = fmax(o->form.nugget, NUGGET_START);
     const int is_first = m->n_tuned == 0;
-    if (!is_first)
+    if (!is_first) {
+        RbfForm present = o->form;
+        if (present.nugget < NUGGET_START && trial_error(m, k, n, &present, &o->shape, 0) < EXACT_ERROR)
+            return;
         try_form(m, k, n, o, (RbfForm){o->form.kernel, o->form.tail, nugget}, &o->shape, TUNE_STEPS);
+    }
     for (size_t i = 0; i < n_forms; i++) {
         const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS), nugget};
         RbfForm trial = form;
@@ -223,7 +238,7 @@ static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise);
-    k->min_error = INFINITY;
+    k->min_error = k->likeliest[RBF_CONSTANT] = k->likeliest[RBF_LINEAR] = k->likeliest[RBF_QUADRATIC] = INFINITY;
     try_forms(m, k, n, o);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
