@@ -1,5 +1,6 @@
 #include "analysis/ladder.h"
 
+#include "base/json.h"
 #include "scene/frame.h"
 #include "scene/neighbour.h"
 #include "settings/settings.h"
@@ -122,20 +123,40 @@ static Status list_effects(Job *job, Err *err)
     return find_hardening(&job->all, &l->all_hardening, err);
 }
 
+Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings *all, Err *err)
+{
+    Job *job;
+    TRY_ROOM(job, 1, "a ladder", err);
+    *job = (Job){.s = *s, .strong_s = strong_s, .is_brief = 1, .out = out};
+    *out = (Ladder){0};
+    const Status status = list_effects(job, err);
+    free(job);
+    *all = *s;
+    for (size_t i = 0; i < out->n && status == STATUS_OK; i++) {
+        LadderEffect *e = &out->effect[i];
+        e->is_set = settings_gives(s, e->key);
+        e->cost_s = NAN;
+        if (e->is_set)
+            settings_each(s, take_value, &(Wanted){e->key, e->with});
+        else
+            TRY(settings_put(all, e->key, e->with, err));
+    }
+    return status;
+}
+
 /* -- what each changes --------------------------------------------------------------------------------------------- */
 
 /* Of two orders of the same sums. */
 static const double ROUNDING = 1e-11;
 
-static double change(const Measured *to, const Measured *from, int k)
+double ladder_change(const Measured *to, const Measured *from, int k)
 {
     const int is_known = to->outcome == RUN_OK && from->outcome == RUN_OK;
     const double by = is_known ? to->value[LADDER_MEASURE[k]] / from->value[LADDER_MEASURE[k]] - 1 : NAN;
     return fabs(by) < ROUNDING ? 0 : by;
 }
 
-/* The largest of the changes, in tolerances, and the scene that has it; INFINITY: one is not known. */
-static double largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene)
+double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene)
 {
     double most = -1;
     for (int i = 0; i < LADDER_SCENES; i++)
@@ -174,9 +195,10 @@ static void conclude(Job *job, const ReplicateSummary *as_built)
         const size_t with = is_finer ? 1 + i : 0, without = is_finer ? 0 : 1 + i;
         for (int c = 0; c < LADDER_SCENES; c++)
             for (int k = 0; k < LADDER_MEASURES; k++)
-                e->change[c][k] = change(&job->scene[without][c], &job->scene[with][c], k);
+                e->change[c][k] = ladder_change(&job->scene[without][c], &job->scene[with][c], k);
         e->cost_s = least_seconds(job, job->parts[with]) - least_seconds(job, job->parts[without]);
-        e->is_needed = e->is_kept = largest(l, e->change, &e->decided_in) > 1;
+        e->most = ladder_largest(l, e->change, &e->decided_in);
+        e->is_needed = e->is_kept = e->most > 1;
         if (job->kind[i] == LIFT && e->is_kept)
             l->effect[i - 1].is_kept = 1;
     }
@@ -224,6 +246,15 @@ static Status leave_out_each(Job *job, Err *err)
 
 /* -- the set ------------------------------------------------------------------------------------------------------- */
 
+Status ladder_put_set(const Ladder *l, Settings *s, Err *err)
+{
+    for (size_t i = 0; i < l->n; i++)
+        if (ladder_says(l, i))
+            TRY(settings_put(s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without,
+                             err));
+    return STATUS_OK;
+}
+
 static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err)
 {
     Ladder *l = job->out;
@@ -231,10 +262,7 @@ static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err
     Problem p;
     SimTask task[LADDER_SCENES];
     s.sim.replicates = 1;
-    for (size_t i = 0; i < l->n; i++)
-        if (ladder_says(l, i))
-            TRY(settings_put(&s, l->effect[i].key, l->effect[i].is_kept ? l->effect[i].with : l->effect[i].without,
-                             err));
+    TRY(ladder_put_set(l, &s, err));
     for (int i = 0; i < LADDER_SCENES; i++)
         task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
     TRY(find_hardening(&s, &l->hardening, err));
@@ -244,17 +272,12 @@ static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err
     return status;
 }
 
-/* The effect that is left out and changes most, in its tolerances; NULL: none is left out. */
-static LadderEffect *largest_left_out(Ladder *l)
+LadderEffect *ladder_largest_left_out(Ladder *l)
 {
     LadderEffect *found = NULL;
-    double most = -1;
-    for (size_t i = 0; i < l->n; i++) {
-        int scene;
-        const double of = l->effect[i].is_kept ? -1 : largest(l, l->effect[i].change, &scene);
-        found = of > most ? &l->effect[i] : found;
-        most = fmax(of, most);
-    }
+    for (size_t i = 0; i < l->n; i++)
+        if (!l->effect[i].is_kept && (!found || l->effect[i].most > found->most))
+            found = &l->effect[i];
     return found;
 }
 
@@ -268,12 +291,12 @@ static Status shorten(Job *job, Err *err)
         TRY(simulate_set(job, set, err));
         for (int i = 0; i < LADDER_SCENES; i++)
             for (int k = 0; k < LADDER_MEASURES; k++) {
-                l->off[i][k] = change(&set[i], &job->scene[is_fine ? l->n : 0][i], k);
+                l->off[i][k] = ladder_change(&set[i], &job->scene[is_fine ? l->n : 0][i], k);
                 l->set[i][k] = set[i].outcome == RUN_OK ? set[i].value[LADDER_MEASURE[k]] : NAN;
             }
         l->set_s = job->is_brief ? NAN : set->seconds;
-        back = largest_left_out(l);
-        if (!back || largest(l, l->off, &scene) <= 1)
+        back = ladder_largest_left_out(l);
+        if (!back || ladder_largest(l, l->off, &scene) <= 1)
             return STATUS_OK;
         back->is_kept = 1;
     }
@@ -288,4 +311,45 @@ Status ladder_find(const Settings *s, const double x[], double strong_s, int is_
     TRY(list_effects(&job, err));
     TRY(leave_out_each(&job, err));
     return shorten(&job, err);
+}
+
+/* -- in words ------------------------------------------------------------------------------------------------------ */
+
+/* By the names of the measures and `end`, times `factor`. */
+static json_t *json_by_measure(const double values[], const char *end, double factor)
+{
+    json_t *o = json_object();
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        char name[40];
+        snprintf(name, sizeof name, "%s%s", measure(LADDER_MEASURE[k])->name, end);
+        json_object_set_new(o, name, json_number(factor * values[k]));
+    }
+    return o;
+}
+
+json_t *ladder_json(const Ladder *l)
+{
+    json_t *effects = json_array(), *all = json_by_measure(l->value, "", 1), *settings = json_object(),
+           *set = json_by_measure(l->off[0], "_pct", 100), *by_set = json_object();
+    for (size_t i = 0; i < l->n; i++) {
+        const LadderEffect *e = &l->effect[i];
+        json_t *row = json_of("without=%s", e->words);
+        json_object_update_new(row, json_by_measure(e->change[0], "_pct", 100));
+        json_put(row, "most_in=%s in_tolerances=%g costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s",
+                 SCENES[LADDER_SCENE[e->decided_in]].key, e->most, 1e3 * e->cost_s, e->is_needed ? "needed" : "not",
+                 e->is_set ? "yes" : "no", e->key, e->with, e->without);
+        json_array_append_new(effects, row);
+        if (ladder_says(l, i))
+            json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
+    }
+    if (l->hardening > 0)
+        json_put(settings, "building.hardening=%g", l->hardening);
+    for (int i = 0; l->hardening > 0 && i < (strcmp(l->yielding[0], "bilinear") == 0 ? 1 : YIELDING_KEYS); i++)
+        json_object_set_new(settings, YIELDING_KEY[i], json_string(l->yielding[i]));
+    for (int i = 0; i < LADDER_SCENES; i++)
+        json_object_set_new(by_set, SCENES[LADDER_SCENE[i]].key, json_by_measure(l->set[i], "", 1));
+    json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->all_hardening);
+    json_put(set, "ms=%g", 1e3 * l->set_s);
+    return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
+                   json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);
 }

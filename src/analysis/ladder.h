@@ -25,6 +25,8 @@
  * Threads  tasks of the queue; the numbers but the times do not depend on how many workers there are */
 #pragma once
 
+#include <jansson.h>
+
 #include "evaluate/tower.h"
 
 enum { LADDER_MAX = 9, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
@@ -46,9 +48,10 @@ typedef struct {
     char with[OPTION_TEXT_MAX], without[OPTION_TEXT_MAX]; /* values of the setting */
     int is_set;                                           /* the settings have it */
     double change[LADDER_SCENES][LADDER_MEASURES];        /* [-] NAN: a simulation failed */
-    int decided_in;                                       /* the scene with the largest change, in its tolerances */
-    double cost_s;                                        /* what it adds to a simulation */
-    int is_needed, is_kept;                               /* by itself; in the set */
+    double most;            /* the largest of them, in tolerances; INFINITY: one is not known */
+    int decided_in;         /* the scene that has it */
+    double cost_s;          /* what it adds to a simulation */
+    int is_needed, is_kept; /* by itself; in the set */
 } LadderEffect;
 
 typedef struct {
@@ -72,3 +75,16 @@ static inline int ladder_says(const Ladder *l, size_t i)
 /* x: the design. strong_s [s]: where the weak end of the record begins. is_brief: without the steps, and every effect
  * is left out once, so that no costs are known (NAN). */
 Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err);
+
+/* By the names of effects, measures, scenes and settings; what check, report and a run's provenance.json have of it. */
+json_t *ladder_json(const Ladder *l);
+
+/* -- its steps, for analysis/model_choice.c ------------------------------------------------------------------------ */
+
+/* The effects that there are but for the steps, where the strong part ends at strong_s; is_set: the settings give it. all:
+ * with those that they do not. */
+Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings *all, Err *err);
+double ladder_change(const Measured *to, const Measured *from, int k);
+double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene); /* as `most` */
+LadderEffect *ladder_largest_left_out(Ladder *l);                                                   /* NULL: none is */
+Status ladder_put_set(const Ladder *l, Settings *s, Err *err);

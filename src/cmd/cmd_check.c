@@ -46,8 +46,6 @@ typedef struct {
     SceneSummary summary;
 } CheckedScene;
 
-static const double GOLDEN_RATIO = 0.6180339887498949; /* its multiples modulo 1 are evenly spread */
-
 /* ---- findings ------------------------------------------------------------------------------------------------- */
 
 /* One that was found before is not said again, also where it was found in a line of the file. */
@@ -140,27 +138,6 @@ static int open_motion(Check *c, CheckedScene *p)
     return note(c, status, "motion.record", &e);
 }
 
-/* Designs that are spread over the search box as its sample is, which their time stands for; the core is the same, in
- * the middle. */
-static void spread_designs(CheckedScene *p)
-{
-    const DesignSpace *s = &p->space;
-    const int side = s->n_gaps + s->n_walls + s->n_bumpers;
-    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
-    design_bounds(s, &p->s->design, lower, upper);
-    p->n_tried = TRIED_MAX;
-    for (int j = 0; j < s->n_var; j++) {
-        const int is_core = design_is_wall(s, j) || (j == side && s->has_side);
-        for (int k = 0; k < TRIED_MAX; k++) {
-            const double share = is_core ? 0.5 : fmod(GOLDEN_RATIO * (j + 1) + (double)k / TRIED_MAX, 1);
-            double *x = &p->tried[k][j];
-            *x = design_is_log(s, j) ? lower[j] * pow(upper[j] / lower[j], share)
-                                     : lower[j] + (upper[j] - lower[j]) * share;
-            *x = design_word(s, j, *x) ? round(*x) : *x;
-        }
-    }
-}
-
 /* Those of the box, or the first ones of --design. */
 static int choose_designs(Check *c, CheckedScene *p, const char *path)
 {
@@ -168,7 +145,9 @@ static int choose_designs(Check *c, CheckedScene *p, const char *path)
     DesignSpace *s = &p->space;
     if (!note(c, design_space_make(s, &p->s->design, core_section(&p->s->core), p->building.n, &e), "design", &e))
         return 0;
-    spread_designs(p);
+    p->n_tried = TRIED_MAX;
+    for (size_t k = 0; k < TRIED_MAX; k++)
+        design_spread(s, &p->s->design, k, TRIED_MAX, INFINITY, p->tried[k]);
     p->x = p->tried[0];
     if (!path)
         return 1;

@@ -7,6 +7,7 @@
 #include "cmd/designs.h"
 #include "cmd/improve.h"
 #include "cmd/show.h"
+#include "cmd/show_model.h"
 #include "cmd/signals.h"
 #include "report/words.h"
 #include "settings/settings.h"
@@ -15,6 +16,7 @@
 #include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
+#include "study/study_model.h"
 
 typedef struct {
     int terminal, has_line, has_warned;
@@ -64,6 +66,12 @@ static void tell_start(const char *folder, size_t n_simulated, size_t n_workers,
                 n_workers, n_busy);
     if (n_simulated > 0)
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
+}
+
+static void tell_model(const json_t *chosen, void *user)
+{
+    (void)user;
+    show_model(stderr, chosen);
 }
 
 static void tell_record(const Scenario *w, void *user)
@@ -208,6 +216,9 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
                summary->polish.n_better, summary->polish.n_tried);
         improve_cost(&summary->polish.cost);
     }
+    json_t *model = study_model_of(run);
+    show_model_confirmed(stdout, model, summary->folder);
+    json_decref(model);
     if (summary->n_simulated == summary->n_before)
         printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
     return STATUS_OK;
@@ -237,10 +248,10 @@ static Status report_json(const Run *run, const StudySummary *summary, Err *err)
         json_object_set_new(baselines, SCENES[b].key, o);
     }
     return show_json(json_of("run=%s stopped=%s simulated=%zu failed=%zu front=%zu seconds=%g knee=%p best=%p "
-                             "baselines=%p review=%p",
+                             "baselines=%p review=%p model=%p",
                              summary->folder, stop_reason_words(summary->stopped), summary->n_simulated,
                              summary->n_failed, run->n_front, summary->seconds, json_of_design(run, run_knee(run)),
-                             best, baselines, json_review(&summary->review)),
+                             best, baselines, json_review(&summary->review), study_model_of(run)),
                      err);
 }
 
@@ -302,6 +313,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
                             .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
                             .started = tell_start,
+                            .model = tell_model,
                             .record = tell_record,
                             .progress = tell,
                             .user = &telling,

@@ -88,7 +88,7 @@ const Command CMD_NEW = {
     .name = "new",
     .group = GROUP_PREPARE,
     .operand = "FOLDER",
-    .summary = "begin a study: a folder with the fifteen settings that a first one touches",
+    .summary = "begin a study: a folder with the settings that a first one touches",
     .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
     .details = "Writes FOLDER/study.ini: fifteen settings, each after its meaning, unit and range. Paths in it begin\n"
                "at FOLDER. Its run goes to results/FOLDER.",

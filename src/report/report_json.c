@@ -82,47 +82,6 @@ static json_t *json_of_baselines(const Baseline baseline[N_SCENES], const Measur
     return list;
 }
 
-/* ---- which effects it needs -------------------------------------------------------------------------------------- */
-
-/* By the names of the measures and `end`, times `factor`. */
-static json_t *json_by_measure(const double values[], const char *end, double factor)
-{
-    json_t *o = json_object();
-    for (int k = 0; k < LADDER_MEASURES; k++) {
-        char name[40];
-        snprintf(name, sizeof name, "%s%s", measure(LADDER_MEASURE[k])->name, end);
-        json_object_set_new(o, name, json_number(factor * values[k]));
-    }
-    return o;
-}
-
-json_t *ladder_json(const Ladder *l)
-{
-    json_t *effects = json_array(), *all = json_by_measure(l->value, "", 1), *settings = json_object(),
-           *set = json_by_measure(l->off[0], "_pct", 100), *by_set = json_object();
-    for (size_t i = 0; i < l->n; i++) {
-        const LadderEffect *e = &l->effect[i];
-        json_t *row = json_of("without=%s", e->words);
-        json_object_update_new(row, json_by_measure(e->change[0], "_pct", 100));
-        json_put(row, "most_in=%s costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s",
-                 SCENES[LADDER_SCENE[e->decided_in]].key, 1e3 * e->cost_s, e->is_needed ? "needed" : "not",
-                 e->is_set ? "yes" : "no", e->key, e->with, e->without);
-        json_array_append_new(effects, row);
-        if (ladder_says(l, i))
-            json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
-    }
-    if (l->hardening > 0)
-        json_put(settings, "building.hardening=%g", l->hardening);
-    for (int i = 0; l->hardening > 0 && i < (strcmp(l->yielding[0], "bilinear") == 0 ? 1 : YIELDING_KEYS); i++)
-        json_object_set_new(settings, YIELDING_KEY[i], json_string(l->yielding[i]));
-    for (int i = 0; i < LADDER_SCENES; i++)
-        json_object_set_new(by_set, SCENES[LADDER_SCENE[i]].key, json_by_measure(l->set[i], "", 1));
-    json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->all_hardening);
-    json_put(set, "ms=%g", 1e3 * l->set_s);
-    return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
-                   json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);
-}
-
 /* What has to be borne under the first record, by the chosen design and its baselines. */
 static json_t *json_of_loads(const Detail *d)
 {

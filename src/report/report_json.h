@@ -18,10 +18,6 @@ json_t *growth_json(const Run *run);
  * failed. */
 json_t *result_json(const SimResult *r, const MeasureOrder *order);
 
-/* What each effect changes [%], costs [ms], whether it is needed; the settings that are enough, and by them the design,
- * the rigid connection and the building alone. */
-json_t *ladder_json(const Ladder *l);
-
 /* explained, total, centres; null: too few designs succeeded. */
 json_t *importance_json(const Importance *m, const Schema *schema);
 

@@ -214,6 +214,27 @@ void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[],
     }
 }
 
+static const double GOLDEN_RATIO = 0.6180339887498949; /* its multiples modulo 1 are evenly spread */
+
+void design_spread(const DesignSpace *s, const DesignOptions *o, size_t k, size_t n, double sway_m, double x[])
+{
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    const int per_side = gaps_per_side(s);
+    design_bounds(s, o, lower, upper);
+    for (int j = 0; j < s->n_var; j++) {
+        int i = j;
+        const Group group = group_of(s, &i);
+        const double core = isinf(sway_m) ? 0.5 : (double)(k + 1) / (double)(n + 1);
+        const double share =
+            group == WALL || group == SIDE ? core : fmod(GOLDEN_RATIO * (j + 1) + (double)k / (double)n, 1);
+        if (group == GAP)
+            upper[j] = fmax(lower[j], fmin(upper[j], sway_m * (i % per_side + 1) / per_side));
+        x[j] =
+            design_is_log(s, j) ? lower[j] * pow(upper[j] / lower[j], share) : lower[j] + (upper[j] - lower[j]) * share;
+        x[j] = design_word(s, j, x[j]) ? round(x[j]) : x[j];
+    }
+}
+
 /* The value of a group for floor j: its zone's, or its own; `otherwise` where there is none. */
 static double of_floor(const DesignSpace *s, Group group, const double x[], int j, double otherwise)
 {

@@ -63,6 +63,7 @@ typedef struct Settings {
     ProblemOptions problem;
     SearchOptions search;
     RunOptions run;
+    unsigned char given[32]; /* a bit for each line of the table: something has said it (settings_gives) */
 } Settings;
 
 /* What a scene needs of them. */

@@ -81,8 +81,7 @@ static const Option OPTIONS[] = {
          "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
     BOUNDS(building.rayleigh_modes, "-", "1, 3", 1, 128, "rayleigh: the two modes that have building.damping"),
     LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
-         "heights of the storeys from the bottom where the files have none; the last for all further storeys",
-         .flags = SETTING_BASIC),
+         "heights of the storeys from the bottom where the files have none; the last for all further storeys"),
     CHOICE(building.rigid_floors, Switch, SWITCH_LIST, "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
     WHOLE(
@@ -189,6 +188,10 @@ static const Option OPTIONS[] = {
          "column floor_01_n, ... per floor, in N (docs/motions.md)",
          .flags = SETTING_FREE),
 
+    CHOICE(sim.model, ModelUse, MODEL_USE_LIST, "given",
+           "auto: a study simulates three designs with every effect of docs/ladder.md that is not set here, and takes "
+           "those that the scene needs; given: the effects of the settings",
+           .flags = SETTING_BASIC),
     CHOICE(sim.engine, Engine, ENGINE_LIST, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, ACCURACY_LIST, "standard",
@@ -312,7 +315,8 @@ static const Option OPTIONS[] = {
           "noisy"),
     TEXT(search.objectives, "auto",
          "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
-         "those of them that the building has; also p(NAME>NUMBER), the probability that one is exceeded"),
+         "those of them that the building has; also p(NAME>NUMBER), the probability that one is exceeded",
+         .flags = SETTING_BASIC),
     TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
          .flags = SETTING_BASIC),
     TEXT(search.aspire, "none",
@@ -328,7 +332,8 @@ _Static_assert(sizeof(PriceOptions) == 5 * sizeof(double), "a price for each of 
 _Static_assert(sizeof(RepairOptions) == 3 * sizeof(double), "a share for each of REPAIR_WORDS");
 _Static_assert(sizeof(UncertainOptions) == SHARES_MAX * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
-_Static_assert(N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
+_Static_assert(N_OPTIONS <= (int)TABLE_MAX && (int)TABLE_MAX == 8 * sizeof((Settings *)0)->given,
+               "a place for every setting");
 _Static_assert(OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
 
 const char *settings_key(int i)
@@ -485,6 +490,7 @@ Status table_assign(Settings *s, int at, const char *value, Err *err)
 {
     const Option *o = &OPTIONS[at];
     double number;
+    s->given[at / 8] |= (unsigned char)(1 << at % 8);
     switch (o->kind) {
     case KIND_REAL:
     case KIND_WHOLE:
@@ -515,6 +521,13 @@ void settings_defaults(Settings *s)
     memset(s, 0, sizeof *s);
     for (int i = 0; i < N_OPTIONS; i++)
         table_assign(s, i, OPTIONS[i].standard, NULL);
+    memset(s->given, 0, sizeof s->given);
+}
+
+int settings_gives(const Settings *s, const char *key)
+{
+    int i = 0;
+    return table_find(key, &i, &(Err){0}) == STATUS_OK && s->given[i / 8] >> i % 8 & 1;
 }
 
 /* Keys of earlier versions, which stand in their runs, and what is to be known of them today. One that changed results

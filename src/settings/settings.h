@@ -50,6 +50,9 @@ void settings_each_path(const Settings *s, SettingFn take, void *user);
 
 Status settings_put(Settings *s, const char *key, const char *value, Err *err);
 
+/* A file, an option or a call has said it, be it the default. */
+int settings_gives(const Settings *s, const char *key);
+
 /* "section.key=value" as given to --set. */
 Status settings_set(Settings *s, const char *assignment, Err *err);
 

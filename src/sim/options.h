@@ -35,6 +35,11 @@ typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
     X(ROBUST_CVAR, "cvar")
 typedef enum { ROBUST_LIST(CHOICE_NAME) ROBUST_QUANTILE /* no word: SimOptions.quantile */ } Robust;
 
+/* Which effects a study has: those that the settings say, or of those that they leave open what the scene needs
+ * (analysis/model_choice.h). */
+#define MODEL_USE_LIST(X) X(MODEL_AUTO, "auto") X(MODEL_GIVEN, "given")
+typedef enum { MODEL_USE_LIST(CHOICE_NAME) } ModelUse;
+
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 
@@ -50,6 +55,7 @@ typedef struct {
 } RepairOptions;
 
 typedef struct {
+    ModelUse model;
     Engine engine;
     Accuracy accuracy;
     double tolerance;         /* a number as sim.accuracy (sim_steps_per_contact); 0: accuracy is one of the presets */

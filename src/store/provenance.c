@@ -147,12 +147,12 @@ static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
         w->motion.dt_s, w->options.building.model, scene_n_floors(w->scene), hex(hashes->matrices, matrices));
 }
 
-Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)
+Status provenance_text(char **out, const Settings *s, const Adapter *adapter, json_t *model, Err *err)
 {
     Inputs hashes;
     *out = NULL;
     TRY(provenance_inputs(&hashes, adapter, err));
-    json_t *all = json_put(program_description(), "seed=%ld machine=%p inputs=%p", s->search.seed,
+    json_t *all = json_put(program_description(), "seed=%ld model=%p machine=%p inputs=%p", s->search.seed, model,
                            machine(adapter_threads(adapter)), inputs(s, adapter_tower(adapter), &hashes));
     *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(all);

@@ -18,8 +18,8 @@ void program_identity(size_t n, char text[]);
 /* Version, revision, compiler and its flags, libraries. NULL: out of memory. */
 json_t *program_description(void);
 
-/* As JSON, to be freed by the caller. */
-Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err);
+/* As JSON, to be freed by the caller. model: how it was chosen, which is taken; NULL: it was given. */
+Status provenance_text(char **out, const Settings *s, const Adapter *adapter, json_t *model, Err *err);
 
 /* What a run depends on beside its settings: hashes of the first record, of all records together, of the forces, and of
  * the matrices; 0 where there are none. */

@@ -192,6 +192,16 @@ Status store_forget_empty(RunStore *store, Err *err)
     return unlink(path) == 0 || errno == ENOENT ? STATUS_OK : fail_errno(err, path, "cannot be removed");
 }
 
+static Status write_provenance(const RunStore *store, const char *provenance, Err *err)
+{
+    char path[PATH_MAX];
+    Output o;
+    folder_path(store_folder(store), "provenance.json", path);
+    TRY(output_open_inside(&o, path, err));
+    fprintf(o.stream, "%s\n", provenance);
+    return output_close(&o, err);
+}
+
 /* Ready for a session: settings and provenance stand beside the database, and the log can be written to. */
 static Status make_ready(RunStore *store, const Settings *used, const char *provenance, Err *err)
 {
@@ -204,10 +214,7 @@ static Status make_ready(RunStore *store, const Settings *used, const char *prov
     TRY(output_open_inside(&o, path, err));
     settings_write(used, o.stream, SETTINGS_PLAIN, NULL);
     TRY(output_close(&o, err));
-    folder_path(store_folder(store), "provenance.json", path);
-    TRY(output_open_inside(&o, path, err));
-    fprintf(o.stream, "%s\n", provenance);
-    TRY(output_close(&o, err));
+    TRY(write_provenance(store, provenance, err));
     TRY(folder_log(store_folder(store), "", err));
     store->is_ready = 1;
     return STATUS_OK;
@@ -703,4 +710,11 @@ Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *er
     for (size_t i = 0; i < n; i++)
         THEN(status, insert_row(store, ROWS_FINER, &better[i], err));
     return status == STATUS_OK ? store_flush(store, err) : lose(store, status);
+}
+
+Status store_provenance(RunStore *store, const Run *run, Err *err)
+{
+    TRY(begin(store, err));
+    TRY(commit(store, tables_set_settings(store->db, run->settings, run, err), err));
+    return write_provenance(store, run->provenance, err);
 }

@@ -80,6 +80,9 @@ double store_hypervolume(const RunStore *store); /* of the last generation; NAN:
 /* A line of log.jsonl, "time" (UTC) added; the event is taken over. */
 Status store_event(RunStore *store, json_t *event, Err *err);
 
+/* The run has that provenance, which a run that was read from it has got. */
+Status store_provenance(RunStore *store, const Run *run, Err *err);
+
 /* One more design of the finished search has been tried to polish, n_tried of a search of n_simulated; `better` (NULL:
  * it did not become better) joins the run: it gets the next id, *id, and the kind `polished`. The search does not see
  * it: a run that is resumed later does what it would have done without. */

@@ -31,6 +31,7 @@ Status tables_have_room(const Schema *schema, Err *err);
 /* The database of a new run at `path`. Made beside its place and renamed: it is there whole or not at all. */
 Status tables_create(const char *path, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 
+/* With the provenance of the run. */
 Status tables_set_settings(Database *db, const Settings *used, const Run *run, Err *err);
 
 /* Their columns are those that this program makes, but for numbers of an evaluation that another version of it has or

@@ -12,6 +12,7 @@
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
 #include "store/provenance.h"
+#include "store/run_read.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
 #include "study/initial_designs.h"
@@ -20,12 +21,14 @@
 #include "study/record_race.h"
 #include "study/search_loop.h"
 #include "study/study_log.h"
+#include "study/study_model.h"
 
 typedef struct {
     Settings used;
     const StudyOptions *options;
     Adapter *adapter;
     RunStore *store;
+    json_t *model;         /* as it was chosen; NULL: it was not, or is stored */
     EvaluationTable first; /* of a new run: what was asked before it had columns */
     double *given;         /* (n_given, n_var) of search.start; NULL: not read, or none */
     size_t n_given;
@@ -244,7 +247,7 @@ static Status begin(Study *study, Err *err)
     TRY(search_config(study, &(SearchConfig){0}, err)); /* a start that is refused leaves no run */
     tell_start(study);
     TRY(ask_first(study, err));
-    TRY(provenance_text(&provenance, &study->used, study->adapter, err));
+    TRY(provenance_text(&provenance, &study->used, study->adapter, json_incref(study->model), err));
     const Status status = store_begin(study->store, adapter_schema(study->adapter), &study->used, provenance, err);
     free(provenance);
     TRY(status);
@@ -331,22 +334,45 @@ static Status resume(Study *study, Err *err)
     return store_resume(study->store, adapter_schema(study->adapter), &study->used, study->has_new_limits, err);
 }
 
+/* A run in which nothing was simulated is none. */
+static Status open_store(Study *study, Err *err)
+{
+    if (!study->store)
+        TRY(store_open(&study->store, study->used.run.out, study->options->fresh, err));
+    return store_forget_empty(study->store, err);
+}
+
+/* A new run chooses its model, where that is open, before there is a folder for it; one that is there has chosen. */
+static Status find_model(Study *study, Err *err)
+{
+    const int is_there = study->store || (!study->options->fresh && run_is_there(study->used.run.out));
+    if (study->used.sim.model == MODEL_AUTO && is_there)
+        TRY(open_store(study, err));
+    const Status status = study_model(&study->used, study->store ? store_run(study->store) : NULL,
+                                      &(Observer){.go_on = may_go_on, .user = study}, &study->model, err);
+    if (status == STATUS_STOPPED)
+        return fail(err, status, "%s: stopped before its model was chosen; nothing is stored", study->used.run.out);
+    TRY(status);
+    if (study->model && study->options->model)
+        study->options->model(study->model, study->options->user);
+    return STATUS_OK;
+}
+
 /* Opens problem and run, which begins or is resumed. */
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
     const double hours = s->search.max_hours;
     char *folder = study->summary->folder;
-    Settings open = *s;
-    open.problem.constraints = -1;
+    study->used = *s;
     study->max_s = hours > 0.0 ? 3600.0 * hours : INFINITY;
     TRY(hours == OPTION_WORD ? job_seconds(&study->max_s, err) : STATUS_OK);
+    TRY(find_model(study, err));
+    Settings open = study->used;
+    open.problem.constraints = -1;
     TRY(adapter_open(&study->adapter, &open, err));
-    if (!study->store)
-        TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
-    TRY(store_forget_empty(study->store, err));
+    TRY(open_store(study, err));
     snprintf(folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
-    study->used = *s;
     settings_make_absolute(&study->used);
     snprintf(study->used.run.out, OPTION_TEXT_MAX, "%.*s", OPTION_TEXT_MAX - 1, folder);
     return store_run(study->store) ? resume(study, err) : begin(study, err);
@@ -490,6 +516,9 @@ static Status work(Study *study, Err *err)
         TRY(note_stop(
             study, named_simulate(study->store, &study->used, adapter_problem(study->adapter), may_go_on, study, err),
             err));
+    if (sum->stopped != STOP_ASKED)
+        TRY(note_stop(study, study_model_confirm(study->store, &(Observer){.go_on = may_go_on, .user = study}, err),
+                      err));
     return finish(study, err);
 }
 
@@ -524,6 +553,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     }
     store_free(study.store);
     adapter_close(study.adapter);
+    json_decref(study.model);
     evaluation_table_free(&study.first);
     free(study.given);
     pthread_mutex_destroy(&study.lock);

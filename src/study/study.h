@@ -45,6 +45,7 @@ typedef struct {
     int (*stop)(void *user); /* a signal's number, 0: goes on; asked from any thread, often; NULL: never */
     /* n_busy: of n_workers so many may have something to simulate at once */
     void (*started)(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user);
+    void (*model)(const json_t *chosen, void *user); /* of a new run that chose its own (study/study_model.h) */
     void (*record)(const Scenario *w, void *user); /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;

@@ -1,0 +1,14 @@
+/* cmd/show_model.h -- what is to be said of a model that a study has chosen (study/study_model.h).
+ *
+ * Threads  no state */
+#pragma once
+
+#include <jansson.h>
+#include <stdio.h>
+
+/* What is on, what is left out, and what each changes; borrowed. */
+void show_model(FILE *out, const json_t *model);
+
+/* At the end: whether it is enough for the designs that the study names, and what to do where it is not; NULL: the
+ * model was given. */
+void show_model_confirmed(FILE *out, const json_t *model, const char *folder);

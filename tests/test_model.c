@@ -1,0 +1,271 @@
+/* The model that a study chooses (sim.model = auto): against simulations of what is meant, effects of which the answer
+ * is known beforehand, what the settings give, what it may cost, and a run that keeps what it has chosen. */
+#include "runs.h"
+
+#include "analysis/model_choice.h"
+#include "settings/settings.h"
+#include "study/study.h"
+
+static int make_buildings(void **state)
+{
+    char *folder;
+    if (make_place(state) != 0 || mkdir(folder = in_place("six"), 0777) != 0)
+        return -1;
+    free(folder);
+    write_in_place("six/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.6,390,354344\n3.6,390,318910\n3.6,390,283475\n"
+                                      "3.6,390,248041\n3.6,390,212606\n3.6,390,177172\n");
+    write_in_place("s.ini", "[building]\nmodel = six\n[core]\nwidth_m = 4\n[design]\ngap_m = 0.001, 0.13\n"
+                            "[motion]\nrecord = builtin:elcentro-like\npga_g = 0.35\n[sim]\nmodel = auto\n"
+                            "duration_s = 8\naccuracy = coarse\n[search]\nobjectives = j1_m, drift_ratio, j3_g\n"
+                            "initial = 12\npopulation = 8\nmax_evals = 24\nthreads = 2\npolish = 0\n");
+    return 0;
+}
+
+static Settings scene_of(const char *const sets[])
+{
+    Settings s;
+    char *path = in_place("s.ini");
+    settings_defaults(&s);
+    CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
+    free(path);
+    for (; *sets; sets++)
+        CHECK_OK(settings_set(&s, *sets, &err), &err);
+    return s;
+}
+
+static int never(void *user)
+{
+    (void)user;
+    return 1;
+}
+
+static ModelChoice *chosen(Settings *s)
+{
+    ModelChoice *c = malloc(sizeof *c);
+    CHECK_OK(model_choose(s, &(Observer){.go_on = never}, c, &err), &err);
+    return c;
+}
+
+static const LadderEffect *effect(const ModelChoice *c, const char *key)
+{
+    for (size_t i = 0; i < c->ladder.n; i++)
+        if (strcmp(c->ladder.effect[i].key, key) == 0)
+            return &c->ladder.effect[i];
+    return NULL;
+}
+
+static Measured simulated(const Settings *s, SceneKind kind, const double x[])
+{
+    Problem p;
+    SimResult r;
+    CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
+    problem_close(&p);
+    return measured(&r);
+}
+
+/* The three designs, as they are meant: gaps up to where the building with all effects sways. */
+static void designs_of(const Settings *all, double X[3][DESIGN_VARIABLES_MAX])
+{
+    DesignSpace space;
+    const double sway_m = simulated(all, SCENE_NO_CORE, NULL).value[MEASURE_J1];
+    CHECK_OK(tower_space(all, &space, &err), &err);
+    for (size_t k = 0; k < 3; k++) {
+        design_spread(&space, &all->design, k, 3, sway_m, X[k]);
+        for (int j = 0; j < space.n_gaps; j++)
+            assert_true(X[k][j] >= 0.001 && X[k][j] <= sway_m * (j + 1) / space.n_gaps);
+    }
+}
+
+TEST(what_is_chosen_is_within_the_tolerance_of_all_effects_in_every_scene_of_every_design)
+{
+    Settings s = scene_of((const char *const[]){"motion.pga_g=0.15", NULL}), all = s;
+    ModelChoice *c = chosen(&s);
+    double X[3][DESIGN_VARIABLES_MAX];
+    int n_off = 0;
+    for (size_t i = 0; i < c->ladder.n; i++) {
+        const LadderEffect *e = &c->ladder.effect[i];
+        CHECK_OK(settings_put(&all, e->key, e->with, &err), &err);
+        n_off += !e->is_kept;
+    }
+    assert_true(c->n_cases == 3 && c->n_records == 1);
+    assert_less(0, n_off);
+    designs_of(&all, X);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < LADDER_SCENES; i++) {
+            const Measured set = simulated(&s, LADDER_SCENE[i], X[k]), whole = simulated(&all, LADDER_SCENE[i], X[k]);
+            for (int m = 0; m < LADDER_MEASURES; m++)
+                assert_at_most(fabs(ladder_change(&set, &whole, m)),
+                               i == 0 ? c->ladder.tolerance[m] : LADDER_TOLERANCE);
+        }
+    free(c);
+}
+
+/* Each alone, from the model with all: some scene of the design in which it was found changes by more. */
+TEST(what_is_needed_changes_one_of_the_designs_by_more_than_the_tolerance)
+{
+    Settings s = scene_of((const char *const[]){NULL}), all = s;
+    ModelChoice *c = chosen(&s);
+    double X[3][DESIGN_VARIABLES_MAX];
+    for (size_t i = 0; i < c->ladder.n; i++)
+        CHECK_OK(settings_put(&all, c->ladder.effect[i].key, c->ladder.effect[i].with, &err), &err);
+    designs_of(&all, X);
+    for (size_t i = 0; i < c->ladder.n; i++) {
+        const LadderEffect *e = &c->ladder.effect[i];
+        Settings without = all;
+        double most = 0;
+        CHECK_OK(settings_put(&without, e->key, e->without, &err), &err);
+        for (int k = 0; k < 3 && e->is_needed; k++)
+            for (int j = 0; j < LADDER_SCENES; j++) {
+                const Measured to = simulated(&without, LADDER_SCENE[j], X[k]),
+                               from = simulated(&all, LADDER_SCENE[j], X[k]);
+                for (int m = 0; m < LADDER_MEASURES; m++)
+                    most = fmax(most, fabs(ladder_change(&to, &from, m)));
+            }
+        assert_true(!e->is_needed || most > LADDER_TOLERANCE);
+    }
+    free(c);
+}
+
+TEST(what_the_settings_give_stays_be_it_the_default)
+{
+    Settings s = scene_of((const char *const[]){"building.p_delta=off", "core.foundation=rotation=5.5e11", NULL});
+    ModelChoice *c = chosen(&s);
+    assert_true(effect(c, "building.p_delta")->is_set && effect(c, "core.foundation")->is_set);
+    assert_false(effect(c, "core.theory")->is_set);
+    assert_int_equal(s.building.p_delta, SWITCH_OFF);
+    assert_string_equal(s.core.foundation, "rotation=5.5e11");
+    free(c);
+}
+
+/* Light storeys that stay elastic: their weight softens nothing, and no drift comes near 1 %. */
+TEST(of_a_stiff_building_in_a_weak_motion_neither_p_delta_nor_yielding_is_needed)
+{
+    Settings s = scene_of((const char *const[]){"motion.pga_g=0.02", NULL});
+    ModelChoice *c = chosen(&s);
+    assert_false(effect(c, "building.yield_drift")->is_kept);
+    assert_same_number(s.building.yield_drift, 0);
+    assert_less(effect(c, "building.yield_drift")->most, 0.1);
+    free(c);
+}
+
+TEST(the_end_of_the_record_is_open_where_only_peaks_are_searched_for)
+{
+    Settings peaks = scene_of((const char *const[]){NULL}), shares;
+    memset(peaks.given, 0, sizeof peaks.given);
+    peaks.sim.duration_s = 0;
+    shares = peaks;
+    CHECK_OK(settings_set(&shares, "search.objectives=j1_m, ed1_pct", &err), &err);
+    ModelChoice *c = chosen(&peaks);
+    assert_false(effect(c, "sim.duration_s")->is_set);
+    free(c);
+    c = chosen(&shares);
+    assert_true(effect(c, "sim.duration_s")->is_set && shares.sim.duration_s == 0);
+    free(c);
+}
+
+TEST(it_costs_60_simulations_or_3_percent_and_sees_every_record_that_it_can)
+{
+    Settings few = scene_of((const char *const[]){"motion.records=builtin:suite", "sim.duration_s=4", NULL});
+    ModelChoice *c = chosen(&few);
+    assert_int_equal(c->n_records, 23);
+    assert_true(c->n_simulations <= 60 && c->n_cases < 23);
+    free(c);
+    Settings three = scene_of((const char *const[]){"motion.records=builtin:kobe-like, builtin:sylmar-like", NULL});
+    c = chosen(&three);
+    assert_true(c->n_records == 3 && c->n_cases >= 3 && c->n_simulations <= 60);
+    free(c);
+    Settings many = scene_of((const char *const[]){"motion.records=builtin:kobe-like, builtin:sylmar-like",
+                                                   "search.max_evals=4000", "sim.duration_s=3", NULL});
+    c = chosen(&many);
+    assert_true(c->n_cases == 9 && c->n_simulations <= 360);
+    free(c);
+}
+
+TEST(any_number_of_threads_chooses_the_same)
+{
+    Settings one = scene_of((const char *const[]){"search.threads=1", NULL}), four = one;
+    four.search.threads = 4;
+    ModelChoice *a = chosen(&one), *b = chosen(&four);
+    four.search.threads = 1;
+    assert_memory_equal(&one, &four, sizeof one);
+    for (size_t i = 0; i < a->ladder.n; i++)
+        assert_same_number(a->ladder.effect[i].most, b->ladder.effect[i].most);
+    assert_int_equal(a->n_simulations, b->n_simulations);
+    free(a);
+    free(b);
+}
+
+static json_t *model_of(const char *run)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s/provenance.json", run);
+    char *text = read_in_place(name);
+    json_t *all = json_loads(text, 0, NULL), *model = json_incref(json_object_get(all, "model"));
+    json_decref(all);
+    free(text);
+    return model;
+}
+
+/* Lets `left` questions pass, then stops. */
+static int stop_after(void *user)
+{
+    int left;
+#pragma omp atomic capture
+    left = --*(int *)user;
+    return left < 0;
+}
+
+TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopped)
+{
+    Settings s = scene_of((const char *const[]){NULL});
+    StudySummary summary;
+    Status status = STATUS_STOPPED;
+    char *folder = in_place("parts");
+    snprintf(s.run.out, sizeof s.run.out, "%s", folder);
+    free(folder);
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &(int){3}}, &summary, NULL, &err),
+                     STATUS_STOPPED);
+    assert_non_null(strstr(err.text, "stopped before its model was chosen; nothing is stored"));
+    for (int k = 100; status == STATUS_STOPPED; k += 20)
+        status = study_run(&s, &(StudyOptions){.stop = stop_after, .user = &(int){k}}, &summary, NULL, &err);
+    CHECK_OK(status, &err);
+    free(output_of("optimize @/s.ini --out @/whole"));
+    char *a = all_of("whole"), *b = all_of("parts");
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+    json_t *model = model_of("whole"), *confirmed = json_object_get(model, "confirmed");
+    assert_less(0, json_array_size(json_object_get(confirmed, "designs")));
+    Run run = run_in("whole");
+    assert_string_equal(run.settings->core.foundation,
+                        json_string_value(json_object_get(json_object_get(model, "settings"), "core.foundation")));
+    run_free(&run);
+    json_decref(model);
+    expect(65, "building.p_delta is",
+           "optimize @/s.ini --out @/whole --set building.p_delta=off --set core.theory=euler_bernoulli");
+    expect(65, "sim.model: auto in the run, now given", "optimize @/s.ini --out @/whole --set sim.model=given");
+}
+
+/* What the end finds is what simulations of the named designs say, and with it they are within the tolerance. */
+TEST(where_a_named_design_needs_more_both_values_and_the_command_are_said)
+{
+    Ladder l = {.n = 1, .tolerance = {0.02, 0.02, 0.02}};
+    Settings s = scene_of((const char *const[]){"core.theory=euler_bernoulli", NULL});
+    double X[3][DESIGN_VARIABLES_MAX];
+    ModelCase *cases;
+    size_t n;
+    l.effect[0] = (LadderEffect){
+        .words = "shear", .key = "core.theory", .with = "timoshenko", .without = "euler_bernoulli", .most = 1};
+    designs_of(&s, X);
+    CHECK_OK(model_confirm(&s, 1, 8, X[1], &(Observer){.go_on = never}, &l, &cases, &n, &err), &err);
+    assert_int_equal(n, 1);
+    assert_true(l.effect[0].is_kept);
+    Settings more = s;
+    more.core.theory = CORE_TIMOSHENKO;
+    assert_same_number(cases[0].by_set.value[MEASURE_J1], simulated(&s, SCENE_IMPACT, X[1]).value[MEASURE_J1]);
+    assert_same_number(cases[0].by_more.value[MEASURE_J1], simulated(&more, SCENE_IMPACT, X[1]).value[MEASURE_J1]);
+    free(cases);
+}
+
+SUITE(make_buildings, clear_place)
