@@ -205,10 +205,34 @@ TEST(a_second_time_it_is_the_design_of_the_first)
     free(after);
 }
 
+/* The best one on steps is there, marked; the --keep that is named leads to a design that keeps it. */
+TEST(what_loses_too_much_is_stored_and_named_with_the_keep_that_would_do)
+{
+    Said said;
+    char *folder = in_place("run"), words[300];
+    free(output_of("optimize %s --new --out @/again", folder));
+    free(folder);
+    run(&said, "simplify @/again --plates 8 --keep j1_m=0.1%%");
+    assert_int_equal(said.code, 69);
+    Run now = run_in("again");
+    const Evaluation *last = &now.table.row[now.table.n - 1];
+    assert_int_equal(last->kind, KIND_POLISHED);
+    assert_non_null(strstr(last->reason, " beyond --keep"));
+    const double loses = last->f[0] / run_f(&now, run_knee(&now))[0] - 1;
+    const char *at = strstr(said.err, "--keep j1_m=");
+    assert_non_null(at);
+    const double keep = strtod(at + strlen("--keep j1_m="), NULL);
+    assert_true(keep >= loses && keep < loses + 1.1e-3);
+    snprintf(words, sizeof words, "the best design on these steps is design %ld, but j1_m loses ", last->id);
+    assert_non_null(strstr(said.err, words));
+    run_free(&now);
+    forget(&said);
+    free(output_of("simplify @/again --plates 8 --keep j1_m=%g", keep));
+}
+
 TEST(what_cannot_be_simplified_says_so_by_its_status)
 {
-    expect(69, "not stored: on these steps it loses more than may be lost",
-           "simplify @/run --plates 8 --keep j1_m=0.1%");
+    expect(69, "j1_m loses ", "simplify @/run --plates 8 --keep j1_m=0.1%");
     expect(2, "--zones", "simplify @/run --zones 21");
 }
 

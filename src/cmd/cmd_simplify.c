@@ -2,6 +2,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/improve.h"
+#include "evaluate/limits.h"
 #include "study/simplify.h"
 
 static const double KEPT = 0.02, KEPT_OTHERS = 0.1;
@@ -94,24 +95,60 @@ static void show(const Improve *m)
         puts("The design violates the limits of its run, and so may what is made of it.");
 }
 
-/* The end of the path is stored where it keeps what is to be kept, and the run does not have it: who asks for the same
- * a second time gets the same answer. */
+static int is_unmet(const Improve *m)
+{
+    return m->result.loss[m->result.designs.n - 1] > 1.0;
+}
+
+/* What the end of the path loses beyond what may be lost, and the --keep that would do; the limits that it breaks. */
+static Status fail_unmet(const Improve *m, Err *err)
+{
+    const Schema *s = &m->run.schema;
+    const EvaluationTable *path = &m->result.designs;
+    const Evaluation *start = &path->row[0], *last = &path->row[path->n - 1];
+    char lost[200] = "", keep[200] = "";
+    double g[LIMITS_MAX];
+    Limits limits;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        const double may = m->config.slack[k], sense = schema_objective(s, k)->sense;
+        const double loses = sense * (last->f[k] - start->f[k]) / fmax(fabs(start->f[k]), 1e-300);
+        const size_t n = strlen(lost), n_keep = strlen(keep);
+        if (!isfinite(may))
+            continue;
+        if (loses > may)
+            snprintf(lost + n, sizeof lost - n, "%s%s loses %.2g %% (%.2g %% may be lost)", n ? ", " : "",
+                     schema_objective(s, k)->name, 100 * loses, 100 * may);
+        snprintf(keep + n_keep, sizeof keep - n_keep, "%s%s=%.4g", n_keep ? "," : "", schema_objective(s, k)->name,
+                 fmax(may, ceil(1e3 * loses) / 1e3));
+    }
+    TRY(limits_read(&limits, s, m->run.settings->search.limits, err));
+    limits_apply(&limits, s->n_obj, last, g);
+    for (size_t i = 0; i < limits.n && last->violation > start->violation; i++) {
+        const size_t n = strlen(lost), r = limits.limit[i].result;
+        if (g[i] > 0)
+            snprintf(lost + n, sizeof lost - n, "%s%s misses its limit by %.2g %%", n ? ", " : "",
+                     s->column[s->n_var + r].name, 100 * g[i]);
+    }
+    return fail(err, STATUS_UNMET, "%s: the best design on these steps is design %ld, but %s; %s%s", m->run.folder,
+                m->id, lost,
+                last->violation > start->violation ? "take finer steps or more plates" : "this would do: --keep ",
+                last->violation > start->violation ? "" : keep);
+}
+
+/* The end of the path is stored, marked where it does not keep what is to be kept, unless the run has it: who asks for
+ * the same a second time gets the same answer. */
 static Status store_end(Improve *m, Err *err)
 {
     const EvaluationTable *path = &m->result.designs, *has = &m->run.table;
     Evaluation *last = &path->row[path->n - 1];
-    char reason[48];
-    if (m->result.loss[path->n - 1] > 1.0)
-        return fail(err, STATUS_UNMET,
-                    "%s: not stored: on these steps it loses more than may be lost, or violates limits: finer steps, "
-                    "more plates or another --keep",
-                    m->run.folder);
+    char reason[64];
     for (size_t i = 0; i < has->n; i++)
         if (memcmp(last->x, has->row[i].x, has->n_var * sizeof *last->x) == 0) {
             m->id = has->row[i].id;
             return STATUS_OK;
         }
-    snprintf(reason, sizeof reason, "%s%ld", SIMPLIFIED_FROM, has->row[m->row].id);
+    snprintf(reason, sizeof reason, "%s%ld%s", SIMPLIFIED_FROM, has->row[m->row].id,
+             is_unmet(m) ? " beyond --keep" : "");
     last->reason = reason;
     return improve_store(m, last, err);
 }
@@ -127,9 +164,10 @@ static Status work(const Args *args, Improve *m, Err *err)
         show(m);
     TRY(store_end(m, err));
     if (as_json)
-        return show_json(json_of("design=%ld path=%p", m->id, table_of(m)), err);
-    improve_say(m);
-    return STATUS_OK;
+        TRY(show_json(json_of("design=%ld path=%p", m->id, table_of(m)), err));
+    else
+        improve_say(m);
+    return is_unmet(m) ? fail_unmet(m, err) : STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
@@ -156,11 +194,11 @@ const Command CMD_SIMPLIFY = {
     .summary = "a design that can be built: fewer stops, standard gaps, stock plates",
     .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
     .details =
-
         "Makes a design (default: the knee) easier to build, step by step: it removes stops that never close,\n"
         "makes the floors of a zone alike, rounds gaps and walls to steps, moves them on these steps, and\n"
         "removes devices that gain less than --keep. Each step is simulated under all records of RUN. Prints\n"
-        "the path and stores its end in the run; its kind is polished.",
+        "the path and stores its end in the run; its kind is polished. An end that loses more than --keep allows is\n"
+        "marked (exit status 69), and the --keep that would do is named.",
     .options = OPTIONS,
     .run = run,
 };

@@ -68,7 +68,9 @@ static Status append_rows(Run *to, const Run *from, int polished, long added, Er
         e.id += added;
         e.err = NULL;
         if (strncmp(e.reason, SIMPLIFIED_FROM, n) == 0) { /* the design that this one was made of has another id now */
-            snprintf(reason, REASON_MAX, "%s%ld", SIMPLIFIED_FROM, strtol(e.reason + n, NULL, 10) + added);
+            char *rest;
+            const long from_id = strtol(e.reason + n, &rest, 10) + added;
+            snprintf(reason, REASON_MAX, "%s%ld%s", SIMPLIFIED_FROM, from_id, rest);
             e.reason = reason;
         }
         TRY(evaluation_table_append(&to->table, &e, err));

@@ -14,7 +14,7 @@
  *
  * Every design is simulated as the run's were: under all records, with all replicates; those of a round side by side.
  * What twice the steps change in a design of the path is its error. Where step 5 cannot keep what is to be kept the
- * path ends there, and the design with it. */
+ * path ends there, with the design on steps that loses least. */
 #pragma once
 
 #include "study/improver.h"
