@@ -268,4 +268,77 @@ TEST(where_a_named_design_needs_more_both_values_and_the_command_are_said)
     free(cases);
 }
 
+/* -- presets ------------------------------------------------------------------------------------------------------- */
+
+static Settings begun(const char *folder)
+{
+    Settings s;
+    char name[64];
+    snprintf(name, sizeof name, "%s/study.ini", folder);
+    char *path = in_place(name);
+    settings_defaults(&s);
+    CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
+    free(path);
+    return s;
+}
+
+/* Six storeys of 3.6 m, 2,340 t, 0.95 s: 0.6 % of 21.6 m are 0.13 m, a seventh 3.1 m; 2 M w / n is 5.16 MN s/m. */
+TEST(a_preset_has_the_box_of_its_building_and_what_options_say_comes_before_it)
+{
+    free(output_of("new @/devices --preset devices --set building.model=@/six"));
+    const Settings s = begun("devices");
+    assert_int_equal(s.sim.model, MODEL_AUTO);
+    assert_close(s.design.gap_m.at[1], 0.13, 1e-12);
+    assert_close(s.core.width_m, 3.1, 1e-12);
+    assert_true(s.design.link_n_s_m.at[0] == 1.5e5 && s.design.link_n_s_m.at[1] == 1.5e7);
+    assert_true(s.design.gap_zones == 5 && s.design.link_zones == 5 && s.design.device_zones == 5);
+    assert_same_number(s.motion.pga_g, 0);
+    assert_int_equal(s.search.max_evals, 300);
+    expect_output(": no fault", "check @/devices/study.ini --pga 9");
+    free(output_of(
+        "new @/stops --preset stops --set building.model=@/six --set core.width_m=4 --set design.gap_m=0.01,0.2"));
+    const Settings stops = begun("stops");
+    assert_true(stops.core.width_m == 4 && stops.design.gap_m.at[1] == 0.2 && stops.design.device_zones == 0);
+}
+
+TEST(every_preset_is_a_study_that_checks)
+{
+    static const char *const NAMES[] = {"stops", "devices", "engineer", "risk"};
+    for (size_t i = 0; i < N_OF(NAMES); i++) {
+        free(output_of("new @/of-%s --preset %s --set building.model=@/six --set building.yield_drift=0.01", NAMES[i],
+                       NAMES[i]));
+        free(output_of("check @/of-%s/study.ini", NAMES[i]));
+    }
+}
+
+static void is_same(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    (void)user;
+    if (!(flags & SETTING_FREE))
+        fail_msg("%s: %s in configs/kobe.ini, %s by the preset", key, was, is);
+}
+
+TEST(the_paper_s_preset_is_configs_kobe_ini)
+{
+    Settings kobe;
+    free(output_of("new @/paper --preset paper"));
+    const Settings s = begun("paper");
+    settings_defaults(&kobe);
+    CHECK_OK(settings_read(&kobe, "configs/kobe.ini", NULL, NULL, &err), &err);
+    settings_compare(&kobe, &s, is_same, NULL);
+}
+
+TEST(files_that_are_not_there_and_presets_that_are_none_begin_nothing)
+{
+    expect(66, "motion.record: RECORD.AT2: there is no such file", "new @/no --record RECORD.AT2");
+    expect(66, "building.model: ", "new @/no --preset devices --set building.model=@/none");
+    expect(2, "--preset: device is no preset; did you mean devices?", "new @/no --preset device");
+    char *path = in_place("no");
+    assert_int_equal(access(path, F_OK), -1);
+    free(path);
+    free(output_of("new @/plain"));
+    const Settings s = begun("plain");
+    assert_int_equal(s.sim.model, MODEL_AUTO);
+}
+
 SUITE(make_buildings, clear_place)

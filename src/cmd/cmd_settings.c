@@ -1,11 +1,13 @@
 #include <errno.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/text.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
+#include "scene/building.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
@@ -50,15 +52,123 @@ const Command CMD_SETTINGS = {
     .only_reads = 1,
 };
 
+/* ---- new --------------------------------------------------------------------------------------------------------- */
+
+/* Studies to begin with: their settings, KEY=VALUE, beside those by the building (fit_building). What is not there keeps
+ * its default. The paper's is configs/kobe.ini. */
+static const struct {
+    const char *name, *settings[10];
+} PRESETS[] = {
+    {"stops", {"search.objectives=j1_m, drift_ratio, j3_filtered_g, mcore_kg", "search.max_evals=300"}},
+    {"devices",
+     {"design.variables=gaps, thickness, links", "design.devices=gap, link, none",
+      "search.objectives=j1_m, drift_ratio, j3_filtered_g, cost", "search.max_evals=300"}},
+    {"engineer",
+     {"design.variables=gaps, thickness, links", "design.devices=gap, link, none", "sim.forces=yes",
+      "search.objectives=j1_m, drift_ratio, j3_filtered_g, cost", "search.max_evals=600",
+      "search.limits=drift_ratio<=0.02, core_stress_pa<=3.45e8, core_buckling_ratio<=1, contact_force_max_n<=6.5e6"}},
+    {"risk",
+     {"motion.records=builtin:suite", "sim.robust=mean", "search.fidelity=records",
+      "search.objectives=loss, j1_m, drift_ratio, mcore_kg", "search.limits=p(drift_ratio>0.02)<=0.1",
+      "search.max_evals=300"}},
+    {"paper",
+     {"sim.model=given", "core.theory=euler_bernoulli", "motion.pga_g=0.3", "motion.stretch=3.1",
+      "search.max_evals=1500", "search.stop_after=1000"}},
+};
+
+static Status take_preset(const char *name, Settings *s, Err *err)
+{
+    const char *known[N_OF(PRESETS)];
+    for (size_t i = 0; i < N_OF(PRESETS); i++) {
+        known[i] = PRESETS[i].name;
+        for (const char *const *set = PRESETS[i].settings; strcmp(name, known[i]) == 0; set++)
+            if (*set)
+                TRY(settings_set(s, *set, err));
+            else
+                return STATUS_OK;
+    }
+    return fail_no_word(err, STATUS_USAGE, "--preset", name, "preset", known, N_OF(PRESETS));
+}
+
+/* Unless an option says it. */
+__attribute__((format(printf, 4, 5))) static Status put_unless_given(const Args *args, Settings *s, const char *key,
+                                                                     const char *format, ...)
+{
+    char value[OPTION_TEXT_MAX];
+    Err err;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    return args_gives(args, key) ? STATUS_OK : settings_put(s, key, value, &err);
+}
+
+/* The search box by the building: gaps of up to 0.6 % of its height, which is what a building of steel sways by; a core
+ * as slender as that of the paper's tower; links of 3 to 300 % of the dashpot per floor that would damp the first mode
+ * critically, were the building rigid; and five zones of floors at most. */
+static Status fit_building(const Args *args, Settings *s, Err *err)
+{
+    static const double SWAY = 0.006, SLENDERNESS = 7, LEAST = 0.03, MOST = 3;
+    enum { ZONES = 5 };
+    Building b;
+    double height = 0;
+    TRY(building_load(&b, &s->building, err));
+    for (int j = 0; j < b.n; j++)
+        height += b.storey_m[j];
+    const int n = b.n, zones = MIN_OF(b.n, (int)ZONES);
+    const double per_floor = 2 * building_mass(&b) * b.omega[0] / n;
+    building_free(&b);
+    TRY(put_unless_given(args, s, "design.gap_m", "0.001, %.2g", SWAY * height));
+    TRY(put_unless_given(args, s, "core.width_m", "%.2g", height / SLENDERNESS));
+    if (!strstr(s->design.variables, "links"))
+        return STATUS_OK;
+    TRY(put_unless_given(args, s, "design.link_n_s_m", "%.2g, %.2g", LEAST * per_floor, MOST * per_floor));
+    if (zones == n)
+        return STATUS_OK;
+    TRY(put_unless_given(args, s, "design.gap_zones", "%d", zones));
+    TRY(put_unless_given(args, s, "design.link_zones", "%d", zones));
+    return put_unless_given(args, s, "design.device_zones", "%d", zones);
+}
+
+typedef struct {
+    Status status;
+    Err *err;
+} Looked;
+
+/* Is the file there that a setting names? The first that is not ends in words that say which setting it is. */
+static void look_for(const char *key, const char *path, void *user)
+{
+    Looked *l = user;
+    Err why;
+    if (l->status != STATUS_OK || access(path, F_OK) == 0)
+        return;
+    fail_missing(&why, path);
+    l->status = fail(l->err, why.code, "%s: %s", key, why.text);
+}
+
+static Status settings_of_new(const Args *args, Settings *s, Err *err)
+{
+    const char *preset = args_value(args, "--preset");
+    Looked looked = {.err = err};
+    settings_defaults(s);
+    TRY(settings_put(s, "sim.model", "auto", err));
+    if (preset)
+        TRY(take_preset(preset, s, err));
+    TRY(args_apply(args, s, NULL, NULL, err));
+    settings_each_path(s, look_for, &looked);
+    TRY(looked.status);
+    if (preset && s->sim.model == MODEL_AUTO)
+        TRY(fit_building(args, s, err));
+    return settings_check(s, err);
+}
+
 static Status begin(const Args *args, Err *err)
 {
     static const char NAME[] = "study.ini";
     char path[PATH_MAX], quoted[4 * PATH_MAX + 3];
     Settings s;
     Output o;
-    settings_defaults(&s);
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_check(&s, err));
+    TRY(settings_of_new(args, &s, err));
     if (snprintf(path, sizeof path, "%s/%s", args->operand, NAME) >= (int)sizeof path)
         return misused(err, "%.60s...: the path is too long", args->operand);
     if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
@@ -82,16 +192,21 @@ static Status begin(const Args *args, Err *err)
     return STATUS_OK;
 }
 
-static const ArgOption NEW_OPTIONS[] = {OPTION_RECORD, OPTION_PGA, OPTION_SET, OPTION_END};
+static const ArgOption NEW_OPTIONS[] = {
+    VALUE("--preset", "NAME",
+          "a short study that decides: stops, devices (stops, links or nothing), engineer (with limits), risk, paper"),
+    OPTION_RECORD, OPTION_PGA, OPTION_SET, OPTION_END};
 
 const Command CMD_NEW = {
     .name = "new",
     .group = GROUP_PREPARE,
     .operand = "FOLDER",
     .summary = "begin a study: a folder with the settings that a first one touches",
-    .example = "imtet new tower --set building.model=tower/K-and-M --record tower/kobe.at2 --pga 0.3",
-    .details = "Writes FOLDER/study.ini: fifteen settings, each after its meaning, unit and range. Paths in it begin\n"
-               "at FOLDER. Its run goes to results/FOLDER.",
+    .example = "imtet new tower --preset devices --set building.model=tower/storeys --record tower/kobe.at2",
+    .details =
+        "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files, which must be there, by\n"
+        "their path from FOLDER. Its run goes to results/FOLDER. A preset has few objectives and a box by the\n"
+        "building: gaps of up to 0.6 % of its height, a core of a seventh of it; options and --set come before it.",
     .options = NEW_OPTIONS,
     .run = begin,
     .only_reads = 1,

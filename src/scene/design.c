@@ -231,7 +231,8 @@ void design_spread(const DesignSpace *s, const DesignOptions *o, size_t k, size_
             upper[j] = fmax(lower[j], fmin(upper[j], sway_m * (i % per_side + 1) / per_side));
         x[j] =
             design_is_log(s, j) ? lower[j] * pow(upper[j] / lower[j], share) : lower[j] + (upper[j] - lower[j]) * share;
-        x[j] = design_word(s, j, x[j]) ? round(x[j]) : x[j];
+        if (design_word(s, j, x[j])) /* the first design has the first word everywhere, stops alone say */
+            x[j] = isfinite(sway_m) && k == 0 ? 0 : round(x[j]);
     }
 }
 
@@ -265,7 +266,7 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
         if (word != FLOOR_FRICTION)
             d->friction[j] = 0;
         if (word == FLOOR_GAP)
-            d->bumper[j] = 0;
+            d->bumper[j] = -1;
     }
     d->t_base = s->n_walls ? wall[0] : 0;
     d->t_top = s->n_walls ? wall[1] : 0;

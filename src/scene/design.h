@@ -88,8 +88,8 @@ int design_is_log(const DesignSpace *space, int j);
 /* The box of the search (n_var). */
 void design_bounds(const DesignSpace *space, const DesignOptions *o, double lower[], double upper[]);
 
-/* Design k of n that are spread over that box; gaps up to where the floors sway, the roof by sway_m, and as many cores.
- * sway_m INFINITY: all gaps of the box, and the core in its middle. */
+/* Design k of n that are spread over that box; gaps up to where the floors sway, the roof by sway_m, as many cores,
+ * and the first with the first word everywhere. sway_m INFINITY: all gaps of the box, and the core in its middle. */
 void design_spread(const DesignSpace *space, const DesignOptions *o, size_t k, size_t n, double sway_m, double x[]);
 
 /* A design as it is built. */
