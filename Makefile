@@ -95,8 +95,14 @@ help: ## this list
 setup: ## installs the Debian packages of scripts/packages.txt that are missing
 	@scripts/setup
 
+# `make all` that says how much of it is done: "17 of 180" on one line of a terminal.
+COUNTED = n=$$($(MAKE) -n all 2>/dev/null | grep -c "^echo '  [ACL]"); rm -f build/unbuilt; test -t 1 && end='\033[K\r' || end='\n'; \
+    { $(MAKE) --no-print-directory -j$(JOBS) all || { mkdir -p build && touch build/unbuilt; }; } | \
+    awk -v n=$$n -v end="$$end" '/^  [ACL]/ { printf "  %d of %d %s" end, ++i, n, $$2; fflush(); next } { print }'; \
+    test ! -e build/unbuilt || exit 2; echo
+
 run: setup ## the README's first command: packages, build, self-test, quick study
-	@$(MAKE) --no-print-directory -j$(JOBS) all
+	@$(COUNTED)
 	./imtet check --self
 	./imtet optimize configs/quick.ini
 

@@ -137,7 +137,7 @@ Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings 
         e->is_set = settings_gives(s, e->key);
         e->cost_s = NAN;
         if (e->is_set)
-            settings_each(s, take_value, &(Wanted){e->key, e->with});
+            settings_each(s, e->key, take_value, e->with);
         else
             TRY(settings_put(all, e->key, e->with, err));
     }

@@ -415,6 +415,8 @@ static Status list_cases(Choosing *c, size_t n, size_t n_var, const double X[], 
 static Status confirm(Choosing *c, ModelCase cases[], Err *err)
 {
     int is_enough;
+    if (c->n_cases == 0)
+        return STATUS_OK;
     TRY(try_set(c, &is_enough, err));
     for (size_t i = 0; i < c->n_cases; i++)
         cases[i] = (ModelCase){.x = c->at[i].x, .record = c->at[i].record, .by_set = c->at[i].set.scene[0]};

@@ -13,7 +13,6 @@
 #include "settings/settings.h"
 #include "store/export.h"
 #include "store/run_read.h"
-#include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
 #include "study/study_model.h"
@@ -37,20 +36,15 @@ static void tell(const StudyProgress *p, void *user)
 {
     Telling *t = user;
     const SearchView *v = p->view;
-    char left[32], hypervolume[32], line[256];
+    char left[32], line[160], front[80] = "";
     if (!t->terminal && p->progress.session_s < t->told_s + TELL_EVERY_S)
         return;
     t->told_s = p->progress.session_s;
     duration_words(progress_left(&p->progress, &p->settings->search), left);
-    snprintf(hypervolume, sizeof hypervolume, isfinite(p->hypervolume) ? "%.4f" : "-", p->hypervolume);
-    if (!v)
-        snprintf(line, sizeof line, "%zu of %ld simulated, %s left", p->progress.simulated,
-                 p->settings->search.max_evals, left);
-    else
-        snprintf(line, sizeof line,
-                 "%zu of %ld simulated, %s left, %zu failed, front %zu, hypervolume %s, generation %zu",
-                 p->progress.simulated, p->settings->search.max_evals, left, v->all->n_failed, v->all->n_front,
-                 hypervolume, v->generation);
+    if (v)
+        snprintf(front, sizeof front, ", %zu failed, %zu on the front", v->all->n_failed, v->all->n_front);
+    snprintf(line, sizeof line, "%zu of %ld simulated, %s left%s", p->progress.simulated, p->settings->search.max_evals,
+             left, front);
     if (t->terminal)
         fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
     else
@@ -178,6 +172,12 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
     return run_why_empty(run, err);
 }
 
+static void tell_next(const char *what, const char *command, const char *run, FILE *out)
+{
+    char folder[4 * PATH_MAX + 3];
+    fprintf(out, "%s:  %s %s %s\n", what, program_invocation_name, command, text_shell(run, folder));
+}
+
 static Status report(const Run *run, const StudySummary *summary, Err *err)
 {
     if (summary->n_front == 0)
@@ -190,27 +190,15 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     const char *reason = evaluation_table_failures(&run->table, &n_failed, &most);
     if (n_failed > 0)
         printf("%zu of %zu failures: %s\n", most, n_failed, reason);
-    double expected;
-    TRY(improvement_expected(run, &expected, err));
-    show_expected_gain(expected);
     putchar('\n');
     if (run->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
                run->n_repeats);
     print_screening(summary);
     print_front(run, summary);
-    if (summary->has_baselines && summary->review.n_gaps > 0) {
-        json_t *review = json_review(&summary->review);
-        puts("\ngaps of the front, from the ground up: how many designs have each at a bound of the search,\n"
-             "and the floors at which it closes in none of the designs simulated again");
-        figures_list(2, review);
-        json_decref(review);
-    }
     const NamedCost named = named_cost(run);
     if (named.n > 0)
-        printf("refined with smaller steps: %zu designs (knee, the best, some spread over the front, earlier ones), "
-               "%zu of them unpredictable; that took %.1f %% of the time of the search's simulations\n",
-               named.n, named.n_unpredictable, 100.0 * named.share);
+        printf("refined with smaller steps: %zu designs, %zu of them unpredictable\n", named.n, named.n_unpredictable);
     if (summary->polish.n_tried > 0) {
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish); ",
                summary->polish.n_better, summary->polish.n_tried);
@@ -221,6 +209,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     json_decref(model);
     if (summary->n_simulated == summary->n_before)
         printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
+    tell_next("charts and tables", "report", summary->folder, stdout);
     return STATUS_OK;
 }
 
@@ -253,12 +242,6 @@ static Status report_json(const Run *run, const StudySummary *summary, Err *err)
                              summary->n_failed, run->n_front, summary->seconds, json_of_design(run, run_knee(run)),
                              best, baselines, json_review(&summary->review), study_model_of(run)),
                      err);
-}
-
-static void tell_how_to_resume(const StudySummary *summary)
-{
-    char folder[4 * PATH_MAX + 3];
-    fprintf(stderr, "Resume it with:  %s optimize %s\n", program_invocation_name, text_shell(summary->folder, folder));
 }
 
 /* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */
@@ -331,7 +314,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     if (telling.has_line)
         fputc('\n', stderr);
     if (status == STATUS_STOPPED && summary.n_simulated > 0)
-        tell_how_to_resume(&summary);
+        tell_next("Resume it with", "optimize", summary.folder, stderr);
     TRY(status);
     return show(args, finished, &summary, err);
 }

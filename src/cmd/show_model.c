@@ -64,32 +64,37 @@ static void show_needy(FILE *out, const json_t *designs)
     }
 }
 
-void show_model_confirmed(FILE *out, const json_t *model, const char *folder)
+static void show_more(FILE *out, const json_t *confirmed, const char *folder)
 {
-    const json_t *confirmed = json_object_get(model, "confirmed"), *designs = json_object_get(confirmed, "designs");
-    const json_t *tolerance = json_object_get(model, "tolerance");
     char text[4 * PATH_MAX + 3], setting[PATH_MAX];
     const char *key;
     json_t *value;
-    if (!confirmed)
-        return;
-    if (json_object_size(json_object_get(confirmed, "more")) == 0) {
-        fprintf(
-            out,
-            "model: enough for the knee and the best of each objective, J1, drift and J3 within %.2g, %.2g, %.2g %% "
-            "of those with all effects\n",
-            number(tolerance, "j1_m_pct"), number(tolerance, "drift_ratio_pct"), number(tolerance, "j3_g_pct"));
-        return;
-    }
-    fputs("model: some of the knee and the best of each objective, or their baselines, need more. Search again with "
-          "it:\n",
-          out);
-    fprintf(out, "  %s optimize %s --new", program_invocation_name, text_shell(folder, text));
+    fprintf(out,
+            "model: some of the knee and the best of each objective, or their baselines, need more. Search again:\n"
+            "  %s optimize %s --new",
+            program_invocation_name, text_shell(folder, text));
     json_object_foreach(json_object_get(confirmed, "more"), key, value)
     {
         snprintf(setting, sizeof setting, "%s=%s", key, json_string_value(value));
         fprintf(out, " --set %s", text_shell(setting, text));
     }
     fputc('\n', out);
-    show_needy(out, designs);
+    show_needy(out, json_object_get(confirmed, "designs"));
+}
+
+void show_model_confirmed(FILE *out, const json_t *model, const char *folder)
+{
+    const json_t *confirmed = json_object_get(model, "confirmed"), *within = json_object_get(model, "tolerance");
+    if (!confirmed)
+        return;
+    if (json_array_size(json_object_get(confirmed, "designs")) == 0)
+        fputs("model: not confirmed, for with all effects the knee and the best of each objective fail\n", out);
+    else if (json_object_size(json_object_get(confirmed, "more")) > 0)
+        show_more(out, confirmed, folder);
+    else
+        fprintf(
+            out,
+            "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are within "
+            "%.2g, %.2g, %.2g %%\n",
+            number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));
 }
