@@ -350,9 +350,9 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
     char *text = settings_text(used);
     if (!text)
         return fail_memory(err, 1, "the settings");
-    const Status status = database_do(db, err, "UPDATE run SET settings = ?, provenance = ?, digest = ?", "tti",
-                                      text, run->provenance,
-                                      digest_of_head(text, run->provenance, run->planned_evals, run->schema.n_var));
+    const Status status =
+        database_do(db, err, "UPDATE run SET settings = ?, provenance = ?, digest = ?", "tti", text, run->provenance,
+                    digest_of_head(text, run->provenance, run->planned_evals, run->schema.n_var));
     free(text);
     return status;
 }

@@ -46,7 +46,7 @@ typedef struct {
     /* n_busy: of n_workers so many may have something to simulate at once */
     void (*started)(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user);
     void (*model)(const json_t *chosen, void *user); /* of a new run that chose its own (study/study_model.h) */
-    void (*record)(const Scenario *w, void *user); /* for every record, then */
+    void (*record)(const Scenario *w, void *user);   /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
     Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */
