@@ -70,7 +70,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
-SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
+SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/% src/wasm/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv) src/motion/builtin.csv
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNEL_OBJ) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
 LIB      := $(BUILD)/libprogram.a

@@ -149,16 +149,6 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     return STATUS_OK;
 }
 
-void linalg_participation(int n, const double M[], const double *r, const double phi[], double gamma[])
-{
-    for (int i = 0; i < n; i++) {
-        gamma[i] = 0;
-        for (int j = 0; j < n; j++)
-            for (int k = 0; k < n; k++)
-                gamma[i] += phi[j * n + i] * M[j * n + k] * (r ? r[k] : 1);
-    }
-}
-
 Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err)
 {
     int info = LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, A, n);
@@ -192,24 +182,6 @@ int linalg_factor_band(int n, int band, double A[])
 void linalg_solve_band(int n, int band, const double A[], int m, int stride, double B[])
 {
     LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, band, m, A, band + 1, B, stride);
-}
-
-/* Plain sums, so that the core has the same bits with any BLAS. */
-void linalg_congruent(int n, int m, const double A[], const double T[], double work[], double out[])
-{
-    memset(work, 0, n * m * sizeof *work);
-    memset(out, 0, m * m * sizeof *out);
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < n; k++)
-            for (int j = 0; j < m && A[i * n + k] != 0; j++)
-                work[i * m + j] += A[i * n + k] * T[k * m + j];
-    for (int k = 0; k < n; k++)
-        for (int i = 0; i < m; i++)
-            for (int j = 0; j < m && T[k * m + i] != 0; j++)
-                out[i * m + j] += T[k * m + i] * work[k * m + j];
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < i; j++) /* symmetric but for rounding */
-            out[i * m + j] = out[j * m + i] = 0.5 * (out[i * m + j] + out[j * m + i]);
 }
 
 void linalg_product_of_rows(int n, int m, const double A[], const double B[], double C[])
