@@ -179,7 +179,7 @@ $(BUILD)/%.csv.o: %.csv
 
 # So are the page of the report, its style and scripts inside, and that of `imtet serve`, which has live parts too.
 # web/charts.js is what `make web` bundles from npm.
-build/web/page.html build/web/live.html: web/assemble web/page.html web/style.css web/first.js web/charts.js $(wildcard web/app/*.js web/live/*)
+build/web/page.html build/web/live.html: web/assemble web/page.html web/style.css web/first.js web/charts.js web/engine.wasm.gz $(wildcard web/app/*.js web/live/*)
 	@mkdir -p $(@D)
 	$(Q)web/assemble $(filter live,$(basename $(@F))) > $@.part && mv $@.part $@
 
@@ -283,7 +283,7 @@ test-sanitized: setup ## readers, runs, workers, server and command line under A
 	@$(MAKE) --no-print-directory -j$(JOBS) MODE=asan tests
 	@$(MAKE) --no-print-directory MODE=asan run_tests
 
-include mk/checks.mk mk/figures.mk
+include mk/checks.mk mk/figures.mk mk/engine.mk
 
 # ---- install ---------------------------------------------------------------------------------------------------------
 

@@ -79,6 +79,14 @@ static Status dossier(const Args *args, const Run *run, const Report *r, const O
     return dossier_write(r, &s, records->n, records->source, path, err);
 }
 
+/* The page simulates with the records of the run, where they are now. */
+static Status what_if(const Args *args, const Run *run, Report *r, Err *err)
+{
+    RecordPaths moved;
+    TRY(args_moved(args, &moved, err));
+    return what_if_json(run, &moved, &r->scene, err);
+}
+
 static Status report(const Args *args, const Run *run, Err *err)
 {
     char path[PATH_MAX];
@@ -94,6 +102,9 @@ static Status report(const Args *args, const Run *run, Err *err)
         : args_has(args, "--pictures") && run->n_front > 0 ? browser_check(path, err)
                                                            : STATUS_OK);
     status = open_report(args, run, &records, &r, err);
+    if (status == STATUS_OK && r.has_detail && !is_dossier && !args_has(args, "--pictures") &&
+        !args_has(args, "--no-engine"))
+        status = what_if(args, run, &r, err);
     THEN(status, is_dossier                     ? dossier(args, run, &r, &records, path, err)
                  : args_has(args, "--pictures") ? report_pictures(&r, path, err)
                                                 : report_page(&r, path, err));
@@ -115,6 +126,7 @@ static const ArgOption OPTIONS[] = {
            "another earthquake for it, or every one of a folder or list, behind those of the study; may be repeated "
            "(default: the built-in ones)"),
     SWITCH("--json", "where it was written, as an object"),
+    SWITCH("--no-engine", "leave out simulator and records, with which the page shows what another design would do"),
     OPTION_MOVED,
     OPTION_CHANNEL,
     OPTION_PGA,

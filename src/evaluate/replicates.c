@@ -32,6 +32,15 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
         change_gaps(seed, OF_LEFT_GAPS, k, tolerance_m, n, d->gap[1]);
 }
 
+ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records)
+{
+    return (ReplicatePlan){.n_records = n_records,
+                           .n_replicates = (size_t)o->replicates,
+                           .rule = o->quantile > 0 ? ROBUST_QUANTILE : o->robust,
+                           .quantile = o->quantile > 0 ? o->quantile : 1 - o->tail,
+                           .spread = spread_word(o->gap_tolerance_m, &o->uncertain)};
+}
+
 const char *spread_word(double tolerance_m, const UncertainOptions *u)
 {
     return tolerance_m > 0 || is_uncertain(u) ? "as built" : "predictability";

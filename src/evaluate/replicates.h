@@ -64,6 +64,9 @@ typedef struct {
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
+/* Of a study whose simulations have these options. */
+ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records);
+
 enum { BOOTSTRAP = 200 };
 
 /* parts (n_replicates, n_records), each of `size` bytes that begin with its Measured numbers. wants_errors 0: error is

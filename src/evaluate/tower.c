@@ -378,11 +378,7 @@ static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
     }
     t->recipe = recipe;
     t->n_workers = MIN_OF(workers, n_tasks);
-    t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
-                              .n_replicates = s->sim.replicates,
-                              .rule = s->sim.quantile > 0 ? ROBUST_QUANTILE : s->sim.robust,
-                              .quantile = s->sim.quantile > 0 ? s->sim.quantile : 1 - s->sim.tail,
-                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
+    t->plan = replicate_plan(&s->sim, recipe->is_sweep ? 1 : recipe->n_records);
     const Status status = prepare(t, err);
     if (status != STATUS_OK) {
         tower_close(t);

@@ -55,10 +55,9 @@ size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows
     return taken;
 }
 
-/* build/web/page.html, live.html: the page with a line for its parts and one for where the run goes. */
+/* build/web/page.html, live.html: the page with a line for its parts, one for where the run goes, and two about the engine. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];
 extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
-static const char PARTS[] = "<!-- the parts -->\n", RUN[] = "<!-- the run -->\n";
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
 static void write_json(json_t *all, FILE *out)
@@ -73,38 +72,62 @@ static void write_json(json_t *all, FILE *out)
     free(text);
 }
 
-/* body NULL: the parts of a report. */
-static Status write_page(json_t *run, const Report *rows, const char *body, const char *start, const char *end,
-                         FILE *out, Err *err)
+static void write_part(const char *kind, const char *id, json_t *part, FILE *out)
 {
-    const char *parts = memmem(start, end - start, PARTS, sizeof PARTS - 1);
-    const char *mark = memmem(start, end - start, RUN, sizeof RUN - 1);
-    if (!parts || !mark) {
-        json_decref(run);
-        return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
-    }
-    fwrite(start, 1, (body ? parts : mark) - start, out); /* a failed write is seen on closing */
-    fprintf(out, "%s<script type=\"application/json\" id=\"run\">", body ? body : "");
-    write_json(run, out);
-    fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
-    if (rows)
-        TRY(export_designs(out, rows->run, EXPORT_PAGE, rows->n_shown, rows->shown, err));
+    fprintf(out, "<script type=\"application/%s\" id=\"%s\">", kind, id);
+    write_json(part, out);
     fputs("</script>\n", out);
-    mark += sizeof RUN - 1;
-    fwrite(mark, 1, end - mark, out);
-    return STATUS_OK;
+}
+
+/* A page of its template. body NULL: the parts of a report. has_engine: it simulates, with `scene`, or NULL: with what
+ * the server sends. */
+static Status write_page(json_t *run, const Report *rows, const char *body, int has_engine, json_t *scene,
+                         const char *start, const char *end, FILE *out, Err *err)
+{
+    static const char *const MARKS[] = {"<!-- the parts -->\n", "<!-- the run -->\n", "<!-- the engine -->\n",
+                                        "<!-- the scene -->\n"};
+    enum { PARTS, RUN, ENGINE, SCENE, N_MARKS };
+    const char *at[N_MARKS], *behind[N_MARKS];
+    for (int i = 0; i < N_MARKS; i++) {
+        at[i] = memmem(start, end - start, MARKS[i], strlen(MARKS[i]));
+        if (!at[i]) {
+            json_decref(run);
+            json_decref(scene);
+            return fail(err, STATUS_INTERNAL, "the page of the report has no '%.20s'", MARKS[i]);
+        }
+        behind[i] = at[i] + strlen(MARKS[i]);
+    }
+
+    /* A failed write is seen on closing. */
+    fwrite(start, 1, (body ? at[PARTS] : at[RUN]) - start, out);
+    fputs(body ? body : "", out);
+    write_part("json", "run", run, out);
+    fputs("<script type=\"text/plain\" id=\"rows\">\n", out);
+    const Status status =
+        rows ? export_designs(out, rows->run, EXPORT_PAGE, rows->n_shown, rows->shown, err) : STATUS_OK;
+    fputs("</script>\n", out);
+    fwrite(behind[RUN], 1, at[ENGINE] - behind[RUN], out);
+    if (has_engine)
+        fwrite(behind[ENGINE], 1, at[SCENE] - behind[ENGINE], out);
+    if (scene)
+        write_part("json", "scene", scene, out);
+    fwrite(behind[SCENE], 1, end - behind[SCENE], out);
+    return status;
 }
 
 Status page_write(FILE *out, json_t *run, const Report *rows, const char *body, Err *err)
 {
-    return write_page(run, rows, body, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out, err);
+    return write_page(run, rows, body, 0, NULL, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out, err);
 }
 
 static Status write_whole(const Report *r, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    return output_end(&o, page_write(o.stream, report_json(r), r, NULL, err), err);
+    return output_end(&o,
+                      write_page(report_json(r), r, NULL, r->scene != NULL, json_incref(r->scene),
+                                 _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err),
+                      err);
 }
 
 /* The report with the designs that a page shows, which become a page or pictures at path. */
@@ -144,7 +167,7 @@ Status report_live(const Run *run, char **text, Err *err)
     r.knee = r.chosen = run_knee(run);
     r.n_shown = run->n_front;
     r.shown = run->front;
-    Status status = write_page(report_json(&r), &r, NULL, _binary_build_web_live_html_start,
+    Status status = write_page(report_json(&r), &r, NULL, 1, NULL, _binary_build_web_live_html_start,
                                _binary_build_web_live_html_end, out, err);
     if (text_close(out) && status == STATUS_OK)
         status = fail_memory(err, 1, "a page");

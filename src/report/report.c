@@ -45,5 +45,6 @@ Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions
 void report_close(Report *r)
 {
     detail_free(&r->detail);
+    json_decref(r->scene);
     memset(r, 0, sizeof *r);
 }

@@ -2,6 +2,7 @@
  *
  *   page       web/page.html with style, charts and script inside; the run goes in as JSON and as rows of numbers. No
  *              network, no eval: the page's own policy allows nothing but these very scripts, by their hashes
+ *              It simulates designs itself where it has a scene (src/wasm/engine.c)
  *   pictures   its charts as SVG and PNG, drawn by Chromium (report/pictures.h)
  *
  * A run of another problem than the tower has no Detail, and its page and pictures no part on a chosen design.
@@ -12,7 +13,7 @@
 
 #include "report/detail.h"
 #include "report/importance.h"
-#include "store/run.h"
+#include "report/what_if.h"
 
 typedef struct {
     const Run *run;
@@ -21,6 +22,7 @@ typedef struct {
     int has_detail;
     Detail detail;
     Importance importance;  /* report_page finds it; elsewhere empty */
+    json_t *scene;          /* report/what_if.h, with which the page simulates; NULL: it does not */
     size_t n_shown, *shown; /* rows of the designs of the front that the page has (thin_front); as the importance */
 } Report;
 

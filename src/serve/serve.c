@@ -238,19 +238,10 @@ static Status show_design(Visit *v, Answer *a, Err *err)
                             err);
 }
 
-static Status show_bounds(Visit *v, Answer *a, Err *err)
+static Status show_scene(Visit *v, Answer *a, Err *err)
 {
-    json_t *bounds;
-    TRY(on_demand_bounds(v->view.snapshot->on_demand, &v->view.snapshot->run, &bounds, err));
-    return answer_json(bounds, 17, a);
-}
-
-static Status show_what_if(Visit *v, Answer *a, Err *err)
-{
-    const Snapshot *snapshot = v->view.snapshot;
-    json_t *answer;
-    TRY(on_demand_what_if(snapshot->on_demand, &snapshot->run, v->request->body, v->request->n, &answer, err));
-    return answer_json(answer, 17, a);
+    *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
+    return on_demand_scene(v->view.snapshot->on_demand, &v->view.snapshot->run, &a->text, err);
 }
 
 static Status show_notes(Visit *v, Answer *a, Err *err)
@@ -404,7 +395,7 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
                                {"front", 1, 0, show_front, NULL},
                                {"importance", 1, 0, show_importance, NULL},
                                {"design", 1, 1, show_design, NULL},
-                               {"what-if", 1, 0, show_bounds, show_what_if},
+                               {"scene", 1, 0, show_scene, NULL},
                                {"notes", 1, 0, show_notes, take_note},
                                {"against", 1, PATH_NUMBERS, show_against, NULL}};
 

@@ -8,7 +8,7 @@
  *   GET  /TOKEN/RUN/front           front and growth as they are now
  *   GET  /TOKEN/RUN/importance      total Sobol indices of variables for objectives
  *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/on_demand.h)
- *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/on_demand.h)
+ *   GET  /TOKEN/RUN/scene           what the page simulates with (report/what_if.h)
  *   GET  /TOKEN/RUN/notes           what was noted of designs (store/notes.h);  POST: {"id": N, "text": T}
  *   GET  /TOKEN/RUN/against/OTHER,...   up to four runs
  *

@@ -1,15 +1,20 @@
 /* The simulator as a module of WebAssembly: what the page of a report calls to see another design.
  *
  * The page writes the bytes of evaluate/portable.h to engine_room, opens them once, chooses record and ground, and
- * simulates. Answers are JSON. There are no files, no clock and one thread; a Page is what the module has.
+ * simulates. There are no files, no clock and one thread.
  *
- *   e = engine_open(room, n)          0: engine_answer() says why
- *   engine_ground(e, record, pga_g, stretch, restitution)     1, or 0 and why; pga_g 0: scaled as the study says
- *   engine_run(e, kind, x)            a SceneKind, the n_var numbers of a design: 1, or 0 and why */
+ *   p = engine_open(room, n)          0: the bytes are none, engine_answer() says why
+ *   engine_ground(p, record, pga_g, stretch, restitution)    record from 0; 0: as the study says; 1, or 0 and why
+ *   engine_run(p, kind)               a SceneKind, the design that stands at engine_design(p): 1, or 0 and why
+ *   engine_whole(p, ...)              all simulations by which the study judges a design, on that ground
+ *
+ * An answer is JSON: {"objectives": [n_obj] or null, "reason", "gap_m": [floors], "beyond_law", and every measure and part
+ * of the result by its name (sim/result.h)}; of the whole the objectives by the rule of the study. */
 #include <stdarg.h>
 
 #include "evaluate/measures.h"
 #include "evaluate/portable.h"
+#include "evaluate/replicates.h"
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 #include "sim/engine.h"
@@ -17,12 +22,12 @@
 #define EXPORT(name) __attribute__((export_name(#name)))
 
 typedef struct {
-    unsigned char *bytes;
     Portable portable;
     MeasureOrder order;
     Scenario scenario;
-    SimWorker *worker;
+    SimWorker *worker; /* NULL: no ground was chosen */
     double x[DESIGN_VARIABLES_MAX];
+    Design design;
     SimResult result;
 } Page;
 
@@ -79,38 +84,43 @@ static int refuse(const Err *err)
     return 0;
 }
 
-/* "name":number, or null where it is none. */
+/* ,"name":number, or null where it is none. */
 static void say_number(const char *name, double value)
 {
-    say("%s\"%s\":", instance.text[instance.n - 1] == '{' ? "" : ",", name);
+    say(",\"%s\":", name);
     say(isfinite(value) ? "%.17g" : "null", value);
 }
 
-/* Every measure, and all else that there is of a result (RESULT_PARTS), lists as arrays. */
-static void say_result(const SimResult *r, unsigned scene)
+static void say_list(const char *name, size_t n, const double values[])
 {
+    say(",\"%s\":[", name);
+    for (size_t i = 0; i < n; i++)
+        say(isfinite(values[i]) ? "%s%.17g" : "%snull", i ? "," : "", values[i]);
+    say("]");
+}
+
+/* Every measure, and all else that there is of a result (RESULT_PARTS). objectives NULL: it failed. */
+static void say_result(const Page *p, SceneKind kind, const double objectives[])
+{
+    const SimResult *r = &p->result;
     double values[SIDES * FLOORS_MAX];
     instance.n = 0;
-    say("{");
+    say("{\"reason\":\"%s\",\"beyond_law\":%s", r->reason, beyond_contact_law(r) ? "true" : "false");
+    say_list("objectives", objectives ? (size_t)p->order.n_obj : 0, objectives);
+    for (int j = 0; j < r->n_floors; j++)
+        values[j] = design_gap(&p->design, j);
+    say_list("gap_m", (size_t)r->n_floors, values);
     for (int k = 0; k < MEASURES_LISTED; k++)
         say_number(measure(k)->name, measure_value(r, k));
     for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
         size_t rows;
-        const size_t n = result_part(r, scene, part, values, &rows);
-        if (part->shape < PART_FLOORS && n > 0)
+        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
+        if (part->shape >= PART_FLOORS && n > 0)
+            say_list(part->name, rows * n, values);
+        else if (n > 0)
             say_number(part->name, values[0]);
-        if (part->shape < PART_FLOORS || n == 0)
-            continue;
-        say(",\"%s\":[", part->name);
-        for (size_t i = 0; i < rows * n; i++)
-            say(isfinite(values[i]) ? "%s%.17g" : "%snull", i ? "," : "", values[i]);
-        say("]");
     }
-    say(",\"closings\":[");
-    for (int j = 0; j < r->n_floors; j++)
-        say("%s%ld", j ? "," : "", r->closings[j]);
-    say("],\"beyond_law\":%s,\"outcome\":%d,\"reason\":\"%s\"}", beyond_contact_law(r) ? "true" : "false", r->outcome,
-        r->reason);
+    say("}");
 }
 
 EXPORT(engine_answer) const char *engine_answer(void)
@@ -125,36 +135,36 @@ EXPORT(engine_room) unsigned char *engine_room(size_t n)
     return malloc(n);
 }
 
-EXPORT(engine_open) Page *engine_open(unsigned char *bytes, size_t n)
+EXPORT(engine_open) Page *pngine_open(unsigned char *bytes, size_t n)
 {
     Err err = {0};
-    Page *e = calloc(1, sizeof *e);
-    Status status = e ? portable_read(&e->portable, bytes, n, &err) : fail_memory(&err, 1, "a scene");
-    THEN(status, measures_order(&e->order, e->portable.settings.search.objectives, e->portable.settings.search.limits, 0,
+    Page *p = calloc(1, sizeof *p);
+    Status status = p ? portable_read(&p->portable, bytes, n, &err) : fail_memory(&err, 1, "a scene");
+    THEN(status, measures_order(&p->order, p->portable.settings.search.objectives, p->portable.settings.search.limits, 0,
                                 &err));
     if (status == STATUS_OK) {
-        instance.open = &e->portable;
-        return e;
+        instance.open = &p->portable;
+        return p;
     }
-    free(e);
+    free(p);
     refuse(&err);
     return NULL;
 }
 
 /* Where x is to be written, and how many numbers there are. */
-EXPORT(engine_design) double *engine_design(Page *e)
+EXPORT(engine_design) double *engine_design(Page *p)
 {
-    return e->x;
+    return p->x;
 }
 
-EXPORT(engine_ground) int engine_ground(Page *e, size_t record, double pga_g, double stretch, double restitution)
+EXPORT(engine_ground) int engine_ground(Page *p, size_t record, double pga_g, double stretch, double restitution)
 {
     Err err = {0};
-    Settings s = e->portable.settings;
-    const unsigned needs = measures_need(e->order.judged);
-    if (record >= e->portable.n_records)
+    Settings s = p->portable.settings;
+    const unsigned needs = measures_need(p->order.judged);
+    if (record >= p->portable.n_records)
         return 0;
-    memcpy(s.motion.record, e->portable.source[record], sizeof s.motion.record);
+    memcpy(s.motion.record, p->portable.source[record], sizeof s.motion.record);
     if (pga_g > 0) {
         motion_unscale(&s.motion);
         s.motion.pga_g = pga_g;
@@ -165,21 +175,71 @@ EXPORT(engine_ground) int engine_ground(Page *e, size_t record, double pga_g, do
     s.sim.filtered = (needs & NEEDS_FILTER) != 0;
     if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
         s.sim.forces = FORCES_YES;
-    sim_worker_free(e->worker);
-    scenario_close(&e->scenario);
-    e->worker = NULL;
+    sim_worker_free(p->worker);
+    scenario_close(&p->scenario);
+    p->worker = NULL;
     const SceneOptions options = settings_scene(&s);
-    Status status = scenario_open(&e->scenario, &options, &s.motion, &e->portable.record[record], &err);
-    THEN(status, sim_worker_create(&e->worker, e->scenario.scene, &err));
+    Status status = scenario_open(&p->scenario, &options, &s.motion, &p->portable.record[record], &err);
+    THEN(status, sim_worker_create(&p->worker, p->scenario.scene, &err));
     return status == STATUS_OK ? 1 : refuse(&err);
 }
 
-EXPORT(engine_run) int engine_run(Page *e, int kind)
+/* Replicate k of the design, as evaluate/tower.c does it: its gaps, and what it is built like. */
+static Status run(Page *p, SceneKind kind, size_t k, Err *err)
+{
+    const Settings *s = &p->portable.settings;
+    const DesignSpace *space = scene_design(p->scenario.scene);
+    design_of(space, p->x, &p->design);
+    Design built = p->design;
+    replicate_gaps((uint32_t)s->search.seed, k, s->sim.gap_tolerance_m, space, &built);
+    const AsBuilt as = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
+    TRY(sim_worker_as_built(p->worker, k > 0 && is_uncertain(&s->sim.uncertain) ? &as : NULL, err));
+    TRY(sim_run_built(p->worker, kind, &built, &p->result, err));
+    measures_chances(&p->order, &p->result);
+    if (kind == SCENE_IMPACT)
+        measures_settle(&p->result, p->order.judged);
+    return STATUS_OK;
+}
+
+EXPORT(engine_run) int engine_run(Page *p, int kind)
 {
     Err err = {0};
-    const Status status = sim_run(e->worker, (SceneKind)kind, e->x, &e->result, &err);
+    double objectives[N_MEASURES];
+    if (run(p, (SceneKind)kind, 0, &err) != STATUS_OK)
+        return refuse(&err);
+    for (int k = 0; k < p->order.n_obj; k++)
+        objectives[k] = measure_value(&p->result, p->order.of[k]);
+    say_result(p, (SceneKind)kind, p->result.outcome == RUN_OK ? objectives : NULL);
+    return 1;
+}
+
+EXPORT(engine_whole) int engine_whole(Page *p, double pga_g, double stretch, double restitution)
+{
+    const ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, p->portable.n_records);
+    Measured *part = calloc(plan.n_records * plan.n_replicates, sizeof *part);
+    Err err = {0};
+    ReplicateSummary sum;
+    double objectives[N_MEASURES];
+    Status status = part ? STATUS_OK : fail_memory(&err, plan.n_records, "simulations");
+
+    /* The first record comes last, so that the ground and what is said besides are those of one simulation. */
+    for (size_t r = plan.n_records; r-- > 0 && status == STATUS_OK;) {
+        if (!engine_ground(p, r, pga_g, stretch, restitution)) {
+            free(part);
+            return 0;
+        }
+        for (size_t k = plan.n_replicates; k-- > 0 && status == STATUS_OK;) {
+            status = run(p, SCENE_IMPACT, k, &err);
+            part[k * plan.n_records + r] = measured(&p->result);
+        }
+    }
+    if (status == STATUS_OK)
+        replicates_summarise(&plan, part, sizeof *part, 0, &sum);
+    free(part);
     if (status != STATUS_OK)
         return refuse(&err);
-    say_result(&e->result, SCENES[kind].has);
+    for (int k = 0; k < p->order.n_obj; k++)
+        objectives[k] = sum.mean[p->order.of[k]];
+    say_result(p, SCENE_IMPACT, sum.outcome == OUTCOME_OK ? objectives : NULL);
     return 1;
 }

@@ -3,7 +3,7 @@
 const drawer = document.body.appendChild(element("aside", { id: "drawer", tabindex: "-1", hidden: true, "aria-labelledby": "drawer-title" }));
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
 // What imtet serve adds: buttons, and a promise of the design in detail with what follows the peaks.
-const drawerMore = { buttons: () => [], detail: () => null, rest: () => {} };
+const drawerMore = { buttons: (row) => (byId("scene") ? [whatIfButton(row)] : []), detail: () => null, rest: () => {} };
 
 // A change of widths moves everything; what is looked at stays at its height.
 function keepInPlace(act) {

@@ -25,6 +25,13 @@ function drawDesign() {
 }
 requestAnimationFrame(() => setTimeout(drawDesign));
 
+// A report simulates once all of it has come; on the live page the server has the scene.
+loaded.then(() => {
+  if (run.paper || !byId("scene")) return;
+  whatIfPart();
+  startWhatIf(state.marked ?? rowOf.get(run.chosen) ?? rowOf.get(run.knee), false);
+});
+
 window.onhashchange = takeAddress;
 
 let width = window.innerWidth, timer;

@@ -1,6 +1,6 @@
 // A run under way: how far it is, failures and the front as it grows.
 function progressPart() {
-  const part = livePart("live", "Progress", "front");
+  const part = laterPart("live", "Progress", "front");
   const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });
   const again = plainButton("", () => location.reload(), { hidden: true, id: "new-front" });
   part.append(said, bar, again);

@@ -4,7 +4,7 @@ const RUNS_BESIDE = 3; // this one
 async function runsPart() {
   const runs = await ask("../runs");
   if (runs.length < 2) return;
-  const part = livePart("runs", "Runs of this folder", "provenance"), here = +location.pathname.split("/").at(-2), body = element("div");
+  const part = laterPart("runs", "Runs of this folder", "provenance"), here = +location.pathname.split("/").at(-2), body = element("div");
   const box = (r) => element("input", { type: "checkbox", name: `compare ${r.name}`, "aria-label": `compare ${r.name}`, value: r.at, onchange: () => {
     const boxes = [...part.querySelectorAll("input")], chosen = boxes.filter((b) => b.checked).map((b) => b.value);
     for (const b of boxes) b.disabled = !b.checked && chosen.length === RUNS_BESIDE;

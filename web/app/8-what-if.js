@@ -1,11 +1,12 @@
-// What if: sliders for every variable, the motion and the restitution; each change is one simulation. One question is
+// What if: sliders for every variable, the motion and the restitution; each change is one simulation by the page itself. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
 const GROUND = [["pga_g", "peak", "g", "--pga "], ["stretch", "time \u00d7", "", "--set motion.stretch="], ["restitution", "restitution", "", "--set contact.restitution="]];
 const TRIAL = "#c2185b";
 let startWhatIf = () => {};
+const whatIfButton = (row) => plainButton("What if\u2026", () => startWhatIf(row));
 
 function whatIfPart() {
-  const part = livePart("what-if", "What if", "growth");
+  const part = laterPart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = div("sliders"), pictures = div("beside");
   part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), div("what-if", sliders, pictures));
@@ -78,20 +79,20 @@ function whatIfPart() {
     if (!isAsking) next();
   }
 
-  // What was moved while a question was under way is asked before the answer is drawn: the server works meanwhile.
+  // What was moved while a question was under way is asked before the answer is drawn: the engine works meanwhile.
   async function next() {
     const began = since, asked = { ...ground }, design = Array.from(x);
     since = undefined;
     isAsking = true;
     part.dataset.busy = "yes";
-    const said_ = await ask("what-if", { turn: ++turn, x: design, ...asked }).catch((error) => error);
+    const said_ = await simulated({ x: design, ...asked }).catch((error) => error);
     isAsking = false;
     if (since !== undefined) next();
     if (said_ instanceof Error) {
       said.textContent = `Not simulated: ${said_.message}. Without numbers until it is.`;
       showNothing();
     } else {
-      answer = { ...said_, x: design, ground: asked };
+      answer = { ...said_, turn: ++turn, x: design, ground: asked };
       showAnswer();
       requestAnimationFrame(() => setTimeout(() => performance.measure("what-if", { start: began, end: performance.now() }))); // painted
     }
@@ -197,7 +198,7 @@ function whatIfPart() {
     for (const [id, changes] of wanted) {
       const given = Object.fromEntries((changes ?? "").split(",").filter(Boolean).map((one) => one.split("=")).map(([key, v]) => [key, +v]));
       const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries([...GROUND.map(([key]) => key), "whole"].filter((key) => key in given).map((key) => [key, given[key]]));
-      const a = await ask("what-if", { turn: ++turn, x: design, ...on });
+      const a = await simulated({ x: design, ...on });
       if (state.trials !== text) return;
       if (a.objectives) kept.push(asKept({ ...a, x: design, ground: on }, +id));
     }
@@ -221,7 +222,11 @@ function whatIfPart() {
   }
 
   startWhatIf = async (row, go = true) => {
-    bounds ??= await ask("what-if");
+    try {
+      bounds ??= await (engine ??= openEngine());
+    } catch (error) {
+      return void (said.textContent = `This page cannot simulate: ${error.message}.`);
+    }
     const isFirst = !moving.variables.length;
     start = { name: `design ${ids[row]}`, id: ids[row], x: variables.map((c) => c.raw[row]), raw: objectives.map((c) => c.raw[row]) };
     x.set(start.x);

@@ -1,0 +1,37 @@
+# The simulator as WebAssembly (src/wasm/engine.c), which the page of a report calls. It is checked in as web/charts.js is:
+# `make` needs no clang. After a change of what is simulated `make engine`, else the page computes what the program did before;
+# `make test T=browser` compares the two.
+WASM_FLAGS := --target=wasm32-wasi -std=gnu17 -msimd128 -Isrc -D_GNU_SOURCE -DFAST_BUILT=1 -Wno-everything $(NO_TRAPS)
+# Random123 knows no WebAssembly, but wants to be told what plain C of 32 and 64 bits it may use; building_read is the page's own.
+WASM_FLAGS.random        := -D__aarch64__
+WASM_FLAGS.building_read := -Dbuilding_read=building_of_files
+WASM_KERNELS := kernel_base plain_base
+WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c \
+            $(addprefix src/scene/,building.c building_read.c core_beam.c design.c foundation.c frame_reduce.c neighbour.c reduction.c) \
+            $(addprefix src/base/,csv.c filter.c keyed.c linalg_sums.c list.c option.c pack.c random.c stat.c status.c visible.c) \
+            $(addprefix src/settings/,rules.c settings.c settings_read.c) \
+            $(addprefix src/motion/,forces.c motion.c motion_read.c motion_scale.c spectrum.c suite.c) \
+            $(addprefix src/evaluate/,consequences.c measures.c portable.c replicates.c scenario.c)
+WASM_OBJ := $(WASM_SRC:%.c=build/wasm/%.o) $(WASM_KERNELS:%=build/wasm/%.o)
+
+engine: ## the simulator as a module for the page of a report, web/engine.wasm.gz (clang, lld, wasi-libc)
+	@scripts/setup packages-engine.txt
+	@$(MAKE) --no-print-directory -j$(JOBS) build/wasm/engine.wasm
+	$(Q)gzip -9nc build/wasm/engine.wasm > web/engine.wasm.gz
+.PHONY: engine
+
+build/wasm/src/%.o: src/%.c
+	@mkdir -p $(@D)
+	@echo '  CC  $@'
+	$(Q)clang $(WASM_FLAGS) -O2 $(WASM_FLAGS.$(basename $(@F))) -MMD -MP -c $< -o $@
+
+$(WASM_KERNELS:%=build/wasm/%.o): build/wasm/%.o: src/sim/fast/kernel.c
+	@mkdir -p $(@D)
+	@echo '  CC  $@'
+	$(Q)clang $(WASM_FLAGS) -O3 -DFAST_LANES=2 -DFAST_KERNEL=fast_$* -DPLAIN=$(words $(filter plain_%,$*)) -MMD -MP -c $< -o $@
+
+build/wasm/engine.wasm: $(WASM_OBJ)
+	@echo '  LD  $@'
+	$(Q)clang --target=wasm32-wasi -mexec-model=reactor -Wl,--strip-all,-z,stack-size=4194304 $^ -o $@
+
+-include $(WASM_OBJ:.o=.d)

@@ -1,0 +1,117 @@
+#include "report/what_if.h"
+
+#include <zlib.h>
+
+#include "base/units.h"
+#include "evaluate/portable.h"
+#include "evaluate/tower.h"
+#include "motion/motion_scale.h"
+#include "motion/suite.h"
+
+/* Shares of the run's own between which motion and restitution may be changed. */
+static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1};
+
+/* Of `imtet simulate`, for the one simulation of the design as designed. */
+static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none "
+                           "--set search.fidelity=off";
+static const char CERTAIN[] = " --set sim.uncertain=none";
+static const char SCALED_OTHERWISE[] = " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none";
+
+/* The numbers that whole and stepped variables take; null of others: the page has the words of a choice. */
+static json_t *values_of(const Problem *p)
+{
+    json_t *all = json_array();
+    for (size_t d = 0; d < p->n_var; d++) {
+        const Steps *steps = problem_kind(p, d) == VARIABLE_STEPPED ? &p->steps[d] : NULL;
+        json_t *list = steps || problem_kind(p, d) == VARIABLE_WHOLE ? json_array() : json_null();
+        const size_t n = steps ? steps->n : (size_t)(p->upper[d] - p->lower[d]) + 1;
+        for (size_t i = 0; json_is_array(list) && i < n; i++)
+            json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p->lower[d] + (double)i));
+        json_array_append_new(all, list);
+    }
+    return all;
+}
+
+static Status name_record(const char *source, void *user, Err *err)
+{
+    (void)err;
+    const char *slash = strrchr(source, '/');
+    json_array_append_new(user, json_words(slash && slash[1] ? slash + 1 : source));
+    return STATUS_OK;
+}
+
+/* gzip, then base64 (RFC 4648), to be freed. */
+static Status packed_text(const unsigned char *bytes, size_t n, char **out, Err *err)
+{
+    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    z_stream z = {.next_in = (unsigned char *)(uintptr_t)bytes, .avail_in = (unsigned)n};
+    enum { GZIP = 16, WINDOW = 15, MEMORY = 8 };
+    if (deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP + WINDOW, MEMORY, Z_DEFAULT_STRATEGY) != Z_OK)
+        return fail_memory(err, n, "bytes of a scene");
+    const size_t room = deflateBound(&z, n);
+    unsigned char *packed = calloc(1, room + 3);
+    char *text = *out = malloc((room + 2) / 3 * 4 + 1);
+    if (packed && text) {
+        z.next_out = packed;
+        z.avail_out = (unsigned)room;
+        deflate(&z, Z_FINISH);
+        for (size_t i = 0; i < z.total_out; i += 3) {
+            const unsigned long three = packed[i] << 16 | packed[i + 1] << 8 | packed[i + 2];
+            for (size_t k = 0; k < 4; k++)
+                *text++ = i + k > z.total_out ? '=' : DIGITS[three >> (18 - 6 * k) & 63];
+        }
+        *text = 0;
+    }
+    deflateEnd(&z);
+    free(packed);
+    if (text)
+        return STATUS_OK;
+    free(*out);
+    return fail_memory(err, n, "bytes of a scene");
+}
+
+Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err *err)
+{
+    Settings s = *run->settings;
+    unsigned char *bytes = NULL;
+    char *scene = NULL, scalings[SCALINGS_TEXT_MAX], options[sizeof ONCE + sizeof CERTAIN];
+    Problem p;
+    size_t n;
+    if (s.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_MISSING, "%s: is no run of the tower: nothing to change", run->folder);
+
+    /* 1. The bytes of all records and buildings; the tower says what its variables may be, and how it is shaken. */
+    s.search.threads = 1;
+    TRY(record_paths_find(&s, run->provenance, moved, err));
+    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
+    Status status = STATUS_OK;
+    if (p.n_var != run->schema.n_var)
+        status = bad_data(err, "%s: its building has other variables now", run->folder);
+    THEN(status, portable_make(&s, &bytes, &n, err));
+    THEN(status, packed_text(bytes, n, &scene, err));
+    json_t *records = json_array();
+    THEN(status, suite_of_study(&s.motion, name_record, records, err));
+
+    /* 2. Between which numbers they may be changed, and what `imtet simulate` is told to do the same. */
+    if (status == STATUS_OK) {
+        const double pga = motion_peak(&tower_record(tower_of(&p), 0)->motion) / GRAVITY;
+        const size_t n_simulations = (size_t)s.sim.replicates * suite_count(&s.motion);
+        const int scales_otherwise = s.motion.pga_g == 0 && motion_scalings(&s.motion, scalings) > 0;
+        snprintf(options, sizeof options, "%s%s", n_simulations == 1 ? "" : ONCE,
+                 is_uncertain(&s.sim.uncertain) ? CERTAIN : "");
+        *out = json_of(
+            "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p records=%p simulations=%ld options=%s "
+            "pga_options=%s scene=%s",
+            json_numbers(p.n_var, p.lower), json_numbers(p.n_var, p.upper), values_of(&p),
+            json_numbers(3, (double[]){pga / PGA_SHARE, pga, pga * PGA_SHARE}),
+            json_numbers(3, (double[]){s.motion.stretch / STRETCH_SHARE, s.motion.stretch,
+                                       s.motion.stretch * STRETCH_SHARE}),
+            json_numbers(3, (double[]){RESTITUTION[0], s.contact.restitution, RESTITUTION[1]}), json_incref(records),
+            (long)n_simulations, options, scales_otherwise ? SCALED_OTHERWISE : "", scene);
+    }
+    json_decref(records);
+    free(bytes);
+    free(scene);
+    problem_close(&p);
+    return status;
+}
