@@ -108,8 +108,10 @@ Status portable_make(const Settings *s, unsigned char **bytes, size_t *n, Err *e
     for (size_t i = 0; i < n_buildings && status == STATUS_OK; i++) {
         BuildingOptions o = s->building;
         BuildingFiles b;
-        if (i == 1)
+        if (i == 1) { /* condensed to its floors (scene/neighbour.h) */
             memcpy(o.model, s->core.model, sizeof o.model);
+            o.modes = 0;
+        }
         status = building_read(&b, &o, err);
         pack(p, o.model, sizeof o.model);
         if (status == STATUS_OK)
