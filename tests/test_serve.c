@@ -262,15 +262,15 @@ TEST(every_address_says_which_methods_it_knows)
 {
     static const char *const METHODS[] = {"PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"};
     static const char *const READ_ONLY[] = {"/%T/",         "/%T/runs",       "/%T/0/",         "/%T/0/front",
-                                            "/%T/0/events", "/%T/0/design/1", "/%T/0/against/1"};
+                                            "/%T/0/events", "/%T/0/design/1", "/%T/0/against/1", "/%T/0/scene"};
     for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++)
         expect_code(405, METHODS[i], "/%T/0/front", "");
     for (size_t i = 0; i < sizeof READ_ONLY / sizeof READ_ONLY[0]; i++) {
         expect_code(405, "POST", READ_ONLY[i], "Content-Length: 0\r\n");
         expect_header("\r\nAllow: GET, HEAD\r\n", "POST", READ_ONLY[i]);
     }
-    expect_header("\r\nAllow: GET, HEAD, POST\r\n", "PUT", "/%T/0/what-if");
-    expect_code(400, "POST", "/%T/0/what-if", "Content-Length: 0\r\n");
+    expect_header("\r\nAllow: GET, HEAD, POST\r\n", "PUT", "/%T/0/notes");
+    expect_code(400, "POST", "/%T/0/notes", "Content-Length: 0\r\n");
     expect_code(404, "POST", "/%T/0/nothing", "Content-Length: 0\r\n");
 }
 
@@ -304,7 +304,7 @@ TEST(what_is_too_large_is_not_read)
     char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
     memset(much, 'x', MUCH);
     much[MUCH] = 0;
-    expect_code(413, "POST", "/%T/0/what-if", "Content-Length: 1000000000\r\n");
+    expect_code(413, "POST", "/%T/0/notes", "Content-Length: 1000000000\r\n");
     expect_code(413, "GET", "/%T/0/front", "Content-Length: 5\r\n");
     int fd = dial();
     snprintf(headers, MUCH + 64, "GET /%s/0/ HTTP/1.1\r\nHost: localhost\r\nX: %s\r\n\r\n", server.token, much);
@@ -313,7 +313,7 @@ TEST(what_is_too_large_is_not_read)
     assert_true(code_of(answer) == 0 || code_of(answer) >= 400);
     free(answer);
     fd = dial();
-    snprintf(headers, MUCH + 64, "POST /%s/0/what-if HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n",
+    snprintf(headers, MUCH + 64, "POST /%s/0/notes HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n",
              server.token);
     say(fd, headers);
     for (int i = 0; i < 40; i++) { /* of a thousand bytes each: 8 more than are allowed */
@@ -432,106 +432,22 @@ TEST(where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered)
 
 /* -- answers ------------------------------------------------------------------------------------------------------- */
 
-static json_t *numbers_of_row(const Table *t, size_t row, size_t first, size_t n)
+/* With which the page simulates: the test page_engine holds what comes of it against the program. */
+TEST(the_scene_of_a_run_has_bounds_steps_and_the_options_of_one_simulation)
 {
-    json_t *list = json_array();
-    for (size_t j = 0; j < n; j++)
-        json_array_append_new(list, json_real(t->values[row * t->n_cols + first + j]));
-    return list;
-}
-
-/* The same numbers to the last digit. */
-static void assert_objectives(const json_t *answer, const Table *t, size_t row, size_t first)
-{
-    const json_t *f = json_object_get(answer, "objectives");
-    assert_int_equal(json_array_size(f), 7);
-    for (size_t k = 0; k < 7; k++)
-        assert_same_number(json_number_value(json_array_get(f, k)), t->values[row * t->n_cols + first + k]);
-}
-
-/* A row in the middle of a front that is simulated at the steps of the settings: no error of its own is known. */
-static size_t plain_row(const Table *front)
-{
-    size_t row = front->n_rows / 2;
-    while (!isnan(front->values[(row + 1) * front->n_cols - 1]))
-        row++;
-    return row;
-}
-
-TEST(what_if_nothing_changes_is_what_the_run_has)
-{
-    Table front = table_of("runs/a/front.csv");
-    const size_t row = plain_row(&front);
-    json_t *answer = post_json(
-        "/%T/0/what-if", json_pack("{s:i, s:i, s:o}", "page", 1, "turn", 1, "x", numbers_of_row(&front, row, 1, 22)));
-    assert_objectives(answer, &front, row, 23);
-    assert_int_equal(json_integer_value(json_object_get(answer, "dominated_by")), 0);
-    assert_int_equal(json_integer_value(json_object_get(answer, "dominates")), 0);
-    assert_same_number(json_array_size(json_object_get(json_object_get(answer, "peaks"), "drift_m")), 20);
-    json_decref(answer);
-    table_free(&front);
-}
-
-TEST(what_if_under_another_motion_is_what_simulate_prints)
-{
-    static const char *const NAMES[] = {"j1_m", "j2_m", "j3_g", "ed1_pct", "ed5_10_pct", "edcs_pct", "mcore_kg"};
-    char arguments[300];
-    Table front = table_of("runs/a/front.csv");
-    json_t *answer = post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:o, s:f, s:f, s:f}", "page", 1, "turn", 2, "x",
-                                                          numbers_of_row(&front, 0, 1, 22), "pga_g", 0.41, "stretch",
-                                                          2.5, "restitution", 0.55));
-    snprintf(
-        arguments, sizeof arguments,
-        "simulate @/runs/a/settings.ini --design @/runs/a/front.csv:%.0f --pga 0.41 --set motion.stretch=2.5 --set "
-        "contact.restitution=0.55 --json",
-        front.values[0]);
-    json_t *other = json_of("%s", arguments);
-    for (size_t k = 0; k < 7; k++)
-        assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)),
-                           number(other, NAMES[k]));
-    assert_null(json_object_get(answer, "dominated_by")); /* another motion has no place in this front */
-    json_decref(answer);
-    json_decref(other);
-    table_free(&front);
-}
-
-/* One simulation of it, by the options that the server names for `imtet simulate`. */
-TEST(what_if_of_a_run_of_several_simulations_is_one_of_them)
-{
-    Table front = table_of("runs/d/front.csv");
-    json_t *bounds = ask_json("/%T/3/what-if"), *values = json_object_get(bounds, "values");
+    json_t *one = ask_json("/%T/0/scene"), *several = ask_json("/%T/3/scene");
+    json_t *values = json_object_get(several, "values");
     const double plates[] = {0.01, 0.02, 0.03};
+    assert_int_equal(json_integer_value(json_object_get(one, "simulations")), 1);
+    assert_string_equal(json_string_value(json_object_get(one, "options")), "");
+    assert_true(strlen(json_string_value(json_object_get(one, "scene"))) > 1000);
     assert_true(json_array_size(values) == 22 && json_is_null(json_array_get(values, 0)));
     for (size_t i = 0; i < 3; i++)
         assert_true(json_number_value(json_array_get(json_array_get(values, 20), i)) == plates[i]);
-    json_t *answer = post_json("/%T/3/what-if", json_pack("{s:i, s:i, s:o, s:f}", "page", 1, "turn", 1, "x",
-                                                          numbers_of_row(&front, 0, 1, 22), "pga_g", 0.25));
-    char arguments[700];
-    snprintf(arguments, sizeof arguments,
-             "simulate @/runs/d/settings.ini --design @/runs/d/front.csv:%.0f --json%s%s --pga 0.25", front.values[0],
-             json_string_value(json_object_get(bounds, "options")),
-             json_string_value(json_object_get(bounds, "pga_options")));
-    json_t *other = json_of("%s", arguments);
-    assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), 0)),
-                       number(other, "j1_m"));
-    assert_null(json_object_get(answer, "dominated_by"));
-    json_decref(bounds);
-    json_decref(answer);
-    json_decref(other);
-    table_free(&front);
-}
-
-TEST(questions_that_are_none_are_refused)
-{
-    static const char *const QUESTIONS[] = {"",           "[]",       "{}",        "{\"x\": [1, 2]}",
-                                            "{\"x\": 3}", "\xff\xfe", "{\"x\": [", "{\"x\": [], \"x\": []}"};
-    char length[64];
-    for (size_t i = 0; i < sizeof QUESTIONS / sizeof QUESTIONS[0]; i++) {
-        snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(QUESTIONS[i]));
-        char *answer = ask("POST", "/%T/0/what-if", length, QUESTIONS[i]);
-        assert_int_equal(code_of(answer), 400);
-        free(answer);
-    }
+    assert_in_range(json_integer_value(json_object_get(several, "simulations")), 2, 100);
+    assert_non_null(strstr(json_string_value(json_object_get(several, "options")), "sim.replicates=1"));
+    json_decref(one);
+    json_decref(several);
 }
 
 TEST(two_runs_are_measured_in_one_box)
@@ -565,7 +481,7 @@ TEST(two_runs_are_measured_in_one_box)
     expect_code(404, "GET", "/%T/0/design/1,2", "");
     expect_code(400, "GET", "/%T/0/against/2", ""); /* other objectives */
     expect_code(404, "GET", "/%T/0/against/9", "");
-    expect_code(404, "GET", "/%T/2/what-if", ""); /* no tower */
+    expect_code(404, "GET", "/%T/2/scene", ""); /* no tower */
     expect_code(404, "GET", "/%T/2/design/1", "");
 }
 
@@ -575,7 +491,8 @@ TEST(the_page_is_the_report_with_live_parts)
     assert_non_null(policy);
     assert_non_null(strstr(policy, "connect-src 'self'"));
     *strchr(policy + 40, '"') = 0;
-    assert_null(strstr(policy, "unsafe"));
+    assert_null(strstr(policy, "unsafe-inline"));
+    assert_null(strstr(policy, "'unsafe-eval"));
     assert_null(strstr(page, server.token));
     free(page);
     char *list = output_of("status @/runs --json");
@@ -768,7 +685,7 @@ TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
 {
     copy("runs/a", "odd/a");
     const Served before = serve_here("odd/a");
-    json_t *bounds = ask_json("/%T/0/what-if");
+    json_t *bounds = ask_json("/%T/0/scene");
     assert_int_equal(json_integer_value(json_object_get(bounds, "simulations")), 1);
     json_decref(bounds);
     copy("runs/d", "odd/a");
@@ -782,17 +699,9 @@ TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
         json_decref(now);
     }
     assert_int_equal(n, front.n_rows);
-    bounds = ask_json("/%T/0/what-if");
+    bounds = ask_json("/%T/0/scene");
     assert_in_range(json_integer_value(json_object_get(bounds, "simulations")), 2, 100);
     json_decref(bounds);
-    for (int whole = 0; whole < 2; whole++) { /* as the run judges it, and then in its place on the front */
-        now = post_json("/%T/0/what-if",
-                        json_pack("{s:i, s:i, s:o}", "turn", 1, "whole", whole, "x", numbers_of_row(&front, 0, 1, 22)));
-        assert_int_equal(json_is_integer(json_object_get(now, "dominated_by")), whole);
-        const double j1 = json_number_value(json_array_get(json_object_get(now, "objectives"), 0));
-        assert_int_equal(fabs(j1 - front.values[23]) <= 1e-3 * j1, whole);
-        json_decref(now);
-    }
     table_free(&front);
     end_here(before);
 }
@@ -875,24 +784,18 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
     wait_end(pid);
     int fd[QUESTIONS];
     serve("long");
-    json_t *bounds = ask_json("/%T/0/what-if");
+    json_t *front = ask_json("/%T/0/front"), *ids = json_object_get(front, "ids");
     const double before_one = processor_s();
-    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:f, s:O}", "page", QUESTIONS, "turn", 1,
-                                                     "restitution", 0.7, "x", json_object_get(bounds, "lower"))));
+    assert_true(json_array_size(ids) >= 2);
+    char path[64], *text = NULL;
+    snprintf(path, sizeof path, "/%%T/0/design/%lld", json_integer_value(json_array_get(ids, 0)));
+    json_decref(ask_json(path));
     const double before_all = processor_s(), one = before_all - before_one;
     for (int i = 0; i < QUESTIONS; i++) {
-        json_t *x = json_incref(json_object_get(bounds, "lower"));
-        json_t *question =
-            json_pack("{s:i, s:i, s:f, s:o}", "page", i, "turn", 1, "restitution", 0.5 + 0.01 * i, "x", x);
-        char *body = json_dumps(question, 0), *text = NULL;
-        assert_less(0,
-                    asprintf(&text, "POST /%s/0/what-if HTTP/1.1\r\nHost: localhost\r\nContent-Length: %zu\r\n\r\n%s",
-                             server.token, strlen(body), body));
+        assert_less(0, asprintf(&text, "GET /%s/0/design/%d HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token, i + 1));
         fd[i] = dial();
         say(fd[i], text);
         free(text);
-        free(body);
-        json_decref(question);
     }
     while (processor_s() - before_all < 0.2 * one) /* until it is at work */
         rest(0.02);
@@ -904,7 +807,7 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
     assert_less(seconds_of(&used) - others - before_all, 0.5 * QUESTIONS * one);
     for (int i = 0; i < QUESTIONS; i++)
         close(fd[i]);
-    json_decref(bounds);
+    json_decref(front);
     server = before;
 }
 

@@ -4,8 +4,10 @@
 //   drive.mjs IMTET --pictures FOLDER OUT   of FOLDER/kobe, a finished run
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { compare } from "../engine/forty.mjs";
 import { picture, tryAll } from "../report/browser.mjs";
 const [imtet, folder, given, pictures] = process.argv.slice(2);
 const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
@@ -330,14 +332,32 @@ const tried = {
   async "the browser complains of nothing and asks no one else"() {
     assert.deepEqual(page.complaints((asked) => asked.startsWith(origin)), []);
   },
-  async "when the server has gone, what-if says so and shows no old number"() {
+  async "forty designs simulated by the page are those of the program"() {
+    await open("a");
+    await until("document.getElementById('what-if').dataset.turn");
+    const scene = await page.evaluate("fetch('scene').then((answer) => answer.json())"), designs = join(folder, "forty.csv");
+    const head = await page.evaluate("JSON.parse(document.getElementById('run').textContent).schema.variables");
+    const rows = Array.from({ length: 40 }, (_, i) => head.map((name, j) => scene.lower[j] * (scene.upper[j] / scene.lower[j]) ** ((i * 0.618 + j * 0.382) % 1)));
+    writeFileSync(designs, [head, ...rows].map((row) => row.join()).join("\n") + "\n");
+    tell(await compare(imtet, designs, join(root, "a", "settings.ini"), (question) => page.evaluate(`imtet.simulate(${JSON.stringify(question)})`)), []);
+  },
+  async "when the server has gone, the page goes on simulating"() {
     await open("a");
     await until("document.querySelector('#trial tbody')");
     children[0].kill("SIGINT");
     await children[0].ended;
+    const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
     await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[9]; s.value = +s.min + 0.4 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
-    await until("/does not answer/.test(document.getElementById('place').textContent)");
-    assert.equal(await page.evaluate("document.querySelectorAll('#trial, #what-if .beside .chart svg').length"), 0);
+    await until(`+document.getElementById('what-if').dataset.turn > ${turn}`);
+  },
+  async "a report simulates offline, and one without engine says nothing of it"() {
+    const html = (more) => (execFileSync(imtet, ["report", join(root, "a"), "--out", join(folder, "offline.html"), ...more]), pathToFileURL(join(folder, "offline.html")).href);
+    await page.call("Page.navigate", { url: html([]) });
+    await until("document.getElementById('what-if')?.dataset.turn");
+    assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
+    await page.call("Page.navigate", { url: html(["--no-engine"]) });
+    await until("document.documentElement?.dataset.ready === 'yes'");
+    assert.equal(await page.evaluate("document.querySelectorAll('#what-if, #engine, #scene').length"), 0);
   },
 };
 

@@ -93,3 +93,6 @@ async function simulated(question) {
   const better = (one, other) => objectives.every((c, k) => c.sense * one[k] <= c.sense * other[k]) && objectives.some((c, k) => one[k] !== other[k]);
   return { ...known, dominated_by: frontRows.filter((row) => better(row, f)).length, dominates: frontRows.filter((row) => better(f, row)).length };
 }
+
+// For whoever asks from the console: imtet.simulate({ x: [...], record: 0, pga_g: 0.4 }).
+window.imtet = { simulate: simulated };
