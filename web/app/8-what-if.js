@@ -61,6 +61,11 @@ function whatIfPart() {
   function makeSliders() {
     moving.variables = variables.map((c, j) => slider(c.name, c.title, c.unit, c.factor, [bounds.lower[j], bounds.upper[j]], x[j], (v) => (x[j] = v), c.words ?? bounds.values[j]));
     moving.ground = GROUND.map(([key, title, unit]) => slider(key, title, unit, 1, [bounds[key][0], bounds[key][2]], bounds[key][1], (v) => (ground[key] = v)));
+    const record = element("select", { name: "record", "aria-label": "record", onchange: (event) => {
+      ground.record = +record.value;
+      moved(event.timeStamp);
+    } }, ...bounds.records.map((name, i) => element("option", { value: i }, name)));
+    if (bounds.records.length > 1) moving.ground.push({ key: "record", set: (v) => (record.value = v), row: element("label", "record ", record) });
     // One simulation, or all by which the run judges a design.
     const whole = element("input", { type: "checkbox", name: "whole", onchange: (event) => {
       delete ground.whole;
@@ -165,8 +170,9 @@ function whatIfPart() {
   // ---- designs that are kept
   let shownKept = "";
   const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
-  const groundWords = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
-  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key, , , option]) => ` ${option}${g[key]}`).join("");
+  const groundWords = (g) => [g.record ? bounds.records[g.record] : "", groundNumbers(g)].filter(Boolean).join(", ");
+  const groundNumbers = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
+  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.record ? ` --record ${bounds.records[g.record]}` : "") + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key, , , option]) => ` ${option}${g[key]}`).join("");
 
   function showKept() {
     state.trials = shownKept = keptText();
@@ -197,7 +203,7 @@ function whatIfPart() {
     kept.splice(0);
     for (const [id, changes] of wanted) {
       const given = Object.fromEntries((changes ?? "").split(",").filter(Boolean).map((one) => one.split("=")).map(([key, v]) => [key, +v]));
-      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries([...GROUND.map(([key]) => key), "whole"].filter((key) => key in given).map((key) => [key, given[key]]));
+      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries([...GROUND.map(([key]) => key), "record", "whole"].filter((key) => key in given).map((key) => [key, given[key]]));
       const a = await simulated({ x: design, ...on });
       if (state.trials !== text) return;
       if (a.objectives) kept.push(asKept({ ...a, x: design, ground: on }, +id));
@@ -217,7 +223,7 @@ function whatIfPart() {
     for (const key of Object.keys(ground)) delete ground[key];
     Object.assign(ground, on);
     moving.variables.forEach((s, j) => s.set(x[j]));
-    moving.ground.forEach((s) => s.set(ground[s.key] ?? bounds[s.key]?.[1]));
+    moving.ground.forEach((s) => s.set(ground[s.key] ?? bounds[s.key]?.[1] ?? 0));
     moved(performance.now());
   }
 
@@ -230,7 +236,10 @@ function whatIfPart() {
     const isFirst = !moving.variables.length;
     start = { name: `design ${ids[row]}`, id: ids[row], x: variables.map((c) => c.raw[row]), raw: objectives.map((c) => c.raw[row]) };
     x.set(start.x);
-    if (isFirst) makeSliders();
+    if (isFirst) {
+      makeSliders();
+      aroundPart(pictures, () => ({ x: Array.from(x), ...ground }), bounds);
+    }
     set(start.x, {});
     if (isFirst) layoutChanged(); // designs that the address keeps
     if (go) goTo(part);
