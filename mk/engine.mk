@@ -10,7 +10,7 @@ WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c \
             $(addprefix src/scene/,building.c building_read.c core_beam.c design.c foundation.c frame_reduce.c neighbour.c reduction.c) \
             $(addprefix src/base/,csv.c filter.c keyed.c linalg_sums.c list.c option.c pack.c random.c stat.c status.c visible.c) \
             $(addprefix src/settings/,rules.c settings.c settings_read.c) \
-            $(addprefix src/motion/,forces.c motion.c motion_read.c motion_scale.c spectrum.c suite.c) \
+            $(addprefix src/motion/,forces.c motion.c motion_read.c motion_scale.c spectrum.c suite.c text_form.c) \
             $(addprefix src/evaluate/,consequences.c measures.c portable.c replicates.c scenario.c)
 WASM_OBJ := $(WASM_SRC:%.c=build/wasm/%.o) $(WASM_KERNELS:%=build/wasm/%.o)
 

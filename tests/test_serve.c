@@ -261,7 +261,7 @@ static void expect_header(const char *wanted, const char *method, const char *pa
 TEST(every_address_says_which_methods_it_knows)
 {
     static const char *const METHODS[] = {"PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"};
-    static const char *const READ_ONLY[] = {"/%T/",         "/%T/runs",       "/%T/0/",         "/%T/0/front",
+    static const char *const READ_ONLY[] = {"/%T/",         "/%T/runs",       "/%T/0/",          "/%T/0/front",
                                             "/%T/0/events", "/%T/0/design/1", "/%T/0/against/1", "/%T/0/scene"};
     for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++)
         expect_code(405, METHODS[i], "/%T/0/front", "");

@@ -22,9 +22,9 @@ enum { PORTABLE_RECORDS_MAX = 64 };
 typedef struct {
     Settings settings;
     size_t n_records;
-    Motion record[PORTABLE_RECORDS_MAX]; /* as motion_open reads them */
+    Motion record[PORTABLE_RECORDS_MAX];                /* as motion_open reads them */
     char source[PORTABLE_RECORDS_MAX][OPTION_TEXT_MAX]; /* as motion.record names them */
-    const unsigned char *buildings;      /* of portable_read: where they begin in its bytes */
+    const unsigned char *buildings;                     /* of portable_read: where they begin in its bytes */
     size_t n_buildings_bytes;
 } Portable;
 

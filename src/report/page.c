@@ -117,7 +117,8 @@ static Status write_page(json_t *run, const Report *rows, const char *body, int 
 
 Status page_write(FILE *out, json_t *run, const Report *rows, const char *body, Err *err)
 {
-    return write_page(run, rows, body, 0, NULL, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out, err);
+    return write_page(run, rows, body, 0, NULL, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out,
+                      err);
 }
 
 static Status write_whole(const Report *r, const char *path, Err *err)

@@ -104,8 +104,8 @@ Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err 
             "pga_options=%s scene=%s",
             json_numbers(p.n_var, p.lower), json_numbers(p.n_var, p.upper), values_of(&p),
             json_numbers(3, (double[]){pga / PGA_SHARE, pga, pga * PGA_SHARE}),
-            json_numbers(3, (double[]){s.motion.stretch / STRETCH_SHARE, s.motion.stretch,
-                                       s.motion.stretch * STRETCH_SHARE}),
+            json_numbers(
+                3, (double[]){s.motion.stretch / STRETCH_SHARE, s.motion.stretch, s.motion.stretch * STRETCH_SHARE}),
             json_numbers(3, (double[]){RESTITUTION[0], s.contact.restitution, RESTITUTION[1]}), json_incref(records),
             (long)n_simulations, options, scales_otherwise ? SCALED_OTHERWISE : "", scene);
     }

@@ -140,8 +140,8 @@ EXPORT(engine_open) Page *pngine_open(unsigned char *bytes, size_t n)
     Err err = {0};
     Page *p = calloc(1, sizeof *p);
     Status status = p ? portable_read(&p->portable, bytes, n, &err) : fail_memory(&err, 1, "a scene");
-    THEN(status, measures_order(&p->order, p->portable.settings.search.objectives, p->portable.settings.search.limits, 0,
-                                &err));
+    THEN(status, measures_order(&p->order, p->portable.settings.search.objectives, p->portable.settings.search.limits,
+                                0, &err));
     if (status == STATUS_OK) {
         instance.open = &p->portable;
         return p;
