@@ -254,4 +254,18 @@ static inline int clear_place(void **state)
     return system(command);
 }
 
+/* Every simulation in a process of its own. */
+static const char ISOLATED[] =
+    SIX_FLOORS_INI "[sim]\nduration_s = 20\n"
+                   "[search]\nmax_evals = 80\npolish = 0\nthreads = 2\nfailures_max = 0\n[run]\nisolate = yes\n";
+
+/* A process that simulates for `parent`, whose helper has started it, gets a signal; 0: none does just now. */
+static inline int signal_child_of(pid_t parent, const char *signal)
+{
+    char command[128];
+    snprintf(command, sizeof command, "kill -%s $(pgrep -r R -P $(pgrep -d, -P %d) | tail -1) 2>/dev/null", signal,
+             (int)parent);
+    return system(command) == 0;
+}
+
 #endif

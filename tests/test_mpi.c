@@ -273,6 +273,33 @@ TEST(devices_have_the_same_bytes_over_ranks)
     assert_same_evaluations("devices", "devices-on-3");
 }
 
+TEST(isolated_simulations_have_the_same_bytes_over_ranks)
+{
+    program();
+    write_in_place("isolated.ini", ISOLATED);
+    free(output_of("optimize @/isolated.ini --out @/isolated --set run.isolate=no"));
+    expect_code(launch(3, "optimize @/isolated.ini --out @/isolated-on-3"), 0);
+    assert_same_evaluations("isolated", "isolated-on-3");
+}
+
+/* Three processes that simulate for ranks are shot while they run. */
+TEST(an_isolated_simulation_that_crashes_ends_its_design_alone_on_a_rank_too)
+{
+    program();
+    write_in_place("isolated.ini", ISOLATED);
+    const pid_t pid = launch(3, "optimize @/isolated.ini --out @/shot --max-evals 400 --set sim.accuracy=fine");
+    wait_for_evaluations("shot");
+    const pid_t rank[] = {process_of(pid, 1), process_of(pid, 2)};
+    for (int n = 0, k = 0; n < 3 && kill(pid, 0) == 0; k++) {
+        rest(0.005);
+        n += signal_child_of(rank[k % 2], "KILL");
+    }
+    expect_code(pid, 0);
+    char *all = all_of("shot");
+    assert_non_null(strstr(all, "its process ended: Killed"));
+    free(all);
+}
+
 TEST(other_commands_give_their_tasks_to_the_ranks)
 {
     program();

@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 
 #include "base/random.h"
+#include "evaluate/isolated.h"
 #include "evaluate/queue.h"
 
 enum { VAR = 2, OBJ = 2, PARTS = 3, DESIGNS = 60, WORKERS = 4 };
@@ -289,6 +290,43 @@ TEST(designs_without_end_need_no_more_memory_than_those_pending)
         assert_int_equal(queue_pending(q), 20);
     }
     queue_close(q);
+}
+
+/* -- simulations in processes of their own ------------------------------------------------------------------------- */
+
+/* Twice x; a negative one crashes, 0 ends the process. */
+static Status double_or_die(void *self, size_t worker, const Task *t, Err *err)
+{
+    (void)self;
+    (void)worker;
+    (void)err;
+    if (t->x[0] < 0.0)
+        raise(SIGKILL);
+    if (t->x[0] == 0.0)
+        _exit(3);
+    *(double *)t->result = 2.0 * t->x[0];
+    return STATUS_OK;
+}
+
+static void note_lost(const Task *t, const char *reason)
+{
+    *(double *)t->result = strstr(reason, "its process ended: Killed") ? SIGKILL : -1.0;
+}
+
+TEST(a_simulation_that_crashes_ends_its_own_task_alone)
+{
+    Isolated q = {.doer = {.simulator = &(Simulator){.simulate = double_or_die}, .n_var = 1}, .lost = note_lost};
+    CHECK_OK(isolated_open(&q, WORKERS, &err), &err);
+    for (int i = 0; i < DESIGNS; i++) {
+        const double x = (double)((i * 7) % 11 - 3);
+        double result = 0.5;
+        const Task task = {.x = &x, .result = &result, .size = sizeof result};
+        size_t n_done;
+        CHECK_OK(pool_do(&q.pool, (size_t)i % WORKERS, 1, &task, &n_done, &err), &err);
+        assert_same_number(result, x < 0.0 ? SIGKILL : x == 0.0 ? -1.0 : 2.0 * x);
+        assert_int_equal(n_done, 1);
+    }
+    pool_close(&q.pool);
 }
 
 SUITE(NULL, NULL)

@@ -102,8 +102,9 @@ static void is_the_changed_one(const char *key, unsigned flags, const char *was,
     Changed *c = user;
     static const char *const LIMITS[] = {"search.max_evals", "search.max_hours", "search.stop_after",
                                          "problem.timeout_s"};
-    static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",       "search.start",
-                                       "motion.record",  "motion.records",      "motion.forces", "building.model"};
+    static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",
+                                       "run.isolate",    "search.start",        "motion.record",
+                                       "motion.records", "motion.forces",       "building.model"};
     unsigned wanted = 0;
     for (size_t i = 0; i < sizeof LIMITS / sizeof *LIMITS; i++)
         wanted |= strcmp(key, LIMITS[i]) == 0 ? SETTING_LIMIT : 0u;

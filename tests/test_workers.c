@@ -101,4 +101,45 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
     free(sizes);
 }
 
+/* Nor does a kill: the run goes on at once, even where one of them could do nothing any more. */
+TEST(processes_of_their_own_change_no_byte)
+{
+    write_in_place("isolated.ini", SIX_FLOORS_INI "[sim]\nduration_s = 5\n[search]\nmax_evals = 80\npolish = 0\n"
+                                                  "threads = 2\n[run]\nisolate = yes\n");
+    const pid_t pid = start("isolated.ini", "apart");
+    for (int i = 0; i < 1000 && !signal_child_of(pid, "STOP"); i++)
+        rest(0.01);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    free(output_of("optimize @/isolated.ini --out @/apart"));
+    free(output_of("optimize @/isolated.ini --out @/here --set run.isolate=no --threads 1"));
+    assert_same_files("apart/front.csv", "here/front.csv");
+}
+
+/* Processes are shot from the start to the end: they begin, simulate, or have just done so, and then another one gets
+ * the next design. */
+TEST(a_simulation_that_crashes_ends_its_design_alone)
+{
+    write_in_place("isolated.ini", ISOLATED);
+    const pid_t pid = start("isolated.ini", "shot");
+    size_t n_shot = 0;
+    int status;
+    while (waitpid(pid, &status, WNOHANG) == 0) {
+        rest(0.02);
+        n_shot += (size_t)signal_child_of(pid, "KILL");
+    }
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    char *all = all_of("shot");
+    size_t n_lost = 0, n = 0;
+    for (const char *at = all; (at = strchr(at, '\n')); at++, n++) {
+        const char *lost = strstr(at, "its process ended");
+        n_lost += lost && lost < strchrnul(at + 1, '\n');
+    }
+    assert_int_equal(n, 81);
+    assert_true(n_lost >= 1 && n_lost <= n_shot);
+    assert_non_null(strstr(all, "its process ended: Killed"));
+    free(all);
+}
+
 SUITE(prepare, clear_place)

@@ -257,10 +257,11 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
 
     /* 3. The processes. */
     const Protocol protocol = {.name = "problem.command",
-                               .words = e->words,
+                               .work = {.words = e->words},
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,
                                .timeout_s = o->timeout_s,
                                .grace_s = PROCESS_GRACE_S,
+                               .may_leave = 1,
                                .write = write_request,
                                .look = look_for_answer,
                                .tell = tell,

@@ -18,30 +18,42 @@ typedef struct {
 
 /* -- the helper's whole life: it comes of a program with threads, so only system calls ----------------------------- */
 
-/* Start the worker in a process group of its own. It shares our memory until the command has begun, and with it why
- * that failed. */
-static Started start_worker(char *const words[])
+/* In the child, which shares the memory of the helper where it becomes a command. Returns where a call fails. */
+static void become(const HelperWork *w, size_t slot, pid_t parent)
+{
+    sigset_t none;
+    sigemptyset(&none);
+    if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
+        return;
+    if (getppid() != parent) /* it has ended before the signal was set */
+        _exit(127);
+    sigprocmask(SIG_SETMASK, &none, NULL);
+    if (w->words) {
+        execvp(w->words[0], w->words);
+        return;
+    }
+    close(TO_US);
+    w->serve(w->self, slot);
+    _exit(0);
+}
+
+/* Start the worker in a process group of its own. A command shares our memory until it has begun, and with it why. */
+static Started start_worker(const HelperWork *w, size_t slot)
 {
     const pid_t parent = getpid();
-    sigset_t none;
     volatile int why = 0;
-    sigemptyset(&none);
-    const pid_t child = vfork();
+    const pid_t child = w->words ? vfork() : fork();
     if (child == 0) {
-        if (setpgid(0, 0) == 0 && prctl(PR_SET_PDEATHSIG, SIGKILL) == 0) {
-            if (getppid() != parent) /* it has ended before the signal was set */
-                _exit(127);
-            sigprocmask(SIG_SETMASK, &none, NULL);
-            execvp(words[0], words);
-        }
+        become(w, slot, parent);
         why = errno;
         _exit(127);
     }
+    setpgid(child, child); /* a fork may not have come to it yet, and is to be killed */
     return (Started){child, child < 0 ? errno : why};
 }
 
 /* Standard error is the worker's too. */
-static _Noreturn void live(char *const words[], int in, int out, int to)
+static _Noreturn void live(const HelperWork *w, size_t slot, int in, int out, int to)
 {
     int how;
     sigset_t all;
@@ -53,7 +65,7 @@ static _Noreturn void live(char *const words[], int in, int out, int to)
     if (to != TO_US)
         dup3(to, TO_US, O_CLOEXEC);
     close_range(TO_US + 1, ~0U, 0);
-    const Started s = start_worker(words);
+    const Started s = start_worker(w, slot);
     close(STDIN_FILENO);
     close(STDOUT_FILENO);
     send(TO_US, &s, sizeof s, MSG_NOSIGNAL);
@@ -78,7 +90,7 @@ static int hear(const Helper *h, void *message, size_t size)
     return n == (ssize_t)size;
 }
 
-int helper_start(Helper *h, char *const words[], int in, int out)
+int helper_start(Helper *h, const HelperWork *work, size_t slot, int in, int out)
 {
     int ends[2];
     Started s = {0};
@@ -86,7 +98,7 @@ int helper_start(Helper *h, char *const words[], int in, int out)
         return errno;
     *h = (Helper){.pid = fork(), .to = ends[0]};
     if (h->pid == 0)
-        live(words, in, out, ends[1]);
+        live(work, slot, in, out, ends[1]);
     s.why = errno;
     close(ends[1]);
     if (h->pid > 0 && !hear(h, &s, sizeof s))

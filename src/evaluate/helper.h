@@ -15,14 +15,21 @@
 
 #include "base/status.h"
 
+/* What a worker is. */
+typedef struct {
+    char *const *words;                     /* a command, up to NULL; NULL: */
+    void (*serve)(void *self, size_t slot); /* ... in a fork of us */
+    void *self;
+} HelperWork;
+
 typedef struct {
     pid_t pid, group; /* 0: there is none; of the worker */
     int to; /* readable when the worker has ended; where the system has no pidfd the end of its output tells */
 } Helper;
 
-/* A worker, a command up to NULL, with these descriptors as standard input and output and no signal blocked. Returns 0,
- * or errno of what failed. */
-int helper_start(Helper *h, char *const words[], int in, int out);
+/* A worker with these descriptors as standard input and output and no signal blocked. Returns 0, or errno of what
+ * failed. */
+int helper_start(Helper *h, const HelperWork *work, size_t slot, int in, int out);
 
 /* The worker is done with, and killed with its group. Returns how it ended, as waitpid has it; -1: its helper was
  * killed, and it for that reason alone. */

@@ -35,7 +35,7 @@ static Status worker_start(Worker *w, Err *err)
     int to[2] = {-1, -1}, from[2] = {-1, -1}; /* the worker */
     int why = (!how->send && pipe2(to, O_CLOEXEC) != 0) || pipe2(from, O_CLOEXEC) != 0 ? errno : 0;
     if (!why && !how->send)
-        why = helper_start(&w->helper, how->words, to[0], from[1]);
+        why = helper_start(&w->helper, &how->work, w - w->pool->worker, to[0], from[1]);
     w->reader = how->send ? -1 : to[0];
     w->in = how->send ? from[1] : to[1];
     w->out = from[0];
@@ -44,8 +44,8 @@ static Status worker_start(Worker *w, Err *err)
         close(from[1]);
     if (why) {
         close_pipes(w);
-        return bad_data(err, "%s: %s cannot be started: %s", how->name, how->words ? *how->words : "a rank",
-                        strerror(why));
+        return bad_data(err, "%s: %s cannot be started: %s", how->name,
+                        how->work.words ? *how->work.words : "a process", strerror(why));
     }
     fcntl(w->in, F_SETFL, O_NONBLOCK);
     fcntl(w->out, F_SETFL, O_NONBLOCK);
@@ -141,8 +141,8 @@ Status pool_wait(Worker *w, Err *err)
         /* 1. A worker that has ended, or is silent, is lost, and so is its task; of an end that was not the fault of
          * that a fresh worker is asked, once. */
         if (w->n_done < w->n && (has_gone || w->silent_s >= limit_s)) {
-            const int was_leaving =
-                w->n_answered > 0 && w->n_line == 0 && !w->is_second && clock_seconds() < w->asked + LEFT_BEFORE_S;
+            const int was_leaving = how->may_leave && w->n_answered > 0 && w->n_line == 0 && !w->is_second &&
+                                    clock_seconds() < w->asked + LEFT_BEFORE_S;
             worker_end(w);
             if (has_gone && w->n == 1 && (was_leaving || w->how == -1)) {
                 w->is_second = 1;
@@ -206,7 +206,7 @@ Status pool_open(Pool *p, const Protocol *protocol, size_t n_workers, Err *err)
         pool_batch(w, 1);
         if (!w->line || !w->request)
             return fail_memory(err, n_workers, "workers");
-        if (protocol->send)
+        if (!protocol->work.words) /* forks, while no thread holds a lock */
             TRY(worker_start(w, err));
     }
     return STATUS_OK;

@@ -3,7 +3,7 @@
  *
  *   ended     with tasks, its task has failed; of several none has, and they are asked one by one. Asked again of a
  *             fresh worker is what it had no part in: its helper was killed; or, once, it had given answers before and
- *             ended by itself within a second of the request
+ *             ended by itself within a second of the request (may_leave)
  *   silent    for timeout_s of our own running time, the same: where the whole machine was suspended none was silent. A
  *             rank says now and then that it lives; one that does not ends everything, to be resumed
  *   stopped   what is under way gets grace_s to end, then it counts as never begun
@@ -43,11 +43,12 @@ typedef struct {
 
 /* How one speaks with them. */
 typedef struct {
-    const char *name;     /* of the setting */
-    char *const *words;   /* command of a process, up to NULL */
+    const char *name; /* of the setting */
+    HelperWork work;
     size_t request_bytes; /* for one design */
     double timeout_s;     /* for one; of a worker that is no process, between two signs of life */
     double grace_s;
+    int may_leave;
     size_t (*write)(void *self, const Worker *w, char *request);
     /* Of what is no process: sends the request; what comes is written to `in`, and read at `out`. NULL: a process */
     void (*send)(void *self, const Worker *w);

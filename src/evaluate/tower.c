@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "evaluate/isolated.h"
 #include "motion/builtin.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
@@ -48,6 +49,7 @@ struct Tower {
     SimWorker **worker; /* (n_places, n_workers) NULL: it is not there */
     size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
     Recipe *recipe;
+    Isolated isolated; /* {0}: simulated in this process */
 };
 
 /* -- scenes -------------------------------------------------------------------------------------------------------- */
@@ -220,6 +222,23 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
+static const Simulator HERE = {.simulate = simulate};
+
+static void write_lost(const Task *task, const char *reason)
+{
+    SimResult lost = {.outcome = RUN_ENGINE_FAILED};
+    snprintf(lost.reason, sizeof lost.reason, "%s", reason);
+    *(Measured *)task->result = measured(&lost);
+    if (task->variant.is_full)
+        ((FullResult *)task->result)->result = lost;
+}
+
+static Pool *processes(void *self)
+{
+    Pool *pool = &((Tower *)self)->isolated.pool;
+    return pool->n_workers > 0 ? pool : NULL;
+}
+
 /* An evaluation is the summary of its parts; its reason is that of the part that failed first. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
@@ -243,6 +262,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
 static void tower_close(void *self)
 {
     Tower *t = self;
+    pool_close(&t->isolated.pool);
     for (size_t i = 0; t->worker && i < t->n_places * t->n_workers; i++)
         detach(t, i / t->n_workers, i % t->n_workers);
     for (size_t i = 0; t->place && i < t->n_places; i++)
@@ -259,7 +279,7 @@ static void tower_close(void *self)
     free(t);
 }
 
-static const Simulator TOWER = {.simulate = simulate, .combine = combine, .close = tower_close};
+static const Simulator TOWER = {.simulate = simulate, .pool = processes, .combine = combine, .close = tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
@@ -363,7 +383,12 @@ static Status prepare(Tower *t, Err *err)
             t->has_kinds = 1;
             t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
         }
-    return set_steps(t, &s->design, err);
+    TRY(set_steps(t, &s->design, err));
+
+    /* 4. Processes, which are forked with all of this. */
+    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
+    t->isolated.lost = write_lost;
+    return s->run.isolate == SWITCH_ON ? isolated_open(&t->isolated, t->n_workers, err) : STATUS_OK;
 }
 
 /* The problem of a recipe, which it takes, for free; with the ranks of a cluster, where this process has some. */

@@ -50,6 +50,7 @@ typedef struct {
 } SearchOptions;
 
 typedef struct {
+    Switch isolate;
     char out[OPTION_TEXT_MAX]; /* the run's folder */
 } RunOptions;
 

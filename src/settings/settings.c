@@ -323,6 +323,9 @@ static const Option OPTIONS[] = {
          "aspiration levels, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
          "to them, or is beyond them (docs/search.md); none"),
 
+    CHOICE(run.isolate, Switch, SWITCH_LIST, "off",
+           "on: the tower is simulated in processes of their own: one that crashes ends its design alone",
+           .flags = SETTING_FREE),
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),
 };
 
@@ -541,7 +544,6 @@ static const struct {
     {"search.generations", 0, "search.max_evals limits a search"},
     {"search.blas", 0, "OPENBLAS_CORETYPE in the environment chooses other kernels"},
     {"search.nondominated_share", 0, "search.stop_after ends a search that gains nothing"},
-    {"run.isolate", 0, "a simulator of your own that may crash is an external worker (docs/external.md)"},
     {"problem.noise", 0, "textbook problems are in imtet-bench"},
     {"contact.v0_min_m_s", 1e-3, "the contact law is never given an approach speed below 1e-3 m/s"},
     {"contact.yield_stress_pa", 3.45e8, "contact_yields is of steel of 345 MPa; contact_pressure_pa says it of any"},

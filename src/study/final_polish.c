@@ -43,7 +43,8 @@ static size_t side_by_side(const Settings *s, size_t n)
 {
     size_t n_ranks;
     const size_t most = MIN_OF(n, threads_wanted(s->search.threads));
-    const int elsewhere = cluster_executor(&n_ranks) || s->problem.kind == PROBLEM_EXTERNAL;
+    const int elsewhere =
+        cluster_executor(&n_ranks) || s->run.isolate == SWITCH_ON || s->problem.kind == PROBLEM_EXTERNAL;
     return elsewhere || most < 2 || linalg_room(most, &(Err){0}) != STATUS_OK ? 1 : most;
 }
 
