@@ -295,11 +295,11 @@ TEST(designs_without_end_need_no_more_memory_than_those_pending)
 /* -- simulations in processes of their own ------------------------------------------------------------------------- */
 
 /* Twice x; a negative one crashes, 0 ends the process. */
-static Status double_or_die(void *self, size_t worker, const Task *t, Err *err)
+static Status double_or_die(void *self, size_t worker, const Task *t, Err *why)
 {
     (void)self;
     (void)worker;
-    (void)err;
+    (void)why;
     if (t->x[0] < 0.0)
         raise(SIGKILL);
     if (t->x[0] == 0.0)

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include "base/json.h"
 #include "base/units.h"
 #include "evaluate/portable.h"
 #include "evaluate/tower.h"

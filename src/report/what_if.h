@@ -10,7 +10,8 @@
  * Errors   no run of the tower: STATUS_MISSING; records that are gone: as study/record_paths.h. Threads  no state */
 #pragma once
 
-#include "base/json.h"
+#include <jansson.h>
+
 #include "study/record_paths.h"
 
 Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err *err);
