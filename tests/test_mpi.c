@@ -602,15 +602,15 @@ TEST(a_message_that_is_cut_or_of_no_worker_is_none)
     const Task task = {.result = part, .size = sizeof part};
     const size_t none = sizeof(Answer), whole = none + sizeof part;
     for (size_t n = 0; n < whole + 2; n++) {
-        assert_int_equal(answer_take(&right.head, n, &(Worker){.task = &task, .n = 1}), n == whole);
-        assert_int_equal(answer_take(&bad.head, n, &(Worker){.task = &task, .n = 1}), n == none);
+        assert_int_equal(order_take(&right.head, n, &(Worker){.task = &task, .n = 1}), n == whole);
+        assert_int_equal(order_take(&bad.head, n, &(Worker){.task = &task, .n = 1}), n == none);
         assert_int_equal(is_answer_of(&right.head, n, 4), n >= none);
         assert_false(is_answer_of(&right.head, n, 3));
     }
     right.head.n_done = 2;
-    assert_false(answer_take(&right.head, whole + sizeof part, &(Worker){.task = &task, .n = 1}));
+    assert_false(order_take(&right.head, whole + sizeof part, &(Worker){.task = &task, .n = 1}));
     bad.head.why.code = STATUS_COUNT;
-    assert_false(answer_take(&bad.head, none, &(Worker){.task = &task, .n = 1}));
+    assert_false(order_take(&bad.head, none, &(Worker){.task = &task, .n = 1}));
 }
 
 static int prepare(void **state)

@@ -1,7 +1,7 @@
 /* mpi/message.h -- what rank 0 and the ranks that evaluate say to each other.
  *
  *   rank 0                                                        every other rank
- *   TASK   an Order of one of its workers                      ->  does it
+ *   TASK   an Order (evaluate/order.h) of one of its workers   ->  does it
  *                                                              <-  DONE    an Answer
  *                                                              <-  ALIVE   while it has tasks, every ALIVE_S
  *   OPEN   without a task                                      ->  ends
@@ -15,31 +15,7 @@
 #include <time.h>
 
 #include "evaluate/cluster.h"
-#include "evaluate/pool.h"
-
-/* In plain bytes, as all are the same program on the same kind of machine: Order, Task (n), x (n, n_var). */
-typedef struct {
-    int64_t epoch; /* comes back as it is, and so does worker */
-    uint64_t worker, n;
-} Order;
-
-typedef struct {
-    int64_t epoch;
-    uint64_t worker, n_done;
-    double seconds;
-    Err why; /* of the task behind the first n_done */
-    _Alignas(16) char parts[];
-} Answer;
-
-static inline size_t order_bytes(size_t n, size_t n_var)
-{
-    return sizeof(Order) + n * (sizeof(Task) + n_var * sizeof(double));
-}
-
-static inline double *order_numbers(Order *o)
-{
-    return (double *)((Task *)(o + 1) + o->n);
-}
+#include "evaluate/order.h"
 
 /* TAG_TASK + worker of the rank, 0 ...; the opener is one more, whose task is to open a problem: x is the recipe, and
  * the part Opened. */
@@ -71,20 +47,6 @@ int message_receive(int from, int tag, Message *m);
 static inline int is_answer_of(const Answer *a, size_t n, size_t n_workers)
 {
     return n >= sizeof *a && a->worker < n_workers;
-}
-
-/* What an answer of n_bytes says of the worker's tasks; 0: it is none to them. */
-static inline int answer_take(const Answer *answer, size_t n_bytes, Worker *w)
-{
-    const size_t size = w->task->size;
-    if (n_bytes < sizeof *answer || answer->n_done > w->n || answer->why.code >= STATUS_COUNT ||
-        (answer->n_done < w->n) != (answer->why.code != STATUS_OK) || n_bytes != sizeof *answer + answer->n_done * size)
-        return 0;
-    for (size_t i = 0; i < answer->n_done; i++)
-        memcpy(w->task[i].result, answer->parts + i * size, size);
-    w->n = w->n_done = answer->n_done;
-    w->why = answer->why;
-    return 1;
 }
 
 /* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing

@@ -89,12 +89,9 @@ static size_t write_order(void *self, const Worker *w, char *request)
 {
     const Ranks *r = self;
     Order *order = (Order *)(void *)request;
-    const size_t n_var = r->is_open ? r->problem->n_var : r->problem->recipe_size / sizeof(double);
-    *order = (Order){.epoch = r->epoch, .worker = w - w->pool->worker, .n = w->n};
-    memcpy(order + 1, w->task, w->n * sizeof *w->task);
-    for (size_t i = 0; i < w->n && n_var > 0; i++)
-        memcpy(order_numbers(order) + i * n_var, w->task[i].x, n_var * sizeof(double));
-    return order_bytes(w->n, n_var);
+    order->epoch = r->epoch;
+    order->worker = w - w->pool->worker;
+    return order_write(order, w, r->is_open ? r->problem->n_var : r->problem->recipe_size / sizeof(double));
 }
 
 /* The message has come when its answer has. */
@@ -133,7 +130,7 @@ static void look(void *self, Worker *w)
         memcpy(&m, w->line + at, sizeof m);
         const Answer *a = m.bytes;
         w->silent_s = 0.0;
-        if (m.tag == TAG_DONE && (!a || !answer_take(a, m.n, w)))
+        if (m.tag == TAG_DONE && (!a || !order_take(a, m.n, w)))
             pool_settle(w, OUTCOME_GARBLED, 0, "%s", "");
         else if (a && a->n_done > 0 && a->seconds < SINGLE_S * (double)a->n_done)
             pool_batch(w, (size_t)fmin(ceil(AHEAD_S * (double)a->n_done / a->seconds), TASKS_MAX));

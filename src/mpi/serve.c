@@ -58,39 +58,22 @@ static int may_go_on(void *user)
     return !((Service *)user)->closing;
 }
 
-/* Do the tasks of an order and send what they give. The answer is not waited for, but the one before. */
+/* The answer is not waited for, but the one before. */
 static void do_order(Seat *w, Order *order, const Simulator *simulator, void *self)
 {
     Service *s = w->service;
     const Observer observer = {.go_on = may_go_on, .user = s};
-    const double began = clock_seconds();
-    Task *task = (Task *)(order + 1);
-    const size_t size = task->size;
-    Pool *pool = pool_of(simulator, self);
-    size_t n_done = 0;
-    Answer *a = calloc(1, sizeof *a + order->n * size);
+    const Doer doer = {simulator, self, s->problem.n_var, &observer};
+    size_t n;
+    Answer *a = order_do(order, (size_t)w->number, &doer, &n);
     if (!a)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
-    a->epoch = order->epoch;
-    a->worker = order->worker;
-    for (size_t i = 0; i < order->n; i++) {
-        task[i].x = order_numbers(order) + i * s->problem.n_var;
-        task[i].result = a->parts + i * size;
-        task[i].observer = &observer;
-    }
-    if (pool)
-        pool_do(pool, (size_t)w->number, order->n, task, &n_done, &a->why);
-    while (!pool && n_done < order->n &&
-           simulator->simulate(self, (size_t)w->number, &task[n_done], &a->why) == STATUS_OK)
-        n_done++;
-    a->n_done = n_done;
-    a->seconds = clock_seconds() - began;
     pthread_mutex_lock(&s->talking);
     MPI_Wait(&w->request, MPI_STATUS_IGNORE);
     free(w->answer);
     w->answer = a;
     if (!s->has_said_left)
-        MPI_Isend(a, (int)(sizeof *a + n_done * size), MPI_BYTE, 0, TAG_DONE, MPI_COMM_WORLD, &w->request);
+        MPI_Isend(a, (int)n, MPI_BYTE, 0, TAG_DONE, MPI_COMM_WORLD, &w->request);
     pthread_mutex_unlock(&s->talking);
 }
 
