@@ -79,12 +79,12 @@ static void draw_gaps(Random *r, GapKind kind, int n, double gap[])
 {
     const double first = log_between(r, 1e-3, 0.02), last = log_between(r, 0.05, 0.5), mean = log_between(r, 5e-3, 0.2);
     for (int j = 0; j < n; j++)
-        gap[j] = kind == GAPS_LOG_UNIFORM || kind == GAPS_YIELDING ? log_between(r, 1e-3, 0.5)
-                 : kind == GAPS_WIDE                               ? between(r, 0.05, 0.5)
-                 : kind == GAPS_SMALL                              ? between(r, 1e-3, 1e-2)
-                 : kind == GAPS_GROWING                            ? first + (last - first) * (j + 1) / n
-                 : kind == GAPS_EQUAL                              ? mean * between(r, 0.95, 1.05)
-                                                                   : NEVER;
+        gap[j] = kind == GAPS_WIDE           ? between(r, 0.05, 0.5)
+                 : kind == GAPS_SMALL        ? between(r, 1e-3, 1e-2)
+                 : kind == GAPS_GROWING      ? first + (last - first) * (j + 1) / n
+                 : kind == GAPS_EQUAL        ? mean * between(r, 0.95, 1.05)
+                 : kind == GAPS_THREE_FLOORS ? NEVER
+                                             : log_between(r, 1e-3, 0.5);
     for (int i = 0; i < 3 && kind == GAPS_THREE_FLOORS; i++)
         gap[random_below(r, (size_t)n)] = log_between(r, 1e-3, 0.2);
 }
@@ -121,6 +121,8 @@ Status promise_case(const PromisePlan *plan, int n_floors, GapKind kind, long k,
     draw_gaps(&r, kind, n_floors, out->x);
     if (kind == GAPS_YIELDING)
         out->yield_drift = log_between(&r, 0.003, 0.015);
+    if (kind == GAPS_OFF_CENTRE)
+        out->eccentricity = between(&r, 0.02, 0.1);
     out->x[n_floors] = between(&r, CORE_MIN, CORE_MAX);
     out->x[n_floors + 1] = between(&r, CORE_MIN, out->x[n_floors]);
     return STATUS_OK;
@@ -136,6 +138,7 @@ static Status simulate(const Promise *p, const PromiseCase *c, Engine engine, co
     SimWorker *worker;
     o.sim.engine = engine;
     o.building.yield_drift = c->yield_drift;
+    o.contact.eccentricity = (NumberList){1, {c->eccentricity}};
     o.sim.accuracy = preset->accuracy;
     o.sim.steps_per_contact = preset->steps;
     o.sim.duration_s = c->duration;
@@ -327,7 +330,7 @@ static void write_part(const Promise *p, const char *part, FILE *out, FILE *prog
 static Status write_kind(Promise *p, GapKind kind, FILE *out, FILE *progress, Err *err)
 {
     static const char *const WORDS[N_GAPS] = {"log-uniform", "wide",  "three floors", "1 to 10 mm",
-                                              "growing",     "equal", "yielding"};
+                                              "growing",     "equal", "yielding",     "off centre"};
     TRY(clear(p, p->plan->n_scenes, err));
     for (long k = 0; k < p->plan->n_scenes; k++) {
         PromiseCase c;

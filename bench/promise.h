@@ -4,7 +4,8 @@
  *   scene k of a kind   of record k mod n: 9 to 40 s that begin somewhere in the strong shaking, from rest, stretched
  *                       1.5 to 4 times, peak 0.1 to 0.5 g, a box of 8, 11.3 or 15 m, walls of 4 to 40 mm
  *   kinds               gaps of 1 to 500 mm, log-uniform; 50 to 500 mm; three floors alone, 1 to 200 mm; 1 to 10 mm;
- *                       growing with height; equal but for 5 %
+ *                       growing with height; equal but for 5 %; log-uniform with storeys that yield; log-uniform
+ *                       with contacts off the centre by 2 to 10 % of the plan
  *   predictable         a scene where gaps that are wider or narrower by 1e-6 of themselves, in N_PATTERNS patterns of
  *                       signs, the first all wider, move no result by more than the promise; of runs with
  *                       STEPS_PREDICTABLE steps per contact
@@ -33,6 +34,7 @@ typedef enum {
     GAPS_GROWING,
     GAPS_EQUAL,
     GAPS_YIELDING,
+    GAPS_OFF_CENTRE,
     N_GAPS
 } GapKind;
 
@@ -47,7 +49,8 @@ typedef struct {
 typedef struct {
     Motion motion; /* its samples are its own: motion_free */
     double duration, width, x[FLOORS_MAX + 2];
-    double yield_drift; /* [-] 0: no storey yields */
+    double yield_drift;  /* [-] 0: no storey yields */
+    double eccentricity; /* [-] of contacts */
     CoreTheory theory;
 } PromiseCase;
 

@@ -43,7 +43,14 @@ static void make_frame(Frame *f, int n, double k, double m, double zeta)
     }
     CHECK_OK(linalg_modes(n, f->K, f->M, f->omega, f->phi, &err), &err);
     linalg_participation(n, f->M, NULL, f->phi, f->gamma);
-    f->b.model = (BuildingModel){n, f->K, f->M, f->phi, f->omega, f->gamma, f->zeta, f->like};
+    f->b.model = (BuildingModel){.n = n,
+                                 .K = f->K,
+                                 .M = f->M,
+                                 .phi = f->phi,
+                                 .omega = f->omega,
+                                 .gamma = f->gamma,
+                                 .zeta = f->zeta,
+                                 .like = f->like};
 }
 
 static void make_core(CoreBeam *core, const SceneOptions *o, int n)

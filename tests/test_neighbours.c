@@ -1,6 +1,7 @@
 /* Two buildings that pound: closed forms of two single masses, floors by number, what is refused. */
 
 #include "base/units.h"
+#include "evaluate/consequences.h"
 #include "program.h"
 #include "scene/neighbour.h"
 #include "one_scene.h"
@@ -111,6 +112,47 @@ TEST(three_floors_meet_three_floors_and_none_above_a_lower_neighbour)
         assert_close(fast.j3_g, cvode.j3_g, 2e-3);
         assert_close(fast.edcs_pct, cvode.edcs_pct, 2e-3);
         assert_close(fast.forces.core_base_shear_n, cvode.forces.core_base_shear_n, 1e-2); /* as points are spaced */
+    }
+    motion_free(&motion);
+}
+
+/* The same two with exchanged roles: what one says of itself the other says of its neighbour. */
+TEST(either_building_says_the_same_of_the_other)
+{
+    const double x[] = {0.004, 0.009, 0.012};
+    Motion motion;
+    CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
+    for (int i = 0; i < 2 * ENGINE_COUNT; i++) {
+        const SceneKind kind = i % 2 ? SCENE_RIGID : SCENE_IMPACT;
+        SimResult r[2];
+        for (int exchanged = 0; exchanged < 2; exchanged++) {
+            SceneOptions o = pair_of(exchanged ? "stiff" : "three", exchanged ? "three" : "stiff", (Engine)(i / 2));
+            o.building.damping = LIST_OF(0.05);
+            o.core.damping = 0.05;
+            o.design.gap_sides = exchanged ? GAPS_LEFT : GAPS_RIGHT;
+            o.sim.duration_s = 4;
+            o.sim.filtered = 1;
+            r[exchanged] = simulate(&o, kind, &motion, x);
+        }
+        const double least = i / 2 == ENGINE_FAST ? 1e-9 : 1e-5;
+        for (int k = 0; k < 2; k++) {
+            const SimResult *own = &r[k];
+            const FloorPeaks *seen = &r[1 - k].neighbour;
+            assert_int_equal(seen->n, 3);
+            assert_close(seen->j1_m, own->j1_m, least);
+            assert_close(seen->j2_m, own->j2_m, least);
+            assert_close(seen->j3_g, own->j3_g, kind == SCENE_IMPACT ? 100 * least : least);
+            assert_close(seen->j3_filtered_g, own->j3_filtered_g, least);
+            assert_close(seen->drift_ratio_max, own->drift_ratio_max, least);
+            assert_close(damage_loss_of_neighbour(&r[1 - k]), damage_loss(own), 100 * least);
+            assert_close(r[1 - k].forces.core_base_shear_n, own->forces.building_base_shear_n, 1e-2);
+            for (int j = 0; j < 3; j++)
+                assert_close(seen->drift_m[j], own->peak_drift_m[j], least);
+        }
+        assert_int_equal(r[0].impacts, r[1].impacts);
+        assert_close(r[0].input_energy_j, r[1].input_energy_j, least);
+        assert_close(r[0].edcs_pct + r[1].edcs_pct,
+                     100 * (r[0].damped_core_j + r[0].damped_building_j) / r[0].input_energy_j, least);
     }
     motion_free(&motion);
 }

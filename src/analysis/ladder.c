@@ -20,10 +20,11 @@ static const struct {
     {"core that lifts", "core.foundation", NULL, NULL},
     {"storeys that yield", "building.yield_drift", "0.01", "0"},
     {"flexibility at contacts", "contact.bumper_stiffness_n_m", "5e8", "0"},
+    {"contacts off the centre", "contact.eccentricity", "0.05", "0"},
     {"weak end of the record", "sim.duration_s", NULL, NULL},
     {"steps, modes of the core", "sim.accuracy", "fine", NULL},
 };
-enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, YIELDING, FLEXIBILITY, END, STEPS, KINDS };
+enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, YIELDING, FLEXIBILITY, OFF_CENTRE, END, STEPS, KINDS };
 
 typedef struct {
     Settings s; /* as given, but for objectives and limits */

@@ -40,16 +40,27 @@ double damage_cost(DamagedPart part, double demand)
     return cost;
 }
 
-double damage_loss(const SimResult *r)
+/* Of a building of n floors. */
+static double loss_of(const RepairOptions *repair, int n, const double drift_ratio[], const double acceleration_g[])
 {
-    const double share[N_PARTS] = {r->repair.structure, r->repair.drift_sensitive, r->repair.acceleration_sensitive};
+    const double share[N_PARTS] = {repair->structure, repair->drift_sensitive, repair->acceleration_sensitive};
     double loss = 0;
     for (DamagedPart p = 0; p < N_PARTS; p++) {
-        const double *demand = p == PART_ACCELERATION ? r->peak_acceleration_g : r->drift_ratio;
-        for (int j = 0; j < r->n_floors; j++)
-            loss += damage_cost(p, demand[j]) * (share[p] / DAMAGE_PARTS[p].cost[DAMAGE_STATES - 1]) / r->n_floors;
+        const double *demand = p == PART_ACCELERATION ? acceleration_g : drift_ratio;
+        for (int j = 0; j < n; j++)
+            loss += damage_cost(p, demand[j]) * (share[p] / DAMAGE_PARTS[p].cost[DAMAGE_STATES - 1]) / n;
     }
     return loss;
+}
+
+double damage_loss(const SimResult *r)
+{
+    return loss_of(&r->repair, r->n_floors, r->drift_ratio, r->peak_acceleration_g);
+}
+
+double damage_loss_of_neighbour(const SimResult *r)
+{
+    return loss_of(&r->repair, r->neighbour.n, r->neighbour.peak_drift_ratio, r->neighbour.acceleration_g);
 }
 
 const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])

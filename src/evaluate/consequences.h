@@ -38,6 +38,7 @@ const char *damage_word(int state);
 double damage_cost(DamagedPart part, double demand);
 
 double damage_loss(const SimResult *r);
+double damage_loss_of_neighbour(const SimResult *r);
 
 /* In which state the worst storey or floor of every part is, and the loss, in text; empty: the simulation failed.
  * Returns text. */

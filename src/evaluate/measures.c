@@ -41,7 +41,8 @@ double measure_value(const SimResult *r, int k)
     if (k >= MEASURES_LISTED)
         return r->chance[k - MEASURES_LISTED];
     if (((needs & (NEEDS_FORCES | NEEDS_FEW_FORCES)) && !r->forces_known) ||
-        ((needs & NEEDS_FILTER) && !r->filtered_known) || ((needs & NEEDS_YIELDING) && !r->yields))
+        ((needs & NEEDS_FILTER) && !r->filtered_known) || ((needs & NEEDS_YIELDING) && !r->yields) ||
+        ((needs & NEEDS_NEIGHBOUR) && r->neighbour.n == 0))
         return NAN;
     switch ((MeasureId)k) {
 #define X(id, name, unit, sense, needs, value, title, shown, factor, what)                                             \
@@ -83,13 +84,15 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
         {NEEDS_RADIUS, "no radius is known: set core.foundation with radius= [m]"},
         {NEEDS_SHAPE, "the core has no section: set core.section = box or plate, and core.model = none"},
         {NEEDS_WALLS, "the core has no walls: set core.section = box, and core.model = none"},
+        {NEEDS_NEIGHBOUR, "there is no neighbour: set core.model"},
     };
     Foundation f = {0};
     const CoreSection section = core_section(core);
     foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
     const unsigned has = NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) |
-                         (f.rotation > 0 ? NEEDS_TURNING : 0u) | (f.radius_m > 0 ? NEEDS_RADIUS : 0u) |
-                         (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) | (section == CORE_BOX ? NEEDS_WALLS : 0u);
+                         (neighbour_is_given(core) ? NEEDS_NEIGHBOUR : 0u) | (f.rotation > 0 ? NEEDS_TURNING : 0u) |
+                         (f.radius_m > 0 ? NEEDS_RADIUS : 0u) | (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) |
+                         (section == CORE_BOX ? NEEDS_WALLS : 0u);
     for (int k = 0; k < N_MEASURES; k++)
         for (size_t i = 0; set >> k & 1 && i < N_OF(LACKS); i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)

@@ -28,6 +28,7 @@ enum {
     NEEDS_SHAPE = 32,       /* of the core's section */
     NEEDS_WALLS = 64,       /* of a box */
     NEEDS_FEW_FORCES = 128, /* no shears of storeys of the building above the first, no velocities: 6 % less time */
+    NEEDS_NEIGHBOUR = 512,  /* another building in the place of the core */
     IS_BORNE = 256          /* needs nothing; the building or the core has to bear it: report and dossier list it */
 };
 
@@ -101,7 +102,18 @@ enum {
       "expected cost of repair over that of replacing the building (evaluate/consequences.h)")                         \
     X(ANNUAL_LOSS, "annual_loss", "1/year", 1, NEEDS_NOTHING,                                                          \
       r->rate_per_year > 0 ? r->rate_per_year * damage_loss(r) : NAN, "repair cost of a year", "%", 100,               \
-      "loss of a year: sum over the records of loss times rate=NUMBER of each (docs/risk.md)")
+      "loss of a year: sum over the records of loss times rate=NUMBER of each (docs/risk.md)")                         \
+    X(NEIGHBOUR_J1, "neighbour_j1_m", "m", 1, NEEDS_NEIGHBOUR | IS_BORNE, r->neighbour.j1_m, "neighbour's J1", "m", 1, \
+      "largest floor displacement of the building of core.model")                                                      \
+    X(NEIGHBOUR_DRIFT, "neighbour_drift_ratio", "-", 1, NEEDS_NEIGHBOUR | IS_BORNE, r->neighbour.drift_ratio_max,      \
+      "neighbour's drift ratio", "%", 100, "largest drift ratio of the building of core.model")                        \
+    X(NEIGHBOUR_J3, "neighbour_j3_g", "g", 1, NEEDS_NEIGHBOUR | IS_BORNE, r->neighbour.j3_g, "neighbour's J3", "g", 1, \
+      "largest floor acceleration of the building of core.model")                                                      \
+    X(NEIGHBOUR_FILTERED, "neighbour_j3_filtered_g", "g", 1, NEEDS_NEIGHBOUR | NEEDS_FILTER | IS_BORNE,                \
+      r->neighbour.j3_filtered_g, "neighbour's J3 filtered", "g", 1,                                                   \
+      "its largest floor acceleration behind a low-pass of sim.filter_hz")                                             \
+    X(NEIGHBOUR_LOSS, "neighbour_loss", "-", 1, NEEDS_NEIGHBOUR | IS_BORNE, damage_loss_of_neighbour(r),               \
+      "neighbour's repair cost", "%", 100, "loss of the building of core.model")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, title, shown, factor, what) MEASURE_##id,

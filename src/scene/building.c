@@ -154,7 +154,7 @@ static Status find_modes(const Building *b, BuildingModel *m, const double *r, c
         return bad_data(err, "%s: buckles under its own weight (building.p_delta)", o->model);
     TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
     linalg_participation(m->n, m->M, r, m->phi, m->gamma);
-    reduction_alike(b->n, b->phi, b->M, m->n, m->phi, m->like);
+    reduction_alike(b->n, b->phi, b->M, m, m->like);
     return STATUS_OK;
 }
 
@@ -297,11 +297,16 @@ void building_join_core(const CoreBeam *c, const BuildingModel *building, double
     const int m = building->n;
     memcpy(K, building->K, m * m * sizeof *K);
     memcpy(M, building->M, m * m * sizeof *M);
-    for (int i = 0; i < c->n; i++)
-        for (int j = 0; j < c->n; j++) {
-            K[i * m + j] += c->K[i * c->n + j];
-            M[i * m + j] += c->M[i * c->n + j];
-        }
+    const int parts = building->turns_at ? 2 : 1;
+    for (int a = 0; a < parts * parts; a++) { /* the motion and the rotation of the floors by which the nodes move */
+        const int at = a / parts * building->turns_at * m + a % parts * building->turns_at;
+        const double arm = pow(building->arm_contact, a / parts + a % parts);
+        for (int i = 0; i < c->n; i++)
+            for (int j = 0; j < c->n; j++) {
+                K[at + i * m + j] += arm * c->K[i * c->n + j];
+                M[at + i * m + j] += arm * c->M[i * c->n + j];
+            }
+    }
 }
 
 Status building_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err)

@@ -49,7 +49,16 @@ typedef struct {
     double *phi;                  /* (n, n) column i is mode i */
     double *omega, *gamma, *zeta; /* (n) [rad/s] ascending, [sqrt(kg)], [-] */
     int *like;                    /* (n) the mode of the floors alone that it resembles; -1: none (vertical) */
+    int turns_at;                 /* the first rotation, of floors that turn (scene/torsion.h); 0: none does */
+    double arm_contact, arm_edge; /* [-] of the contacts, of the edges, over the radius of gyration */
 } BuildingModel;
+
+/* Of floor j in mode i, at an arm from its centre. */
+static inline double building_shape(const BuildingModel *m, int j, double arm, int i)
+{
+    const double centre = m->phi[j * m->n + i];
+    return m->turns_at ? centre + arm * m->phi[(m->turns_at + j) * m->n + i] : centre;
+}
 
 typedef struct {
     int n;               /* floors */

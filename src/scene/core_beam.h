@@ -53,8 +53,9 @@ void beam_element(const Beam *b, double k[4][4], double m[4][4]);
 Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err);
 
 typedef struct {
-    int n, top;     /* nodes; the lowest of them that there are: fewer of a neighbour (scene/neighbour.h) */
-    double mass_kg; /* of the whole core, ground node's share included */
+    int n, top; /* nodes; the lowest of them that there are: fewer of a neighbour (scene/neighbour.h) */
+    double storey_m[FLOORS_MAX];                                   /* (top) heights of a neighbour's storeys */
+    double mass_kg;                                                /* of the whole core, ground node's share included */
     double K[FLOORS_MAX * FLOORS_MAX], M[FLOORS_MAX * FLOORS_MAX]; /* (n, n) */
     double phi[FLOORS_MAX * FLOORS_MAX];                           /* (n, n) column i is mode i */
     double omega[FLOORS_MAX], gamma[FLOORS_MAX], zeta[FLOORS_MAX];

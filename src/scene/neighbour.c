@@ -55,6 +55,7 @@ Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, c
     c->n = b->n;
     c->top = n.n;
     c->mass_kg = building_mass(&n);
+    memcpy(c->storey_m, n.storey_m, (size_t)n.n * sizeof *c->storey_m);
     for (int i = 0; i < b->n && status == STATUS_OK; i++) {
         const int own = i < n.n;
         c->omega[i] = n.omega[own ? i : n.n - 1];

@@ -145,6 +145,10 @@ static const Option OPTIONS[] = {
          "thickness of the bumper; the gap is the clearance in front of it"),
     REAL(contact.bumper_strain_max, "-", "0.5", 1e-3, 1,
          "a bumper compressed by more of its thickness bottoms out: the result says so"),
+    LIST(
+        contact.eccentricity, "-", "0", 0, 10,
+        "contacts off the centre of the floors, across the motion, over the plan's side along it; then the side across "
+        "over the side along (1.2): floors turn, and peaks are those of their edges (docs/theory.md)"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
          "ground motion: one of the program, a file, or none: at rest under motion.forces (docs/motions.md)",

@@ -160,8 +160,7 @@ static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, i
 {
     const int n = m->n, modes = joined ? m->nb : n;
     const BuildingModel *model = &b->model;
-    const double *phi = joined ? model->phi : core ? core->phi : NULL;
-    double outputs[2 * FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX];
+    double nodes[FLOORS_MAX], outputs[2 * FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX];
 
     /* Modes of the building: base shear, overturning moment, shears of the other storeys; the floors' velocities. */
     for (int i = 0; i < m->nb; i++) {
@@ -178,9 +177,11 @@ static void set_rows(ForceMonitor *m, const Building *b, const CoreBeam *core, i
     /* Modes of the core. Those at the base stand beside the building's, where these are its modes too. */
     memset(outputs, 0, sizeof outputs);
     for (int i = 0; i < modes; i++) {
+        for (int j = 0; core && j < n; j++)
+            nodes[j] = joined ? building_shape(model, j, model->arm_contact, i) : core->phi[j * n + i];
         if (core) {
-            storey_forces(m, core->K, phi + i, modes, outputs, outputs + n);
-            outputs[2 * n] = phi[(core->top - 1) * modes + i];
+            storey_forces(m, core->K, nodes, 1, outputs, outputs + n);
+            outputs[2 * n] = nodes[core->top - 1];
         }
         put_row(m, 0, i, 2 * n + 1, outputs, joined ? ROW_BUILDING : ROW_CORE);
         double *both = (joined ? m->group[m->at_both].building : m->group[m->at_both].core) + i * LANES8;

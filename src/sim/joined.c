@@ -11,7 +11,8 @@ static void layout(void *joined, Carve *c)
     CARVE(c, j->P, (size_t)((j->m + j->n) * j->m));
 }
 
-/* Rows first.. of P: phi' M psi, of the first `size` degrees of freedom; gamma = P' (that of the part). */
+/* Rows first.. of P: phi' M psi, of the first `size` degrees of freedom, the core's where it touches; gamma = P' (that
+ * of the part). */
 static void project(Joined *j, int first, int size, const double phi[], const double M[], const double gamma[])
 {
     const BuildingModel *both = &j->building.model;
@@ -20,7 +21,8 @@ static void project(Joined *j, int first, int size, const double phi[], const do
         for (int k = 0; k < m; k++) {
             double m_psi = 0;
             for (int i = 0; i < size; i++)
-                m_psi += M[l * size + i] * both->phi[i * m + k];
+                m_psi +=
+                    M[l * size + i] * (first ? building_shape(both, i, both->arm_contact, k) : both->phi[i * m + k]);
             for (int i = 0; i < size; i++)
                 j->P[(first + i) * m + k] += phi[l * size + i] * m_psi;
         }
@@ -40,11 +42,15 @@ Status joined_make(Joined *j, const Building *b, const CoreBeam *core, Err *err)
     TRY(linalg_modes(j->m, both->K, both->M, both->omega, both->phi, err));
     project(j, 0, j->m, b->model.phi, b->model.M, b->model.gamma);
     project(j, j->m, j->n, core->phi, core->M, core->gamma);
-    reduction_alike(b->n, b->phi, b->M, j->m, both->phi, both->like);
+    reduction_alike(b->n, b->phi, b->M, both, both->like);
+    j->shares = both->turns_at && j->m < FLOORS_MAX ? j->m : b->n;
     for (int k = 0; k < j->m; k++) {
+        double nodes[FLOORS_MAX];
+        for (int i = 0; i < j->n; i++)
+            nodes[i] = building_shape(both, i, both->arm_contact, k);
         both->zeta[k] = b->zeta[both->like[k] >= 0 ? both->like[k] : b->n - 1] +
-                        core_beam_base_loss(core, both->omega[k], both->phi + k, j->m) / (2 * both->omega[k]);
-        both->like[k] = k < b->n ? k : -1;
+                        core_beam_base_loss(core, both->omega[k], nodes, 1) / (2 * both->omega[k]);
+        both->like[k] = k < j->shares ? k : -1;
     }
     return STATUS_OK;
 }
@@ -62,7 +68,7 @@ void joined_book(const Joined *j, SimResult *r)
     memset(r->mode_share_pct, 0, sizeof share);
     r->ed1_pct = r->ed5_10_pct = r->edcs_pct = 0;
     for (int i = 0; i < j->m + j->n; i++)
-        for (int k = 0; k < j->building.n; k++) {
+        for (int k = 0; k < j->shares; k++) {
             const double booked = pow(j->P[i * j->m + k], 2) * share[k];
             if (i >= j->m)
                 r->edcs_pct += booked;

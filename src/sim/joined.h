@@ -20,6 +20,7 @@ typedef struct {
     Building building; /* as it is, but for its model: that of both */
     const int *like;   /* (m) of the building alone */
     int n, m;          /* modes of the core, of the building and of both */
+    int shares;        /* modes of both whose shares are known */
     double *P;         /* (m + n, m) the building's rows first */
     void *store;
 } Joined;

@@ -2,6 +2,8 @@
 
 #include "base/carve.h"
 #include "base/clones.h"
+#include "base/units.h"
+#include "scene/neighbour.h"
 #include "sim/lanes.h"
 
 static int padded(int n)
@@ -15,6 +17,7 @@ static void layout(void *object, Carve *c)
     SimModel *m = object;
     CARVE(c, m->R, m->m_pad * m->n_pad);
     CARVE(c, m->RT, m->m_pad * m->n_pad);
+    CARVE(c, m->U_room, m->m_pad * padded(POINTS_OF(m->n)));
     CARVE(c, m->B, m->m_pad * (m->n + 2));
     CARVE(c, m->omega, m->m_pad);
     CARVE(c, m->zeta, m->m_pad);
@@ -34,9 +37,41 @@ Status model_create(SimModel *model, int n, int nb_max, Err *err)
     model->store = carve_all(layout, model);
     if (!model->store)
         return fail_memory(err, n, "floors");
+    model->U = model->R;
+    model->p_pad = model->n_pad;
+    model->points = n;
     for (int i = 0; i < nb_max; i++)
         model->like[i] = i < n ? i : -1;
     return STATUS_OK;
+}
+
+/* Centres, of floors that turn both edges, and the neighbour's floors. */
+int model_points(const SceneOptions *o, const Building *b)
+{
+    return ((b->model.turns_at ? 3 : 1) + neighbour_is_given(&o->core)) * (b->n + 1) - 1;
+}
+
+/* The rows of all points; core NULL: it moves with the floors, or there is none. */
+static void set_points(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core)
+{
+    const BuildingModel *m = &b->model;
+    const int n = model->n, own = m->turns_at ? 3 : 1, has_neighbour = neighbour_is_given(&o->core);
+    const double arm[] = {0, m->arm_edge, -m->arm_edge};
+    model->points = model_points(o, b);
+    model->neighbour_at = has_neighbour ? own * (n + 1) : 0;
+    model->neighbour_floors = core && has_neighbour ? core->top : 0;
+    model->p_pad = padded(model->points);
+    model->U = model->points > n ? model->U_room : model->R;
+    for (int i = 0; i < model->m && model->points > n; i++) {
+        double *row = model->U + i * model->p_pad;
+        const int in_core = i >= model->nb;
+        memset(row, 0, sizeof *row * (size_t)model->p_pad);
+        for (int p = 0; p < own * n && !in_core; p++)
+            row[p / n * (n + 1) + p % n] = building_shape(m, p % n, arm[p / n], i);
+        for (int j = 0; j < n && has_neighbour && (in_core || !core); j++)
+            row[model->neighbour_at + j] =
+                core ? core->phi[j * n + i - model->nb] : building_shape(m, j, m->arm_contact, i);
+    }
 }
 
 /* [m] A floor beside which there is nothing on one side moves freely so far: no floor gets there, and distances from
@@ -80,7 +115,8 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->zeta[i] = building->zeta[i];
         model->gamma[i] = building->gamma[i];
         for (int j = 0; j < n; j++)
-            model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = building->phi[j * building->n + i];
+            model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] =
+                building_shape(building, j, building->arm_contact, i);
     }
     for (int k = 0, i = model->nb; k < model->nc; k++, i++) {
         model->omega[i] = core->omega[k];
@@ -90,6 +126,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
             model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = -core->phi[j * n + k];
     }
     memcpy(model->like, building->like, (size_t)model->nb * sizeof *model->like);
+    set_points(model, o, b, core);
     for (int j = 0; j < model->n_pad; j++) {
         double sum = 0;
         for (int i = 0; i < model->m; i++)
@@ -140,7 +177,7 @@ void model_add_device(SimModel *model, const Device *device, int on_mass)
     double *b = model->B + (size_t)e * (size_t)model->m_pad;
     model->device[e] = *device;
     for (int i = 0; i < model->m_pad; i++)
-        b[i] = on_mass && i >= model->nb ? 0 : row[i];
+        b[i] = !on_mass ? row[i] : i < model->nb ? centre_row(model, i)[device->floor] : 0;
     if (on_mass)
         b[last] = -1 / model->gamma[last];
 }
@@ -180,7 +217,7 @@ void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
     double f[FLOORS_MAX], u[FLOORS_MAX] = {0};
     model_plastic_forces(model, p, f);
     for (int i = 0; i < model->nb; i++) { /* the floors at rest: sum_i R_ij (R_i f) / w_i^2 */
-        const double *row = model->R + (size_t)i * (size_t)model->n_pad;
+        const double *row = centre_row(model, i);
         double load = 0;
         for (int j = 0; j < model->n; j++)
             load += row[j] * f[j];
@@ -196,6 +233,25 @@ void model_report_plastic(const SimModel *model, const double p[], SimResult *r)
     }
 }
 
+void model_report_peaks(const SimModel *model, const double *const of[POINT_PEAKS], SimResult *r)
+{
+    FloorPeaks *beside = &r->neighbour;
+    double *const floors[2][POINT_PEAKS] = {
+        {r->peak_displacement_m, r->peak_drift_m, r->peak_acceleration_g, r->peak_filtered_g},
+        {beside->displacement_m, beside->drift_m, beside->acceleration_g, beside->filtered_g}};
+    double *const largest[2][POINT_PEAKS] = {{&r->j1_m, &r->j2_m, &r->j3_g, &r->j3_filtered_g},
+                                             {&beside->j1_m, &beside->j2_m, &beside->j3_g, &beside->j3_filtered_g}};
+    beside->n = model->neighbour_floors;
+    for (int p = 0; p < model->points; p++) {
+        const int j = p % (model->n + 1), at = model->neighbour_at && p >= model->neighbour_at;
+        for (int y = 0; y < POINT_PEAKS && j < (at ? beside->n : model->n); y++)
+            if (of[y]) {
+                floors[at][y][j] = fmax(floors[at][y][j], y < 2 ? of[y][p] : of[y][p] / GRAVITY);
+                *largest[at][y] = fmax(*largest[at][y], floors[at][y][j]);
+            }
+    }
+}
+
 void model_free(SimModel *model)
 {
     free(model->store);
@@ -203,12 +259,12 @@ void model_free(SimModel *model)
 }
 
 /* Three vectors of floors from a pair of sums each: six chains of multiply-adds hide their latency. */
-CLONED void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[])
+CLONED void rows_from_modes(const double rows[], int width, int first, int end, const double x[], double out[])
 {
-    const size_t stride = (size_t)model->n_pad / 8;
+    const size_t stride = (size_t)width / 8;
     for (size_t block = 0; block < stride; block += 3) {
         const size_t b = block + 1 < stride ? 1 : 0, c = block + 2 < stride ? 2 : 0; /* 0: once more the first */
-        const v8 *row = (const v8 *)model->R + (size_t)first * stride + block;
+        const v8 *row = (const v8 *)rows + (size_t)first * stride + block;
         v8 a0 = {0}, b0 = {0}, c0 = {0}, a1 = {0}, b1 = {0}, c1 = {0};
         int i = first;
         for (; i + 2 <= end; i += 2, row += 2 * stride) {

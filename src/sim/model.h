@@ -17,6 +17,10 @@
  *
  * A floor that may go right (u > v) by g_R and left by g_L has gap = (g_R + g_L) / 2 around middle = (g_R - g_L) / 2.
  *
+ * Floors that turn (scene/torsion.h) have modes of rotation among those of the building: R is where they touch, u_j
+ * is at the centre, and peaks are those of the edges as well. A neighbour's floors have peaks too. Then what is
+ * watched are sets of n points with a row of zeros between two of them: y_p = sum_i U_ip q_i.
+ *
  * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
  * Padding  a padded floor has an unreachable gap, a padded mode has omega = 1 and no coupling.
  * Life     model_create for the largest case, model_set per design, model_free. Threads  one owner at a time. */
@@ -28,6 +32,10 @@
 #include "sim/device.h"
 #include "sim/result.h"
 #include "sim/storey.h"
+
+/* At most, of n floors. */
+#define POINTS_OF(n) (4 * (n) + 3)
+enum { POINTS_MAX = POINTS_OF(FLOORS_MAX) + 5 };
 
 typedef struct {
     int n, nb, nc, m; /* floors, building modes, core modes, nb + nc */
@@ -49,11 +57,19 @@ typedef struct {
     int n_devices, has_mass, may_lift;
     Device device[FLOORS_MAX + 2]; /* (n_devices) */
     double *B;                     /* (n + 2, m_pad) [1/sqrt(kg)] a row per device */
+    int points, p_pad;             /* with the rows between the sets */
+    int neighbour_at;              /* the first point of a neighbour's floors, so many; 0: it has none */
+    int neighbour_floors;
+    double *U;      /* (m_pad, p_pad) [1/sqrt(kg)] centres first; R where these are all */
+    double *U_room; /* of that */
     void *store;
 } SimModel;
 
 /* Room for n floors with up to nb_max building modes, n core modes. like: mode by mode. */
 Status model_create(SimModel *model, int n, int nb_max, Err *err);
+
+/* Points of a scene of this building. */
+int model_points(const SceneOptions *o, const Building *b);
 
 /* gaps (n) [m] of both sides; core NULL: the building alone (nc = 0, no gap can close). */
 Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
@@ -88,5 +104,34 @@ void model_plastic_forces(const SimModel *model, const double p[], double f[]);
 /* Fills what SimResult has of storeys that yielded and ended with plastic drifts p (n); energies are the engine's. */
 void model_report_plastic(const SimModel *model, const double p[], SimResult *result);
 
-/* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
-void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);
+/* Peaks of all points, displacement [m], drift [m], acceleration and that behind the filter [m/s2], or NULL, to the
+ * floors that have them. */
+enum { POINT_PEAKS = 4 };
+void model_report_peaks(const SimModel *model, const double *const of[POINT_PEAKS], SimResult *result);
+
+/* out_j = sum_{first <= i < end} rows_ij x_i, (end, width); a padded width. */
+void rows_from_modes(const double rows[], int width, int first, int end, const double x[], double out[]);
+
+/* For every floor at the contacts; out (n_pad). */
+static inline void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[])
+{
+    rows_from_modes(model->R, model->n_pad, first, end, x, out);
+}
+
+/* Row of mode i: the floors' centres first. */
+static inline const double *centre_row(const SimModel *model, int i)
+{
+    return model->U + (size_t)i * (size_t)model->p_pad;
+}
+
+/* How many modes move the points. */
+static inline int point_modes(const SimModel *model)
+{
+    return model->neighbour_at ? model->m : model->nb;
+}
+
+/* All points, of a state of the modes. */
+static inline void points_from_modes(const SimModel *model, const double x[], double out[])
+{
+    rows_from_modes(model->U, model->p_pad, 0, point_modes(model), x, out);
+}

@@ -19,6 +19,7 @@ typedef struct {
     double bumper_stiffness_n_m; /* 0: none */
     double bumper_damping;       /* [-] damping ratio */
     double bumper_thickness_m, bumper_strain_max;
+    NumberList eccentricity; /* [-] e/l and b/l (scene/torsion.h) */
 } ContactOptions;
 
 /* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */

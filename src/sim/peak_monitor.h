@@ -9,8 +9,7 @@
  * Threads  no state */
 #pragma once
 
-#include "base/units.h"
-#include "sim/result.h"
+#include "sim/model.h"
 
 typedef enum {
     PEAK_DISPLACEMENT, /* u_j [m] */
@@ -22,13 +21,13 @@ typedef enum {
 
 typedef struct {
     double t;
-    double of[PEAK_KINDS][FLOORS_MAX];
+    double of[PEAK_KINDS][POINTS_MAX];
 } PeakPoint;
 
 typedef struct {
-    int n, count, arc; /* floors; points so far, of them on the present arc */
+    int n, count, arc; /* points of the model; points so far, of them on the present arc */
     PeakPoint ring[3];
-    double peak[PEAK_KINDS][FLOORS_MAX];
+    double peak[PEAK_KINDS][POINTS_MAX];
 } PeakMonitor;
 
 /* Where the caller writes the next point; peak_monitor_add takes it in and computes its interstorey drifts. */
@@ -73,17 +72,4 @@ static inline void peak_monitor_add(PeakMonitor *p)
 static inline void peak_monitor_break(PeakMonitor *p, int at_last)
 {
     p->arc = at_last && p->count > 0;
-}
-
-/* Peaks of every floor and the largest of all floors. */
-static inline void peak_monitor_report(const PeakMonitor *p, SimResult *result)
-{
-    for (int j = 0; j < p->n; j++) {
-        result->peak_displacement_m[j] = p->peak[PEAK_DISPLACEMENT][j];
-        result->peak_drift_m[j] = p->peak[PEAK_DRIFT][j];
-        result->peak_acceleration_g[j] = p->peak[PEAK_ACCELERATION][j] / GRAVITY;
-        result->j1_m = fmax(result->j1_m, result->peak_displacement_m[j]);
-        result->j2_m = fmax(result->j2_m, result->peak_drift_m[j]);
-        result->j3_g = fmax(result->j3_g, result->peak_acceleration_g[j]);
-    }
 }

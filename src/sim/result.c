@@ -15,13 +15,14 @@ const char *run_outcome_words(RunOutcome outcome)
 }
 
 /* What a part needs beside HAS_CORE, HAS_GAPS and HAS_DEVICE of the case. */
-enum { IF_FORCES = 32, IF_STRESS = 64, IF_BUCKLING = 128, IF_BUMPER = 256, IF_YIELDING = 512 };
+enum { IF_FORCES = 32, IF_STRESS = 64, IF_BUCKLING = 128, IF_BUMPER = 256, IF_YIELDING = 512, IF_NEIGHBOUR = 1024 };
 
 #define NAMED(name, shape, needs, member)                                                                              \
     {                                                                                                                  \
         name, shape, needs, offsetof(SimResult, member)                                                                \
     }
 #define FIELD(shape, needs, member) NAMED(#member, shape, needs, member)
+#define BESIDE(member)              NAMED("neighbour_" #member, PART_NEIGHBOUR, IF_NEIGHBOUR, neighbour.member)
 #define FORCE(shape, needs, member) NAMED(#member, shape, needs, forces.member)
 const ResultPart RESULT_PARTS[] = {FIELD(PART_LONG, 0, impacts),
                                    FIELD(PART_NUMBER, HAS_DEVICE, stroke_m),
@@ -66,6 +67,10 @@ const ResultPart RESULT_PARTS[] = {FIELD(PART_LONG, 0, impacts),
                                    FIELD(PART_FLAG, 0, contact_yields),
                                    FIELD(PART_NUMBER, IF_BUMPER, bumper_compression_m),
                                    FIELD(PART_FLAG, IF_BUMPER, bumper_bottoms_out),
+                                   BESIDE(displacement_m),
+                                   BESIDE(drift_m),
+                                   BESIDE(acceleration_g),
+                                   BESIDE(peak_drift_ratio),
                                    FIELD(PART_LONG, 0, steps),
                                    FIELD(PART_LONG, 0, force_evaluations),
                                    FIELD(PART_NUMBER, 0, seconds),
@@ -75,10 +80,13 @@ size_t result_part(const SimResult *r, unsigned scene, const ResultPart *part, d
 {
     const unsigned has = scene | (r->forces_known ? IF_FORCES : 0u) | (r->forces.stress_known ? IF_STRESS : 0u) |
                          (r->forces.buckling_known ? IF_BUCKLING : 0u) | (r->bumper_strain > 0 ? IF_BUMPER : 0u) |
-                         (r->yields ? IF_YIELDING : 0u);
-    const size_t n = part->shape < PART_FLOORS ? 1 : (size_t)(part->shape == PART_MODES ? r->n_modes : r->n_floors);
+                         (r->yields ? IF_YIELDING : 0u) | (r->neighbour.n > 0 ? IF_NEIGHBOUR : 0u);
+    const size_t n = part->shape < PART_FLOORS ? 1
+                                               : (size_t)(part->shape == PART_MODES       ? r->n_modes
+                                                          : part->shape == PART_NEIGHBOUR ? r->neighbour.n
+                                                                                          : r->n_floors);
     const void *member = (const char *)r + part->at;
-    *rows = part->shape >= PART_SIDES ? SIDES : 1;
+    *rows = part->shape == PART_SIDES || part->shape == PART_COUNTS ? SIDES : 1;
     if (part->needs & ~has)
         return 0;
     for (size_t i = 0; i < *rows * n; i++) {

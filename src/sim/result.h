@@ -62,6 +62,14 @@ typedef struct {
     double stroke, force;
 } DevicePeak;
 
+/* Largest of every floor or storey of a neighbour, and of them all; named as in SimResult. */
+typedef struct {
+    int n; /* floors; 0: there is no neighbour */
+    double displacement_m[FLOORS_MAX], drift_m[FLOORS_MAX], acceleration_g[FLOORS_MAX], peak_drift_ratio[FLOORS_MAX],
+        filtered_g[FLOORS_MAX];
+    double j1_m, j2_m, j3_g, j3_filtered_g, drift_ratio_max;
+} FloorPeaks;
+
 typedef struct {
     RunOutcome outcome;
     char reason[160]; /* empty when outcome is RUN_OK */
@@ -114,6 +122,7 @@ typedef struct {
     double chance[CHANCES_MAX]; /* 1 where a limit of the search is exceeded, set by who asks (evaluate/measures.h) */
     int forces_known;           /* they were asked for: SimOptions.forces */
     SimForces forces;
+    FloorPeaks neighbour;
 } SimResult;
 
 /* What there is of a result beside its measures (evaluate/measures.h), by name: of the scene, of every floor or
@@ -127,7 +136,8 @@ typedef enum {
     PART_FLOORS,
     PART_MODES,
     PART_SIDES,
-    PART_COUNTS /* as PART_SIDES, of long */
+    PART_COUNTS,   /* as PART_SIDES, of long */
+    PART_NEIGHBOUR /* of the neighbour's floors */
 } PartShape;
 
 typedef struct {

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "motion/forces.h"
 #include "scene/neighbour.h"
+#include "scene/torsion.h"
 #include "sim/as_built.h"
 #include "sim/engine.h"
 #include "sim/floor_filter.h"
@@ -102,6 +103,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (scene->run.duration == 0 && motion)
         scene->run.duration = motion_duration(motion);
     Status status = building_load(&scene->building, &o->building, err);
+    THEN(status, torsion_add(&scene->building, &o->contact.eccentricity, err));
     THEN(status, design_space_make(&scene->design, &o->design, core_section(&o->core), scene->building.n, err));
     if (status == STATUS_OK && neighbour_is_given(&o->core)) {
         scene->neighbour = calloc(1, sizeof *scene->neighbour);
@@ -194,7 +196,8 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     if (status == STATUS_OK && scene->options.sim.forces == FORCES_YES)
         status = force_monitor_create(&w->run.forces, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->options.sim.filtered)
-        status = floor_filter_create(&w->filter, scene->building.n, scene->options.sim.filter_hz, err);
+        status = floor_filter_create(&w->filter, model_points(&scene->options, &scene->building),
+                                     scene->options.sim.filter_hz, err);
     sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n,
@@ -229,8 +232,10 @@ static void take_floors(const SimSample *sample, void *user)
         floor_filter_interrupt(w->filter);
     w->filtered_to = sample->t;
     double *u = floor_filter_add(w->filter, sample->ground);
-    if (u)
-        sim_worker_floors(w, sample, u);
+    if (u && sample->u)
+        memcpy(u, sample->u, (size_t)w->model.points * sizeof *u);
+    else if (u)
+        points_from_modes(&w->model, sample->q, u);
 }
 
 static int is_below(const double acceleration[], void *user)
@@ -256,13 +261,17 @@ void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)
         force_monitor_on_contact(worker->run.forces, contact, user);
 }
 
+/* u (n_floors) of the floors' centres by modes x of a sample. */
+static void centres(const SimModel *model, const double x[], double u[])
+{
+    double points[POINTS_MAX];
+    rows_from_modes(model->U, model->p_pad, 0, model->nb, x, points);
+    memcpy(u, points, (size_t)model->n * sizeof *u);
+}
+
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[])
 {
-    const SimModel *model = &worker->model;
-    if (sample->u)
-        memcpy(u, sample->u, (size_t)model->n * sizeof *u);
-    else
-        floors_from_modes(model, 0, model->nb, sample->q, u);
+    centres(&worker->model, sample->q, u);
 }
 
 /* Nodes of the core, whose rows of R are -phi. */
@@ -286,7 +295,7 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
         force[j] += (s->force ? s->force[j] : 0) + motion_force(motion, j, s->t);
     memset(out, 0, (size_t)model->n * sizeof *out);
     for (int i = 0; i < model->nb; i++) {
-        const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
+        const double w = s->omega[i], *row = centre_row(model, i);
         double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
         if (model->may_lift) /* 0 but of a core that is joined */
             pull -= s->mat_nm * model->B[(model->n_devices - 1) * model->m_pad + i];
@@ -300,12 +309,12 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
 void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion *out)
 {
     const SimModel *model = &worker->model;
-    floors_from_modes(model, 0, model->nb, s->q, out->u);
-    floors_from_modes(model, 0, model->nb, s->v, out->u_dot);
+    centres(model, s->q, out->u);
+    centres(model, s->v, out->u_dot);
     accelerations(model, worker->scene->motion, s, out->u_ddot);
     if (worker->is_joined) {
-        memcpy(out->core, out->u, sizeof out->u);
-        memcpy(out->core_dot, out->u_dot, sizeof out->u_dot);
+        floors_from_modes(model, 0, model->nb, s->q, out->core);
+        floors_from_modes(model, 0, model->nb, s->v, out->core_dot);
         return;
     }
     core_nodes(model, s, s->q, out->core);
@@ -442,6 +451,7 @@ static Status run_joined(SimWorker *w, const Design *d, SimResult *result, Err *
     THEN(status, model_set(&w->model, w->options, w->building, NULL, NULL, err));
     if (status == STATUS_OK)
         model_add_uplift(&w->model, &w->core);
+    w->model.neighbour_floors = w->model.neighbour_at ? w->core.top : 0;
     THEN(status, run_engine(w, result, err));
     if (status == STATUS_OK)
         joined_book(&joined, result);
@@ -499,11 +509,9 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
     const double *storey_m = w->building->storey_m;
     const ContactOptions *o = &w->options->contact;
     if (w->run.sample == take_floors && r->outcome == RUN_OK) {
-        TRY(floor_filter_peaks(w->filter, r->peak_filtered_g, err));
-        for (int j = 0; j < r->n_floors; j++) {
-            r->peak_filtered_g[j] /= GRAVITY;
-            r->j3_filtered_g = fmax(r->j3_filtered_g, r->peak_filtered_g[j]);
-        }
+        double peak[POINTS_MAX];
+        TRY(floor_filter_peaks(w->filter, peak, err));
+        model_report_peaks(&w->model, (const double *const[]){NULL, NULL, NULL, peak}, r);
         r->filtered_known = 1;
     }
     for (int s = 0; s < r->n_floors; s++) {
@@ -514,6 +522,10 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
             r->drift_ratio_max = r->drift_ratio[s];
             r->drift_ratio_storey = s;
         }
+    }
+    for (int s = 0; s < r->neighbour.n; s++) {
+        r->neighbour.peak_drift_ratio[s] = r->neighbour.drift_m[s] / w->core.storey_m[s];
+        r->neighbour.drift_ratio_max = fmax(r->neighbour.drift_ratio_max, r->neighbour.peak_drift_ratio[s]);
     }
     r->indentation_ratio = r->indentation_max_m / o->radius_m;
     r->contact_pressure_pa =

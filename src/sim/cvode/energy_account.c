@@ -6,22 +6,23 @@ void energy_account_start(EnergyAccount *l, const SimModel *model)
 {
     memset(l, 0, sizeof *l);
     l->model = model;
-    l->peaks.n = model->n;
+    l->peaks.n = model->points;
 }
 
 void energy_account_peaks(EnergyAccount *l, double t, const double q[], const double v[], const double contact[])
 {
     const SimModel *model = l->model;
     PeakPoint *point = peak_monitor_next(&l->peaks);
-    double pull[MODES_MAX], core[FLOORS_MAX];
-    for (int i = 0; i < model->nb; i++)
+    double pull[MODES_MAX], w[FLOORS_MAX];
+    for (int i = 0; i < point_modes(model); i++)
         pull[i] = contact[i] - model->omega[i] * (2 * model->zeta[i] * v[i] + model->omega[i] * q[i]);
     point->t = t;
-    floors_from_modes(model, 0, model->nb, q, point->of[PEAK_DISPLACEMENT]);
-    floors_from_modes(model, 0, model->nb, pull, point->of[PEAK_ACCELERATION]);
-    floors_from_modes(model, model->nb, model->m, q, core);
+    points_from_modes(model, q, point->of[PEAK_DISPLACEMENT]);
+    points_from_modes(model, pull, point->of[PEAK_ACCELERATION]);
+    const int apart = model->U != model->R; /* else w is u beside the core */
+    floors_from_modes(model, apart ? 0 : model->nb, model->m, q, w);
     for (int j = 0; j < model->n; j++)
-        point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j] - model->middle[j];
+        point->of[PEAK_RELATIVE][j] = (apart ? 0 : point->of[PEAK_DISPLACEMENT][j]) + w[j] - model->middle[j];
     peak_monitor_add(&l->peaks);
     devices_look(model, q, v, l->device);
 }
@@ -66,7 +67,10 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
     result->mat_rotation_rad = l->mat_turned;
     for (int j = 0; j < model->n && model->nc > 0; j++)
         result_add_approach(result, &model->contact[j], l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
-    peak_monitor_report(&l->peaks, result);
+    model_report_peaks(model,
+                       (const double *const[]){l->peaks.peak[PEAK_DISPLACEMENT], l->peaks.peak[PEAK_DRIFT],
+                                               l->peaks.peak[PEAK_ACCELERATION], NULL},
+                       result);
     energy_balance_close(result, model->nb, model->like, model->nc, l->damped, mat.taken - mat.held);
     if (options->end_state) {
         memcpy(options->end_state, q, sizeof *q * (size_t)model->m);

@@ -72,10 +72,10 @@ static __attribute__((noinline)) double add_forces(const Ode *o, double t, const
     for (int j = 0; j < motion->n_force && k >= 0 && k <= (long)motion->n - 2; j++) {
         const double *f = motion->force + k * width + j;
         const double force = f[0] + (f[width] - f[0]) * (t / motion->dt_s - (double)k);
-        const double *row = model->RT + (size_t)j * (size_t)model->m_pad;
         for (int i = 0; i < model->nb; i++) {
-            g[i] += force * row[i];
-            power += force * row[i] * v[i];
+            const double shape = centre_row(model, i)[j];
+            g[i] += force * shape;
+            power += force * shape * v[i];
         }
     }
     return power;

@@ -2,8 +2,8 @@
 
 void storeys_drifts(const SimModel *model, const double q[], double d[])
 {
-    double u[FLOORS_MAX];
-    floors_from_modes(model, 0, model->nb, q, u);
+    double u[POINTS_MAX];
+    points_from_modes(model, q, u);
     for (int j = 0; j < model->n; j++)
         d[j] = u[j] - (j > 0 ? u[j - 1] : 0);
 }
@@ -14,7 +14,7 @@ void storeys_add(const SimModel *model, const double p[], double g[])
     model_plastic_forces(model, p, f);
     for (int i = 0; i < model->nb; i++)
         for (int j = 0; j < model->n; j++)
-            g[i] += model->R[i * model->n_pad + j] * f[j];
+            g[i] += centre_row(model, i)[j] * f[j];
 }
 
 void storeys_rates(const Storeys *s, const double d[], const double d_dot[], const double p[], const double W[],

@@ -67,32 +67,36 @@ static int padded(int n)
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
+    const size_t points = (size_t)padded(POINTS_OF(k->n));
     const size_t channels = (k->may_yield ? 2 * floors : floors) + (size_t)padded(k->devices_max);
     const size_t rows = n + (size_t)k->devices_max;
     CARVE_EACH(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
                &k->max_shape_drift);
     CARVE_EACH(c, modes, &k->held, &k->push[0], &k->push[1], &k->push_rise, &k->swing[0], &k->swing[1]);
-    CARVE_EACH(c, floors, &k->rest, &k->peak_u, &k->peak_d, &k->peak_a);
+    CARVE_EACH(c, floors, &k->rest);
+    CARVE_EACH(c, points, &k->peak_u, &k->peak_d, &k->peak_a);
     CARVE_EACH(c, channels, &k->gap, &k->middle, &k->bubble);
     layout_state(&k->now, c, modes, channels);
     layout_state(&k->next, c, modes, channels);
-    layout_flight(&k->flight, c, modes, floors);
-    layout_contact(&k->contact, c, modes, floors);
+    layout_flight(&k->flight, c, modes, points);
+    layout_contact(&k->contact, c, modes, points);
     layout_storeys(&k->storeys, c, modes, floors);
-    layout_reach(&k->reach, c, modes, floors);
+    layout_reach(&k->reach, c, modes, points);
     CARVE_EACH(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
                &k->record.most, &k->record.per_most);
     CARVE_EACH(c, floors, &k->record.force, &k->record.plastic);
     for (int i = 0; i < HELD_MAX; i++)
-        CARVE_EACH(c, modes - floors, &k->record.held[i].q, &k->record.held[i].v); /* of the building */
+        CARVE_EACH(c, modes, &k->record.held[i].q, &k->record.held[i].v);
     for (int i = 0; i < 4; i++) {
         CARVE_EACH(c, modes, &k->record.batch_q[i]);
-        CARVE_EACH(c, floors, &k->record.batch_u[i]);
+        CARVE_EACH(c, points, &k->record.batch_u[i]);
     }
     k->R = carve(c, modes * floors, sizeof(double));
     k->flex = carve(c, n * floors, sizeof(double));
     k->R_abs = carve(c, modes * floors, sizeof(double));
-    k->D_abs = carve(c, modes * floors, sizeof(double));
+    CARVE_EACH(c, modes * points, &k->D_abs);
+    for (int i = 0; i < 3; i++)
+        CARVE_EACH(c, modes * points, &k->room[i]);
     k->RT = carve(c, modes * channels, sizeof(double));
     k->E_room = channels > floors ? carve(c, modes * channels, sizeof(double)) : k->R;
     k->newton_g = carve(c, rows * rows, sizeof(m22));
@@ -226,7 +230,7 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const
 {
     const unsigned mode = denormal_off();
     const FastKernels *kernels = best_kernels();
-    const int is_plain = !model->yields && model->n_devices == 0 && motion->n_force == 0;
+    const int is_plain = !model->yields && model->n_devices == 0 && motion->n_force == 0 && model->U == model->R;
     (is_plain ? kernels->plain : kernels->run)(work, model, motion, options, tolerances, result);
     denormal_restore(mode);
 }

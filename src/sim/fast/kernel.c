@@ -48,6 +48,18 @@ static inline int channel_vectors(const FastWork *k)
     return PLAIN ? k->nf : k->cf;
 }
 
+/* Are the points to watch others than the floors at the contacts? */
+static inline int watches(const FastWork *k)
+{
+    return !PLAIN && k->model->U != k->model->R;
+}
+
+/* The first mode of w that is not in the motion of the points. */
+static inline int beside_points(const FastWork *k)
+{
+    return watches(k) ? 0 : k->nb_pad;
+}
+
 /* One unit, in the order of use: static functions alone. */
 #include "sim/fast/design.inc"
 #include "sim/fast/step_tables.inc"
@@ -265,10 +277,10 @@ static void swing_at(FastWork *k, const Motion *motion, long i, vec *out)
 {
     for (int m = 0; m < k->bf; m++)
         out[m] = (vec){0};
-    for (int j = 0; j < motion->n_force; j++) {
-        const vec *row = (const vec *)k->RT + j * k->mf;
-        for (int m = 0; m < k->bf; m++)
-            out[m] += row[m] * motion->force[i * motion->n_force + j];
+    for (int m = 0; m < k->nb_pad; m++) {
+        const double *row = scalars_const(k->U) + m * k->pf * LANES;
+        for (int j = 0; j < motion->n_force; j++)
+            scalars(out)[m] += row[j] * motion->force[i * motion->n_force + j];
     }
 }
 
@@ -572,14 +584,9 @@ static void report_energies(FastWork *k, SimResult *r)
 
 static void report_peaks(const FastWork *k, SimResult *r)
 {
-    for (int j = 0; j < k->n; j++) {
-        r->peak_displacement_m[j] = scalars_const(k->peak_u)[j];
-        r->peak_drift_m[j] = scalars_const(k->peak_d)[j];
-        r->peak_acceleration_g[j] = scalars_const(k->peak_a)[j] / GRAVITY;
-        r->j1_m = fmax(r->j1_m, r->peak_displacement_m[j]);
-        r->j2_m = fmax(r->j2_m, r->peak_drift_m[j]);
-        r->j3_g = fmax(r->j3_g, r->peak_acceleration_g[j]);
-    }
+    model_report_peaks(
+        k->model,
+        (const double *const[]){scalars_const(k->peak_u), scalars_const(k->peak_d), scalars_const(k->peak_a), NULL}, r);
 }
 
 FastKernel FAST_KERNEL;

@@ -22,6 +22,7 @@ enum {
     FLOORS_PAD_MAX = FLOORS_MAX,
     ACTIVE_MAX = 2 * FLOORS_PAD_MAX + PAD,   /* floors and devices */
     CHANNELS_MAX = 3 * FLOORS_PAD_MAX + PAD, /* and storeys */
+    POINTS_PAD_MAX = POINTS_MAX,
     HELD_MAX = 128
 };
 
@@ -137,10 +138,15 @@ typedef struct FastWork {
     int n, n_pad, nb_pad, m_pad;           /* building modes first, padded apart: core modes start at nb_pad */
     int nc;                                /* core modes that are kept */
     int nf, mf, bf;                        /* n_pad, m_pad, nb_pad in vectors of LANES */
+    int pf;                                /* points of the model in vectors */
+    int point_modes, uf;                   /* the first modes, with those between, that move them; their vectors */
+    vec *U, *U_abs, *D_abs;                /* (m_pad, pf) of the points, of their distances from those below */
+    vec *W;                                /* (m_pad, nf) what w has beside the first of them: R of the core */
+    vec *room[3];                          /* of U, U_abs and W, else R and R_abs */
     vec *omega, *zeta, *gamma;             /* (m_pad) */
     vec *wd_inverse, *decay, *flexibility; /* (m_pad) 1/w_d, 2 zeta w, 1/w^2 */
     vec *max_shape, *max_shape_drift;      /* (m_pad) largest |R| of a mode over the floors, over the storeys */
-    double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
+    double *R, *R_abs;                     /* (m_pad, n_pad) of the floors; of W */
     double *RT;                            /* (c_pad, m_pad) of the channels */
     vec *gap, *middle;                     /* (c_pad) as in SimModel */
     int may_yield, devices_max;            /* room for storeys that yield, for so many devices */
