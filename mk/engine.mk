@@ -5,6 +5,7 @@ WASM_FLAGS := --target=wasm32-wasi -std=gnu17 -msimd128 -Isrc -D_GNU_SOURCE -DFA
 # Random123 knows no WebAssembly, but wants to be told what plain C of 32 and 64 bits it may use; building_read is the page's own.
 WASM_FLAGS.random        := -D__aarch64__
 WASM_FLAGS.building_read := -Dbuilding_read=building_of_files
+COMMA := ,
 WASM_KERNELS := kernel_base plain_base
 WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c \
             $(addprefix src/scene/,building.c building_read.c core_beam.c design.c foundation.c frame_reduce.c neighbour.c reduction.c) \
@@ -32,6 +33,6 @@ $(WASM_KERNELS:%=build/wasm/%.o): build/wasm/%.o: src/sim/fast/kernel.c
 
 build/wasm/engine.wasm: $(WASM_OBJ)
 	@echo '  LD  $@'
-	$(Q)clang --target=wasm32-wasi -mexec-model=reactor -Wl,--strip-all,-z,stack-size=4194304 $^ -o $@
+	$(Q)clang --target=wasm32-wasi -mexec-model=reactor -Wl,--strip-all,-z,stack-size=4194304 $(addprefix -Wl$(COMMA)--export=engine_,answer room open design ground run whole) $^ -o $@
 
 -include $(WASM_OBJ:.o=.d)

@@ -82,8 +82,8 @@ json_t *ladder_json(const Ladder *l);
 
 /* -- its steps, for analysis/model_choice.c ------------------------------------------------------------------------ */
 
-/* The effects that there are but for the steps, where the strong part ends at strong_s; is_set: the settings give it. all:
- * with those that they do not. */
+/* The effects that there are but for the steps, where the strong part ends at strong_s; is_set: the settings give it.
+ * all: with those that they do not. */
 Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings *all, Err *err);
 double ladder_change(const Measured *to, const Measured *from, int k);
 double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene); /* as `most` */

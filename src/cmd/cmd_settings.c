@@ -54,8 +54,8 @@ const Command CMD_SETTINGS = {
 
 /* ---- new --------------------------------------------------------------------------------------------------------- */
 
-/* Studies to begin with: their settings, KEY=VALUE, beside those by the building (fit_building). What is not there keeps
- * its default. The paper's is configs/kobe.ini. */
+/* Studies to begin with: their settings, KEY=VALUE, beside those by the building (fit_building). What is not there
+ * keeps its default. The paper's is configs/kobe.ini. */
 static const struct {
     const char *name, *settings[10];
 } PRESETS[] = {

@@ -1,11 +1,11 @@
-/* evaluate/portable.h -- all that a simulation needs and files hold, as bytes: for a machine without those files, such as
- * the page of a report.
+/* evaluate/portable.h -- all that a simulation needs and files hold, as bytes: for a machine without those files,
+ * such as the page of a report.
  *
  *   settings    text of settings_text, and the steps per contact that no setting says
  *   buildings   building.model, and core.model where a neighbour is given: matrices and heights as read
  *   records     every motion of the study as read, before it is scaled
  *
- * What is made of these (modes, P-delta, scaled motions, the scene) is made again by the same code from the same numbers.
+ * What is made of these (modes, P-delta, scaled motions, the scene) is made again by the same code.
  * Numbers are in the order of bytes of the machine, counts have 64 bits.
  *
  * Ownership  portable_make allocates, portable_free releases; after portable_read `bytes` must stay: buildings are read

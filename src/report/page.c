@@ -55,7 +55,7 @@ size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows
     return taken;
 }
 
-/* build/web/page.html, live.html: the page with a line for its parts, one for where the run goes, and two about the engine. */
+/* build/web/page.html, live.html: the page with a line for its parts, one for the run, and two about the engine. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];
 extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
 

@@ -8,8 +8,8 @@
  *   engine_run(p, kind)               a SceneKind, the design that stands at engine_design(p): 1, or 0 and why
  *   engine_whole(p, ...)              all simulations by which the study judges a design, on that ground
  *
- * An answer is JSON: {"objectives": [n_obj] or null, "reason", "gap_m": [floors], "beyond_law", and every measure and part
- * of the result by its name (sim/result.h)}; of the whole the objectives by the rule of the study. */
+ * An answer is JSON: {"objectives": [n_obj] or none, "reason", "gap_m": [floors], "beyond_law", and every measure and
+ * part of the result by its name (sim/result.h)}; of the whole the objectives by the rule of the study. */
 #include <stdarg.h>
 
 #include "evaluate/measures.h"
@@ -18,8 +18,6 @@
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 #include "sim/engine.h"
-
-#define EXPORT(name) __attribute__((export_name(#name)))
 
 typedef struct {
     Portable portable;
@@ -123,19 +121,19 @@ static void say_result(const Page *p, SceneKind kind, const double objectives[])
     say("}");
 }
 
-EXPORT(engine_answer) const char *engine_answer(void)
+const char *engine_answer(void)
 {
     return instance.text;
 }
 
 /* ---- life -------------------------------------------------------------------------------------------------------- */
 
-EXPORT(engine_room) unsigned char *engine_room(size_t n)
+unsigned char *engine_room(size_t n)
 {
     return malloc(n);
 }
 
-EXPORT(engine_open) Page *pngine_open(unsigned char *bytes, size_t n)
+Page *pngine_open(unsigned char *bytes, size_t n)
 {
     Err err = {0};
     Page *p = calloc(1, sizeof *p);
@@ -152,12 +150,12 @@ EXPORT(engine_open) Page *pngine_open(unsigned char *bytes, size_t n)
 }
 
 /* Where x is to be written, and how many numbers there are. */
-EXPORT(engine_design) double *engine_design(Page *p)
+double *engine_design(Page *p)
 {
     return p->x;
 }
 
-EXPORT(engine_ground) int engine_ground(Page *p, size_t record, double pga_g, double stretch, double restitution)
+int engine_ground(Page *p, size_t record, double pga_g, double stretch, double restitution)
 {
     Err err = {0};
     Settings s = p->portable.settings;
@@ -201,7 +199,7 @@ static Status run(Page *p, SceneKind kind, size_t k, Err *err)
     return STATUS_OK;
 }
 
-EXPORT(engine_run) int engine_run(Page *p, int kind)
+int engine_run(Page *p, int kind)
 {
     Err err = {0};
     double objectives[N_MEASURES];
@@ -213,7 +211,7 @@ EXPORT(engine_run) int engine_run(Page *p, int kind)
     return 1;
 }
 
-EXPORT(engine_whole) int engine_whole(Page *p, double pga_g, double stretch, double restitution)
+int engine_whole(Page *p, double pga_g, double stretch, double restitution)
 {
     const ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, p->portable.n_records);
     Measured *part = calloc(plan.n_records * plan.n_replicates, sizeof *part);

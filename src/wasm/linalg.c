@@ -1,7 +1,7 @@
 /* base/linalg.h for the page of a report, which has no LAPACK: small dense matrices, by Cholesky and Jacobi. */
 #include "base/linalg.h"
 
-/* Lower triangle L of A = L L', in place, row by row; the row of the first pivot that is not positive, from 1; 0: none. */
+/* Lower triangle L of A = L L', in place; the row of the first pivot that is not positive, from 1; 0: none. */
 static int factor(int n, double A[])
 {
     for (int i = 0; i < n; i++)
@@ -50,8 +50,8 @@ static void rotate(int n, int p, int q, double A[], double V[])
     }
 }
 
-/* Eigenvalues on the diagonal of A, eigenvectors in the rows of V, in no order. Cyclic Jacobi converges quadratically: a
- * sixth of SWEEPS_MAX suffices. */
+/* Eigenvalues on the diagonal of A, eigenvectors in the rows of V, in no order. Cyclic Jacobi converges quadratically:
+ * a sixth of SWEEPS_MAX suffices. */
 static int diagonalize(int n, double A[], double V[])
 {
     enum { SWEEPS_MAX = 60 };
