@@ -326,7 +326,7 @@ static double height_of(const char *svg, const char *word)
 /* No row of the key is as low as the first title of a panel, below which its frame begins. */
 static void expect_key_above_the_panels(void)
 {
-    static const char *const WORDS[] = {"with core", "rigidly connected", "no core", "viscous links"};
+    static const char *const WORDS[] = {"with core", "rigidly connected", "without core", "viscous links"};
     free(output_of(CURVES "--svg @/curves.svg"));
     char *svg = read_in_place("curves.svg");
     const double title = height_of(svg, "drift_ratio &gt; 0.012");

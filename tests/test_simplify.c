@@ -183,8 +183,8 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
     const char *fewer = strstr(said, "fewer devices: ");
     const int left = fewer ? atoi(strchr(fewer, ':') + 1) : 99;
     assert_true(left == 5 || left == 10 || left == 15);
-    assert_non_null(strstr(said, "device_zone_1        none\n"));
-    assert_non_null(strstr(said, "device_roof          none\n"));
+    assert_non_null(strstr(said, "device_zone_1       none\n"));
+    assert_non_null(strstr(said, "device_roof         none\n"));
     free(said);
 }
 

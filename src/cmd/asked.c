@@ -54,18 +54,15 @@ static void put_columns(json_t *o, const Schema *s, const Evaluation *e, int wit
 
 /* -- simulate ------------------------------------------------------------------------------------------------------ */
 
-static Status show(const Args *args, const Schema *s, const Designs *d, const EvaluationTable *t, Err *err)
+static Status show(const Args *args, const Schema *s, const Designs *designs, const EvaluationTable *t, Err *err)
 {
     const int as_json = args_has(args, "--json");
-    json_t *table = json_array();
+    Document d = {.rows = json_array()};
     for (size_t i = 0; i < t->n; i++)
-        put_columns(json_put(figures_row(table), "design=%ld", design_number(d, i)), s, &t->row[i], as_json);
-    if (as_json)
-        TRY(show_json(table, err));
-    else if (args_has(args, "--csv"))
-        TRY(figures_csv(table, args_value(args, "--csv"), err));
-    else
-        figures_print(table);
+        put_columns(json_put(figures_row(d.rows), "design=%ld", design_number(designs, i)), s, &t->row[i], as_json);
+    d.data = json_incref(d.rows);
+    json_array_extend(document_table(&d), d.rows);
+    TRY(document_give(&d, args, err));
     return t->n > 1 || t->row[0].outcome == OUTCOME_OK
                ? STATUS_OK
                : fail(err, STATUS_INTERNAL, "the simulation failed: %s", t->row[0].reason);

@@ -91,36 +91,36 @@ static Status open_model(const Args *args, Model *m, Err *err)
 /* Share of the mass that is not on the floors, below which nothing is said of it. */
 static const double BETWEEN_MIN = 1e-3;
 
-static void print_building(const Model *m)
+static void say_building(Document *d, const Model *m)
 {
     const double mass = building_mass(&m->b);
     double between = mass;
     for (int j = 0; j < m->b.n; j++)
         between -= building_floor_mass(&m->b, j);
-    printf("%s: %d floor%s, %.6g t, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", 1e-3 * mass,
-           1e-6 * GRAVITY * mass);
+    document_say(d, "p", "%s: %d floor%s, %.6g t, %.4g MN", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s",
+                 1e-3 * mass, 1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
-        printf("of it %.6g t are between the floors\n", 1e-3 * between);
+        document_say(d, "p", "of it %.6g t are between the floors", 1e-3 * between);
     if (m->frame.n[FRAME_NODES])
-        printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n[FRAME_NODES],
-               m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
+        document_say(d, "p", "plane frame of %d nodes, %d elements, %d sections, %d ties", m->frame.n[FRAME_NODES],
+                     m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
 }
 
-static void print_core(const Model *m)
+static void say_core(Document *d, const Model *m)
 {
     const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
-    if (neighbour_is_given(&m->s.core)) {
-        printf("neighbour of %.6g t, %d floors, %s; first mode: %.4g Hz\n", 1e-3 * m->core.mass_kg, m->core.top,
-               m->s.core.model, m->core.omega[0] / (2 * M_PI));
-        return;
-    }
-    printf("core of %.6g t", 1e-3 * m->core.mass_kg);
-    if (core_section(&m->s.core) == CORE_EFFECTIVE)
-        printf(" (effective section)");
+    char walls[80] = " (effective section)";
+    if (core_section(&m->s.core) != CORE_EFFECTIVE)
+        snprintf(walls, sizeof walls, ", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
+    if (neighbour_is_given(&m->s.core))
+        document_say(d, "p", "neighbour of %.6g t, %d floors, %s; first mode: %.4g Hz", 1e-3 * m->core.mass_kg,
+                     m->core.top, m->s.core.model, m->core.omega[0] / (2 * M_PI));
     else
-        printf(", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
-    printf(", %s; first mode: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
-           core_theory_word(m->s.core.theory), bending, shearing, 100 * (shearing / bending - 1));
+        document_say(d, "p",
+                     "core of %.6g t%s, %s; first mode: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and "
+                     "rotary inertia",
+                     1e-3 * m->core.mass_kg, walls, core_theory_word(m->s.core.theory), bending, shearing,
+                     100 * (shearing / bending - 1));
 }
 
 /* Floors, then modes, in the order of both; and what stands beside them of a core. */
@@ -142,23 +142,6 @@ static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *core
     }
 }
 
-static void print_table(const Model *m)
-{
-    json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
-    add_rows(m, floors, modes, cores);
-    for (size_t j = 0; j < json_array_size(floors); j++) {
-        json_t *row = json_array_get(floors, j);
-        json_put(row, "period_s=%g", 2 * M_PI / m->b.model.omega[j]);
-        json_object_update(row, json_array_get(modes, j));
-        if (m->has_core)
-            json_object_update(row, json_array_get(cores, j));
-    }
-    putchar('\n');
-    figures_print(floors);
-    json_decref(modes);
-    json_decref(cores);
-}
-
 /* Shape of a mode on the floors, its largest 1. */
 static json_t *json_shape(const BuildingModel *b, int n, int mode)
 {
@@ -171,68 +154,55 @@ static json_t *json_shape(const BuildingModel *b, int n, int mode)
     return json_numbers(n, shape);
 }
 
-/* Mode by mode; those of the core as they stand in `cores`. */
-static void put_core(json_t *o, const Model *m, const json_t *cores)
+/* Mode by mode. */
+static void put_core(json_t *o, const Model *m, const json_t *modes, const json_t *cores)
 {
     const BuildingModel *b = &m->b.model;
-    double hz[FLOORS_MAX], shares[FLOORS_MAX];
-    const size_t n = m->b.n;
-    const char *key;
-    json_t *shapes = json_array(), *horizontal = json_array(), *value;
-    for (size_t i = 0; i < n; i++) {
-        hz[i] = b->omega[i] / (2 * M_PI);
-        shares[i] = share(b->gamma[i], building_mass(&m->b));
-        json_array_append_new(shapes, json_shape(b, m->b.n, (int)i));
+    json_t *shapes = json_array(), *horizontal = json_array();
+    for (int i = 0; i < m->b.n; i++) {
+        json_array_append_new(shapes, json_shape(b, m->b.n, i));
         json_array_append_new(horizontal, json_boolean(b->like[i] >= 0));
     }
     json_put(o,
              "t_base_m=%g t_top_m=%g core_mass_kg=%g core_theory=%s core_timoshenko_hz=%g core_euler_bernoulli_hz=%g "
-             "building_hz=%p building_mass_share=%p building_damping=%p building_shapes=%p building_horizontal=%p",
+             "building_hz=%p building_mass_share=%p building_damping=%p building_shapes=%p building_horizontal=%p "
+             "core_hz=%p core_mass_share=%p zero_gap_hz=%p",
              m->design.t_base, m->design.t_top, m->core.mass_kg, core_word(&m->s.core), m->by_theory[CORE_TIMOSHENKO],
-             m->by_theory[CORE_EULER_BERNOULLI], json_numbers(n, hz), json_numbers(n, shares), json_numbers(n, b->zeta),
-             shapes, horizontal);
-    json_object_foreach(json_array_get(cores, 0), key, value)
-    {
-        json_t *list = json_array();
-        for (size_t i = 0; i < n; i++)
-            json_array_append(list, json_object_get(json_array_get(cores, i), key));
-        json_object_set_new(o, key, list);
-    }
-}
-
-static Status print_json(const Model *m, Err *err)
-{
-    json_t *floors = json_array(), *modes = json_array(), *cores = json_array();
-    add_rows(m, floors, modes, cores);
-    json_t *o = json_of("model=%s mass_kg=%g nodes=%d elements=%d floors=%p modes=%p", m->s.building.model,
-                        building_mass(&m->b), m->frame.n[FRAME_NODES], m->frame.n[FRAME_ELEMENTS], floors, modes);
-    if (m->has_core)
-        put_core(o, m, cores);
-    json_decref(cores);
-    return show_json(o, err);
-}
-
-static Status write_svg(const Model *m, const char *path, Err *err)
-{
-    json_t *drawn;
-    TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, 10, &drawn, err));
-    return drawing_save(drawn, 1100, path, err);
+             m->by_theory[CORE_EULER_BERNOULLI], json_column(modes, "hz"), json_column(modes, "mass_share"),
+             json_column(modes, "damping"), shapes, horizontal, json_column(cores, "core_hz"),
+             json_column(cores, "core_mass_share"), json_column(cores, "zero_gap_hz"));
 }
 
 static Status show(const Args *args, const Model *m, Err *err)
 {
+    json_t *floors = json_array(), *modes = json_array(), *cores = json_array(), *row;
+    size_t j;
     if (m->frame.note[0])
         fprintf(stderr, "note: %s: skipped:%s\n", m->s.building.model, m->frame.note);
     TRY(condensation_warnings(&m->b, &m->s.building, warn_on_stderr, NULL, err));
-    if (args_value(args, "--svg"))
-        TRY(write_svg(m, args_value(args, "--svg"), err));
-    if (args_has(args, "--json"))
-        return print_json(m, err);
-    print_building(m);
-    if (m->has_core)
-        print_core(m);
-    print_table(m);
-    return STATUS_OK;
+    add_rows(m, floors, modes, cores);
+    Document d = {.data =
+                      json_of("model=%s mass_kg=%g nodes=%d elements=%d floors=%p modes=%p", m->s.building.model,
+                              building_mass(&m->b), m->frame.n[FRAME_NODES], m->frame.n[FRAME_ELEMENTS], floors, modes),
+                  .drawing = "panels",
+                  .width = 1100};
+    if (args_has(args, "--svg"))
+        TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, 10, &d.drawn, err));
+    say_building(&d, m);
+    if (m->has_core) {
+        say_core(&d, m);
+        put_core(d.data, m, modes, cores);
+    }
+    json_t *table = document_table(&d);
+    json_array_foreach(floors, j, row)
+    {
+        row = json_put(json_copy(row), "period_s=%g", 2 * M_PI / m->b.model.omega[j]);
+        json_object_update(row, json_array_get(modes, j));
+        json_object_update(row, json_array_get(cores, j));
+        json_array_append_new(table, row);
+    }
+    json_decref(cores);
+    return document_give(&d, args, err);
 }
 
 static Status run(const Args *args, Err *err)

@@ -404,19 +404,15 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
 
 /* ---- which effects it needs ----------------------------------------------------------------------------------- */
 
-static void list_ladder(json_t *ladder)
+static void say_ladder(Document *d, json_t *ladder)
 {
+    static const char *const UNSHOWN[] = {"setting", "with", "otherwise"};
     json_t *rows = json_deep_copy(json_object_get(ladder, "effects")), *row;
     size_t i;
-    json_array_foreach(rows, i, row)
-    {
-        json_object_del(row, "setting");
-        json_object_del(row, "with");
-        json_object_del(row, "otherwise");
-    }
-    putchar('\n');
-    figures_print(rows);
-    figures_list(0, ladder);
+    json_array_foreach(rows, i, row) for (size_t k = 0; k < N_OF(UNSHOWN); k++) json_object_del(row, UNSHOWN[k]);
+    json_array_extend(document_table(d), rows);
+    document_list(d, json_incref(ladder));
+    json_decref(rows);
 }
 
 /* What was left out of: its gaps as a list, what else it has by name. */
@@ -503,27 +499,28 @@ static void say_findings(const Check *c)
     json_array_foreach(c->faults, i, found) fprintf(stderr, "%s\n", json_string_value(found));
 }
 
-static void list_figures(json_t *o)
+static void say_figures(Document *d, json_t *o)
 {
-    json_t *found = json_copy(o);
+    json_t *found = json_copy(o), *ladder = json_object_get(o, "ladder");
     json_object_del(found, "faults");
     json_object_del(found, "warnings");
     json_object_del(found, "ladder");
-    figures_list(0, found);
-    json_decref(found);
-    if (json_object_get(o, "ladder"))
-        list_ladder(json_object_get(o, "ladder"));
+    document_list(d, found);
+    if (ladder)
+        say_ladder(d, ladder);
 }
 
-static Status verdict(const Args *args, const Check *c, Err *err)
+static Status give(const Args *args, Check *c, Err *err)
 {
     const int faults = (int)json_array_size(c->faults), warnings = (int)json_array_size(c->warnings);
-    if (c->as_json)
-        TRY(c->fatal == STATUS_OK ? show_json(json_incref(c->out), err) : STATUS_OK);
-    else {
-        list_figures(c->out);
+    Document d = {.data = json_incref(c->out)};
+    say_figures(&d, c->out);
+    if (c->fatal == STATUS_OK || !c->as_json)
+        TRY(document_give(&d, args, err));
+    else
+        document_free(&d);
+    if (!c->as_json)
         say_findings(c);
-    }
     if (c->fatal != STATUS_OK)
         return fail(err, c->fatal, "%s: could not be checked", args->operand);
     if (faults)
@@ -555,7 +552,7 @@ static Status run(const Args *args, Err *err)
             fault(&c, "--ladder: problem.kind is no tower: it has no effects to leave out");
         else if (json_array_size(c.faults) == 0)
             open_study(&c, &s, NULL);
-        status = verdict(args, &c, err);
+        status = give(args, &c, err);
     }
     json_decref(c.out);
     return status;

@@ -14,8 +14,7 @@
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
-#include "report/panels.h"
-#include "report/pictures.h"
+#include "report/verdict.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
 
@@ -23,292 +22,195 @@
 typedef struct {
     const Run *run; /* NULL: of a settings file */
     const Schema *schema;
-    long id; /* in the run; 0: none */
+    size_t row; /* of the run */
+    long id;    /* in the run; 0: none */
     const double *x;
     const char *word; /* as it was asked for */
     Known known[N_MEASURES];
     Fragilities fragilities; /* without limits where none are asked for */
 } Chosen;
 
-/* ---- an incremental dynamic analysis: its first objectives, median, 16 % and 84 % -------------------------------- */
-
-enum { IDA_SHOWN = 3 }; /* objectives; of the cases those without a device */
-static const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
+/* ---- for programs: data and rows --------------------------------------------------------------------------------- */
 
 static int is_spectral(const Evaluations *e)
 {
     return e->level && strcmp(e->intensity, "sa_g") == 0;
 }
 
-static void ida_print(const Evaluations *e, const MeasureOrder *order)
-{
-    for (SceneKind c = 0; c < N_SCENES; c++) {
-        if (case_has_device(c))
-            continue;
-        json_t *table = json_array();
-        printf(e->n_read == 1 ? "%s, %zu record\n" : "%s, %zu records: median (16 %% to 84 %%)\n", SCENES[c].words,
-               e->n_read);
-        for (size_t l = 0; l < e->n_levels; l++) {
-            json_t *row = figures_row(table);
-            json_object_set_new(row, e->intensity, json_number(e->level[l]));
-            for (int i = 0; i < MIN_OF(order->n_obj, IDA_SHOWN); i++)
-                put_fractiles(row, measures_name(order, order->of[i]), e, l, c, order->of[i], 1);
-        }
-        figures_print(table);
-        putchar('\n');
-    }
-}
-
-static json_t *json_fractiles(const Evaluations *e, SceneKind which, double p)
-{
-    json_t *o = json_object();
-    for (int k = 0; k < MEASURES_LISTED; k++) {
-        json_t *list = json_array();
-        for (size_t l = 0; l < e->n_levels; l++)
-            json_array_append_new(list, json_number(ida_fractile(e, l, which, k, p)));
-        json_object_set_new(o, measure(k)->name, list);
-    }
-    return o;
-}
-
-static json_t *ida_json(const Evaluations *e)
-{
-    static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
-    json_t *o = json_object();
-    json_object_set_new(o, e->intensity, json_numbers(e->n_levels, e->level));
-    for (SceneKind c = 0; c < N_SCENES; c++) {
-        if (case_has_device(c))
-            continue;
-        json_t *one = json_object();
-        for (int i = 0; i < IDA_FRACTILES; i++)
-            json_object_set_new(one, KEYS[i], json_fractiles(e, c, IDA_FRACTILE[i]));
-        json_object_set_new(o, SCENES[c].key, one);
-    }
-    return o;
-}
-
-/* Intensity over measure k, of record r (fractile < 0) or of a fractile of a case. */
-static json_t *ida_line(const Evaluations *e, int k, size_t r, SceneKind which, int fractile)
-{
-    double x[IDA_LEVELS_MAX];
-    for (size_t l = 0; l < e->n_levels; l++)
-        x[l] = fractile < 0 ? ida_value(&e->run[r * e->n_levels + l], which, k)
-                            : ida_fractile(e, l, which, k, IDA_FRACTILE[fractile]);
-    json_t *line =
-        curve(e->n_levels, x, e->level, fractile < 0 ? "#b8c8d8" : CASE_LOOK[which].colour, fractile == 1 ? 2.5 : 1.2);
-    return fractile == 0 || fractile == 2 ? dashed(line) : line;
-}
-
-/* A panel for each of the first objectives: the records pale, the fractiles of every case over them. */
-static Status ida_draw(const Evaluations *e, const MeasureOrder *order, const char *path, Err *err)
-{
-    json_t *columns = json_array(), *names = json_array();
-    char text[160];
-    for (int k = 0; k < MIN_OF(order->n_obj, IDA_SHOWN); k++) {
-        const Measure *of = measure(order->of[k]);
-        json_t *lines = json_array();
-        for (size_t r = 0; r < e->n_records; r++)
-            if (e->record[r].readable == STATUS_OK)
-                json_array_append_new(lines, ida_line(e, order->of[k], r, SCENE_IMPACT, -1));
-        for (SceneKind c = 0; c < N_SCENES; c++)
-            for (int i = 0; i < IDA_FRACTILES && !case_has_device(c); i++)
-                json_array_append_new(lines, ida_line(e, order->of[k], 0, c, i));
-        snprintf(text, sizeof text, "%s [%s]", of->what, of->unit);
-        json_t *x = json_of("label=%s zero=%c ticks=%d", text, 1, 5);
-        json_array_append_new(columns, json_pack("[o]", panel("", x, intensity_axis(e), lines)));
-    }
-    for (SceneKind c = 0; c < N_SCENES; c++) {
-        if (case_has_device(c))
-            continue;
-        snprintf(text, sizeof text, "%s: median, 16 and 84 %%", SCENES[c].words);
-        json_array_append_new(names, name_of(text, CASE_LOOK[c].colour, "\u25a0"));
-    }
-    return drawing_save(drawing("", names, 440, columns), 1300, path, err);
-}
-
-/* ---- results ----------------------------------------------------------------------------------------------------- */
-
-static double level_of(const Evaluations *e, const EvaluatedRun *run)
-{
-    return e->level[(size_t)(run - e->run) % e->n_levels];
-}
-
-static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
-{
-    const MeasureOrder *order = tower_measures(tower_of(&e->tower));
-    json_t *o =
-        json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
-    if (is_spectral(e))
-        json_put(o, "sa_g=%g", level_of(e, run));
-    for (SceneKind c = 0; c < N_SCENES; c++)
-        if (evaluated_has(e, run, c))
-            json_object_set_new(o, SCENES[c].key,
-                                put_device(json_result(order, c, &run->result[c]), c, &run->device[c]));
-    if (run->error_known)
-        put_errors(json_object_get(o, SCENES[SCENE_IMPACT].key), run->error, run->sd);
-    if (e->replicates > 0)
-        json_put(o, "replicates=%p", json_replicates(order, &run->replicates));
-    return o;
-}
-
-static Status show_as_json(const Args *args, const Chosen *c, const Evaluations *e, Err *err)
-{
-    json_t *all = json_object(), *records = json_array(), *unreadable = json_array();
-    for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        if (e->run[i].record->readable == STATUS_OK)
-            json_array_append_new(records, describe(e, &e->run[i]));
-    for (size_t i = 0; i < e->n_records; i++)
-        if (e->record[i].readable != STATUS_OK)
-            json_array_append_new(unreadable, json_of("record=%s reason=%s", e->record[i].path, e->record[i].why.text));
-    json_put(all, "run=%s design=%p variables_m=%p records=%p unreadable=%p", args->operand,
-             c->id > 0 ? json_integer(c->id) : json_words(c->word), json_numbers(c->schema->n_var, c->x), records,
-             unreadable);
-    if (e->level)
-        json_put(all, "ida=%p", ida_json(e));
-    if (c->fragilities.limits.n > 0)
-        json_put(all, "fragility=%p", fragilities_json(&c->fragilities, e));
-    if (c->fragilities.hazard)
-        json_put(all, "annual_loss=%p", annual_losses(&c->fragilities, e, 0));
-    return show_json(all, err);
-}
-
-/* Who it is of, then the motion: spectral acceleration, where that is the intensity, peak, scale, stretch. */
+/* Who it is of, then the motion: level, where that is the intensity, peak, scale, stretch. */
 static json_t *begin_row(json_t *table, const Evaluations *e, const char *record, SceneKind which, const char *outcome,
-                         const double motion[4])
+                         double level, double pga_g, const EvaluatedRun *run)
 {
-    static const char *const KEYS[] = {"sa_g", "pga_g", "scale", "stretch"};
     json_t *row = json_put(figures_row(table), "record=%s scene=%s outcome=%s", record, SCENES[which].key, outcome);
-    for (int i = !is_spectral(e); i < 4; i++)
-        json_object_set_new(row, KEYS[i], json_number(motion[i]));
-    return row;
+    if (is_spectral(e))
+        json_put(row, "sa_g=%g", level);
+    return json_put(row, "pga_g=%g scale=%g stretch=%g", pga_g, run ? run->scale : NAN, run ? run->stretch : NAN);
 }
 
-static void add_rows(json_t *table, const Evaluations *e, size_t i)
+/* Every case under one record at one intensity: an object, which is returned, and a row for each. */
+static json_t *add_run(Document *d, const Evaluations *e, size_t i)
 {
     const EvaluatedRun *run = &e->run[i];
     const MeasureOrder *order = tower_measures(tower_of(&e->tower));
+    const double level = e->level ? e->level[i % e->n_levels] : NAN;
+    json_t *o =
+        json_of("record=%s pga_g=%g scale=%g stretch=%g", run->record->path, run->pga_g, run->scale, run->stretch);
+    if (is_spectral(e))
+        json_put(o, "sa_g=%g", level);
     for (SceneKind c = 0; c < N_SCENES; c++) {
-        if (run->record->readable != STATUS_OK || !evaluated_has(e, run, c))
-            continue;
         const Measured m = measured(&run->result[c]);
-        const double level = e->level ? level_of(e, run) : NAN;
-        const double motion[] = {level, e->level && !is_spectral(e) ? level : run->pga_g, run->scale, run->stretch};
-        json_t *row = begin_row(table, e, run->record->path, c, outcome_word((Outcome)m.outcome), motion);
+        if (!evaluated_has(e, run, c))
+            continue;
+        json_object_set_new(o, SCENES[c].key, put_device(json_result(order, c, &run->result[c]), c, &run->device[c]));
+        json_t *row = begin_row(d->rows, e, run->record->path, c, outcome_word((Outcome)m.outcome), level,
+                                e->level && !is_spectral(e) ? level : run->pga_g, run);
         put_measures(row, order, "", m.outcome == RUN_OK ? m.value : NULL, NULL, NULL);
         if (e->replicates > 0)
             put_replicates(row, order, c == SCENE_IMPACT ? &run->replicates : NULL);
     }
+    if (run->error_known)
+        put_errors(json_object_get(o, SCENES[SCENE_IMPACT].key), run->error, run->sd);
+    return e->replicates > 0 ? json_put(o, "replicates=%p", json_replicates(order, &run->replicates)) : o;
 }
 
-static void add_fractiles(json_t *table, const Evaluations *e, size_t level, SceneKind which)
+/* Fractiles of an incremental dynamic analysis: lists by intensity, and a row for each. */
+static json_t *add_fractiles(Document *d, const Evaluations *e)
 {
-    double values[N_MEASURES];
-    const double at = e->level[level], motion[] = {at, is_spectral(e) ? NAN : at, NAN, NAN};
-    for (int i = 0; i < IDA_FRACTILES; i++) {
-        for (int k = 0; k < N_MEASURES; k++)
-            values[k] = ida_fractile(e, level, which, k, IDA_FRACTILE[i]);
-        put_measures(begin_row(table, e, IDA_FRACTILE_WORD[i], which, "", motion), NULL, "", values, NULL, NULL);
+    static const char *const KEYS[IDA_FRACTILES][2] = {
+        {"fractile_16", "16 %"}, {"median", "median"}, {"fractile_84", "84 %"}};
+    json_t *o = json_object();
+    json_object_set_new(o, e->intensity, json_numbers(e->n_levels, e->level));
+    for (SceneKind c = 0; c < N_SCENES; c++) {
+        json_t *one = json_object();
+        for (int f = 0; f < IDA_FRACTILES && !case_has_device(c); f++) {
+            json_t *rows = json_array(), *lists = json_object();
+            for (size_t l = 0; l < e->n_levels; l++) {
+                double values[N_MEASURES];
+                for (int k = 0; k < N_MEASURES; k++)
+                    values[k] = ida_fractile(e, l, c, k, IDA_FRACTILE[f]);
+                put_measures(
+                    begin_row(rows, e, KEYS[f][1], c, "", e->level[l], is_spectral(e) ? NAN : e->level[l], NULL), NULL,
+                    "", values, NULL, NULL);
+            }
+            for (int k = 0; k < MEASURES_LISTED; k++)
+                json_object_set_new(lists, measure(k)->name, json_column(rows, measure(k)->name));
+            json_object_set_new(one, KEYS[f][0], lists);
+            json_array_extend(d->rows, rows);
+            json_decref(rows);
+        }
+        if (json_object_size(one) > 0)
+            json_object_set(o, SCENES[c].key, one);
+        json_decref(one);
     }
+    return o;
 }
 
-static Status write_csv(const Evaluations *e, const char *path, Err *err)
+static Document describe_all(const Args *args, const Chosen *c, const Evaluations *e)
 {
-    json_t *table = json_array();
+    Document d = {.rows = json_array()};
+    json_t *records = json_array(), *unreadable = json_array();
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        add_rows(table, e, i);
-    for (size_t l = 0; e->level && l < e->n_levels; l++)
-        for (SceneKind c = 0; c < N_SCENES; c++)
-            if (!case_has_device(c))
-                add_fractiles(table, e, l, c);
-    return figures_csv(table, path, err);
+        if (e->run[i].record->readable == STATUS_OK)
+            json_array_append_new(records, add_run(&d, e, i));
+    for (size_t i = 0; i < e->n_records; i++)
+        if (e->record[i].readable != STATUS_OK)
+            json_array_append_new(unreadable, json_of("record=%s reason=%s", e->record[i].path, e->record[i].why.text));
+    d.data = json_of("run=%s design=%p variables_m=%p records=%p unreadable=%p ida=%p", args->operand,
+                     c->id > 0 ? json_integer(c->id) : json_words(c->word), json_numbers(c->schema->n_var, c->x),
+                     records, unreadable, e->level ? add_fractiles(&d, e) : NULL);
+    return d;
 }
 
 /* ---- for people -------------------------------------------------------------------------------------------------- */
 
-static void print_motion(const Evaluations *e, size_t i)
-{
-    Motion m;
-    if (tower_motion(&e->tower, i, &m, &(Err){0}) == STATUS_OK) {
-        show_motion(stdout, &m, e->duration_s);
-        motion_free(&m);
-    }
-}
-
-/* name: of the record, empty where there is one. With the device that was found for it. */
-static void add_case(json_t *table, const char *name, const MeasureOrder *order, const EvaluatedRun *run, SceneKind c)
+/* In one table, the motions of those that were named above it; each with the device that was found for it. */
+static void say_records(Document *d, const Evaluations *e, const MeasureOrder *order)
 {
     char label[400], words[CASE_TEXT_MAX];
-    snprintf(label, sizeof label, "%s%s%s", name, *name ? "  " : "", case_text(c, &run->device[c], words));
-    const int is_known = c == SCENE_IMPACT && run->error_known;
-    figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL, is_known ? run->sd : NULL);
-    if (c == SCENE_IMPACT && run->replicates.n_replicates > 0)
-        figures_replicates(table, order, &run->replicates, is_known ? run->error : NULL);
-}
-
-/* In one table, the motions of those that were named above it. */
-static void print_records(const Evaluations *e, const MeasureOrder *order)
-{
-    json_t *table = json_array();
-    for (size_t i = 0; i < e->n_records; i++) {
-        if (e->record[i].readable != STATUS_OK)
-            continue;
-        if (!e->record[i].from_folder)
-            print_motion(e, i);
-        for (SceneKind c = 0; c < N_SCENES; c++)
-            if (evaluated_has(e, &e->run[i], c))
-                add_case(table, e->n_records > 1 ? evaluated_name(&e->record[i]) : "", order, &e->run[i], c);
-    }
+    Motion m;
+    for (size_t i = 0; i < e->n_records; i++)
+        if (e->record[i].readable == STATUS_OK && !e->record[i].from_folder &&
+            tower_motion(&e->tower, i, &m, &(Err){0}) == STATUS_OK) {
+            document_motion(d, &m, e->duration_s);
+            motion_free(&m);
+        }
     if (e->replicates > 0)
-        puts("replicates are of the design with impacts; the other lines are as designed");
-    figures_print(table);
+        document_say(d, "p", "replicates are of the design with impacts; the other lines are as designed");
+    json_t *table = document_table(d);
+    for (size_t i = 0; i < e->n_records; i++)
+        for (SceneKind c = 0; c < N_SCENES && e->record[i].readable == STATUS_OK; c++) {
+            const EvaluatedRun *run = &e->run[i];
+            const int is_known = c == SCENE_IMPACT && run->error_known, has_name = e->n_records > 1;
+            if (!evaluated_has(e, run, c))
+                continue;
+            snprintf(label, sizeof label, "%s%s%s", has_name ? evaluated_name(run->record) : "", has_name ? "  " : "",
+                     case_text(c, &run->device[c], words));
+            figures_result(table, label, order, &run->result[c], is_known ? run->error : NULL,
+                           is_known ? run->sd : NULL);
+            if (c == SCENE_IMPACT && run->replicates.n_replicates > 0)
+                figures_replicates(table, order, &run->replicates, is_known ? run->error : NULL);
+        }
 }
 
-static void print_refused(FILE *out, const Evaluations *e)
+/* Why records were left out. */
+static void say_refused(Document *d, const Evaluations *e)
 {
-    size_t n = 0;
     for (size_t i = 0; i < e->n_records; i++)
         if (e->record[i].readable != STATUS_OK)
-            fprintf(out, "%snot read: %s\n", n++ ? "" : "\n", e->record[i].why.text);
+            document_say(d, "p", "not read: %s", e->record[i].why.text);
 }
 
-static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
+/* At one intensity, for people: it takes forces, which files would have then too. */
+static int has_verdict(const Args *args, const Evaluations *e)
+{
+    return !e->level && !args_has(args, "--csv") && !args_has(args, "--json");
+}
+
+/* With nothing but --design that of the run, else one over these records. */
+static void say_verdict(Document *d, const Args *args, const Chosen *c, const Settings *s, const Evaluations *e)
+{
+    char *text, design[24];
+    Err why = {0};
+    if (c->id > 0 && args->n_given == 1) {
+        document_verdict(d, c->run, c->row, NULL);
+        return;
+    }
+    snprintf(design, sizeof design, "%ld", c->id);
+    const Status status = verdict_find(s, e, c->x, args->operand, c->id > 0 ? design : c->word, &text, &why);
+    document_say(d, "h2", "Verdict on design %s", c->id > 0 ? design : c->word);
+    document_say(d, "p", "%s", status == STATUS_OK ? text : why.text);
+    free(text);
+}
+
+static Status give(const Args *args, const Chosen *c, const Settings *s, const Evaluations *e, Err *err)
 {
     const MeasureOrder *order = &c->schema->order;
-    if (c->id > 0)
-        printf("design %ld of %s\n\n", c->id, args->operand);
-    else
-        printf("design %s by the settings of %s\n\n", c->word, args->operand);
-    if (c->fragilities.limits.n > 0)
-        figures_print(fragilities_table(&c->fragilities, e));
-    else if (e->level)
-        ida_print(e, order);
-    else
-        print_records(e, order);
-    if (c->fragilities.hazard) {
-        putchar('\n');
-        figures_print(annual_losses(&c->fragilities, e, 1));
-    }
-    print_refused(stdout, e);
-}
-
-/* All that is asked for; the tables where nothing is, those of fragilities wherever standard output is free. */
-static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err *err)
-{
-    if (args_has(args, "--csv"))
-        TRY(write_csv(e, args_value(args, "--csv"), err));
-    const char *svg = args_value(args, "--svg");
-    if (svg && c->fragilities.limits.n > 0)
-        TRY(fragilities_draw(&c->fragilities, e, svg, err));
-    else if (svg)
-        TRY(ida_draw(e, &c->schema->order, svg, err));
+    const int is_fragility = c->fragilities.limits.n > 0;
     if (args_has(args, "--pelicun"))
         TRY(demands_write(e, args_value(args, "--pelicun"), err));
-    if (args_has(args, "--json"))
-        return show_as_json(args, c, e, err);
-    if (c->fragilities.limits.n > 0 ? !outputs_standard(args, 0)
-                                    : !args_has(args, "--csv") && !svg && !args_has(args, "--pelicun"))
-        print_all(args, c, e);
-    return STATUS_OK;
+    Document d = describe_all(args, c, e);
+    d.drawing = is_fragility ? "fragility" : "ida";
+    d.width = is_fragility ? 30 + 400 * (int)c->fragilities.limits.n : 1300;
+    json_t *shown = json_array();
+    for (int i = 0; i < MIN_OF(order->n_obj, IDA_SHOWN); i++) {
+        const Measure *m = measure(order->of[i]);
+        json_array_append_new(shown, json_pack("[so]", m->name, json_sprintf("%s [%s]", m->what, m->unit)));
+    }
+    if (c->id > 0)
+        document_say(&d, "h1", "design %ld of %s", c->id, args->operand);
+    else
+        document_say(&d, "h1", "design %s by the settings of %s", c->word, args->operand);
+    if (is_fragility)
+        document_fragilities(&d, &c->fragilities, e);
+    else if (e->level)
+        document_ida(&d, e, order);
+    else
+        say_records(&d, e, order);
+    say_refused(&d, e);
+    if (has_verdict(args, e))
+        say_verdict(&d, args, c, s, e);
+    d.drawn = json_put(json_copy(d.data), "shown=%p", shown);
+    return document_give(&d, args, err);
 }
 
 /* ---- what is evaluated ------------------------------------------------------------------------------------------- */
@@ -397,40 +299,38 @@ static void tell(size_t n_done, void *user)
     }
 }
 
-static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evaluations *e, Err *err)
+/* e: its intensities are known. */
+static Status run_and_give(const Args *args, Settings *s, Chosen *c, Evaluations *e, Err *err)
 {
     Progress p = {.told.tell = isatty(STDERR_FILENO) ? tell : NULL};
-    TRY(add_records(args, e, s, c->run, err));
-    TRY(evaluations_read(e, s, err));
-    if (e->n_read == 0) {
-        print_refused(stderr, e);
-        return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--record"));
-    }
-    TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
-    for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        if (e->run[i].error_known)
-            known_raise(c->known, &e->run[i].result[SCENE_IMPACT], e->run[i].sd);
-    return give(args, c, e, err);
-}
-
-static Status take_fragilities(const Args *args, Settings *s, Chosen *c, Evaluations *e, Err *err)
-{
     const char *limits = args_value(args, "--fragility"), *hazard = args_value(args, "--hazard");
+    /* 1. Which limits, how many replicates. */
     if (hazard && !limits)
         return misused(err, "--hazard is how often intensities come; --fragility says for which limits");
     e->has_links = limits != NULL;
-    return limits ? fragilities_read(&c->fragilities, c->schema, limits, hazard, e->intensity, s, err) : STATUS_OK;
-}
-
-static Status take_and_run(const Args *args, Settings *s, Chosen *c, Evaluations *e, Err *err)
-{
-    TRY(take_fragilities(args, s, c, e, err));
+    TRY(limits ? fragilities_read(&c->fragilities, c->schema, limits, hazard, e->intensity, s, err) : STATUS_OK);
     TRY(settings_check(s, err));
     if (e->level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
         return misused(err, "sim.replicates = %ld: every intensity is shown once, without replicates",
                        s->sim.replicates);
     e->replicates = !e->level && s->sim.replicates > 1 ? s->sim.replicates : 0;
-    return run_and_give(args, s, c, e, err);
+    if (has_verdict(args, e))
+        s->sim.forces = FORCES_YES;
+    /* 2. Every record is read before anything is simulated. */
+    TRY(add_records(args, e, s, c->run, err));
+    TRY(evaluations_read(e, s, err));
+    if (e->n_read == 0) {
+        Document why = {0};
+        say_refused(&why, e);
+        document_print(&why, stderr);
+        return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--record"));
+    }
+    /* 3. What the run knows of a design that cannot be predicted stands where it is more than was found now. */
+    TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
+    for (size_t i = 0; i < e->n_records * e->n_levels; i++)
+        if (e->run[i].error_known)
+            known_raise(c->known, &e->run[i].result[SCENE_IMPACT], e->run[i].sd);
+    return give(args, c, s, e, err);
 }
 
 static Status evaluate(const Args *args, Settings *s, Chosen *c, Err *err)
@@ -438,7 +338,7 @@ static Status evaluate(const Args *args, Settings *s, Chosen *c, Err *err)
     double levels[IDA_LEVELS_MAX];
     Evaluations e = {.duration_s = s->sim.duration_s};
     TRY(take_intensities(args, s, levels, &e, err));
-    const Status status = take_and_run(args, s, c, &e, err);
+    const Status status = run_and_give(args, s, c, &e, err);
     evaluations_free(&e);
     fragilities_free(&c->fragilities);
     return status;
@@ -457,6 +357,7 @@ static Status evaluate_of_run(const Args *args, Settings *s, const Run *run, con
     TRY(design_of_run(run, word, &row, &other, err));
     Chosen c = {.run = run, .schema = &run->schema, .x = other.x, .word = word};
     if (row < run->table.n) {
+        c.row = row;
         c.id = run->table.row[row].id;
         c.x = run_x(run, row);
         run_steps(run, row, &s->sim);

@@ -1,5 +1,4 @@
 #include <errno.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "base/text.h"
@@ -24,13 +23,6 @@ typedef struct {
 
 static const double TELL_EVERY_S = 60;
 
-/* Of standard error's terminal, less one: a line that fills the last column would wrap. */
-static int line_width(void)
-{
-    struct winsize w = {0};
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 1 ? w.ws_col - 1 : 79;
-}
-
 /* One line that changes on a terminal, else a further one every minute. */
 static void tell(const StudyProgress *p, void *user)
 {
@@ -46,7 +38,8 @@ static void tell(const StudyProgress *p, void *user)
     snprintf(line, sizeof line, "%zu of %ld simulated, %s left%s", p->progress.simulated, p->settings->search.max_evals,
              left, front);
     if (t->terminal)
-        fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
+        /* A line that fills the last column would wrap; the rest of the line before is erased. */
+        fprintf(stderr, "\r%.*s\033[K", terminal_width(STDERR_FILENO) - 1, line);
     else
         fprintf(stderr, "%s\n", line);
     t->has_line = t->terminal;
@@ -65,7 +58,9 @@ static void tell_start(const char *folder, size_t n_simulated, size_t n_workers,
 static void tell_model(const json_t *chosen, void *user)
 {
     (void)user;
-    show_model(stderr, chosen);
+    Document d = {0};
+    document_model(&d, chosen);
+    document_print(&d, stderr);
 }
 
 static void tell_record(const Scenario *w, void *user)
@@ -74,87 +69,57 @@ static void tell_record(const Scenario *w, void *user)
     if (!t->has_warned)
         building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
     t->has_warned = 1;
-    show_motion(stderr, &w->motion, w->options.sim.duration_s);
+    Document d = {0};
+    document_motion(&d, &w->motion, w->options.sim.duration_s);
+    document_print(&d, stderr);
 }
 
-static void explain_objectives(const Schema *schema, const char *objectives)
-{
-    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
-    putchar('\n');
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        const Measure *m = measure(schema->order.of[k]);
-        printf("%-12s %s [%s], %s is better\n", schema_objective(schema, k)->name, m->what, m->unit,
-               m->sense > 0 ? "lower" : "higher");
-    }
-    if (missing)
-        puts(missing);
-}
-
-static void add_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_SCENES])
-{
-    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
-        const double *value = baseline[k].value;
-        double natural[OBJECTIVES_MAX], extra[N_MEASURES];
-        for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
-            *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
-        figures_design(table, SCENES[k].words, 0, schema, natural, NULL, NULL, extra);
-    }
-}
-
-static void print_front(const Run *run, const StudySummary *summary)
+/* The best designs beside the baselines, and what the objectives are. */
+static void say_front(Document *d, const Run *run, const StudySummary *summary)
 {
     const Schema *schema = &run->schema;
-    const size_t knee = run_knee(run);
-    json_t *table = json_array();
+    const char *missing = measures_missing(&schema->order, run->settings->search.objectives, schema->design.n_floors);
     char label[TABLE_NAME_MAX + 8], rule[RULE_WORDS_MAX];
+    json_t *meaning = json_object();
     words_of_rule(run->settings, rule);
     if (rule[0])
-        printf("each number: %s\n", rule);
+        document_say(d, "p", "each number: %s", rule);
+    json_t *table = document_table(d);
     for (size_t k = 0; k < schema->n_obj; k++) {
-        snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
+        const Column *c = schema_objective(schema, k);
+        snprintf(label, sizeof label, "best %s", c->name);
         figures_of_run(table, run, label, run_best(run, k));
+        if (summary->has_baselines)
+            json_object_set_new(meaning, c->name,
+                                json_sprintf("%s [%s], %s is better", measure(schema->order.of[k])->what,
+                                             measure(schema->order.of[k])->unit, c->sense > 0 ? "lower" : "higher"));
     }
-    figures_of_run(table, run, "knee", knee);
-    if (summary->has_baselines)
-        add_baselines(table, schema, summary->baseline);
-    figures_print(table);
+    figures_of_run(table, run, "knee", run_knee(run));
     if (summary->has_baselines) {
-        putchar('\n');
-        show_verdicts(stdout, run, knee, summary->baseline);
+        figures_baselines(table, schema, summary->baseline);
         if (run->settings->sim.replicates > 1)
-            puts("replicates are of designs with impacts; the others are as designed");
-        explain_objectives(schema, run->settings->search.objectives);
+            document_say(d, "p", "replicates are of designs with impacts; the others are as designed");
     }
-    printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
+    document_list(d, meaning);
+    if (summary->has_baselines && missing)
+        document_say(d, "p", "%s", missing);
+    document_say(d, "p", "knee: nearest to the ideal point when every objective is scaled to 0..1 over the front.");
 }
 
 /* Of a study with screened designs: how many, what they cost, and how far the cheap level agrees. */
-static void print_screening(const StudySummary *sum)
+static void say_screening(Document *d, const StudySummary *sum)
 {
     if (sum->n_screened == 0)
         return;
-    printf("%zu designs were screened by a part of their simulations (search.fidelity), and %zu finished or simulated "
-           "at once, "
-           "as much as %zu of %ld evaluations; ",
-           sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    document_say(d, "p",
+                 "%zu designs were screened by a part of their simulations (search.fidelity), and %zu finished or "
+                 "simulated at once, as much as %zu of %ld evaluations",
+                 sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
     if (isnan(sum->level_agreement))
-        puts("too few were finished to know how well that part ranks designs\n");
+        document_say(d, "p", "too few were finished to know how well that part ranks designs");
     else
-        printf("rank correlation of screened with full results (Kendall's tau): %.2f%s\n\n", sum->level_agreement,
-               sum->has_left_screening ? ": too little, so that screening ended" : "");
-}
-
-static void print_nearest(const Run *run, size_t n, const size_t rows[])
-{
-    json_t *table = json_array();
-    char label[48];
-    for (size_t i = 0; i < n; i++) {
-        const Evaluation *e = &run->table.row[rows[i]];
-        snprintf(label, sizeof label, "misses by %.3g", e->violation);
-        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
-    }
-    figures_print(table);
-    printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit, and over g > 0.\n");
+        document_say(d, "p", "rank correlation of screened with full results (Kendall's tau): %.2f%s",
+                     sum->level_agreement, sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
@@ -162,55 +127,57 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
 {
     size_t rows[NEAREST_MAX];
     const size_t n = run_nearest(run, rows);
+    Document d = {0};
     TRY(export_nearest(summary->folder, run, n, rows, err));
-    if (n > 0 && run_has_limits(run)) {
-        printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
-               summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
-               stop_reason_words(summary->stopped));
-        print_nearest(run, n, rows);
+    if (n == 0 || !run_has_limits(run))
+        return run_why_empty(run, err);
+    document_say(&d, "p", "nearest: %s/nearest.csv", summary->folder);
+    document_say(&d, "p", "%zu simulated designs, %zu simulations failed, %.1f s (%s)", summary->n_simulated,
+                 summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
+    json_t *table = document_table(&d);
+    for (size_t i = 0; i < n; i++) {
+        const Evaluation *e = &run->table.row[rows[i]];
+        char label[48];
+        snprintf(label, sizeof label, "misses by %.3g", e->violation);
+        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
     }
+    document_say(&d, "p",
+                 "misses by: sum over search.limits of what exceeds them, as a share of the limit, and over g > 0.");
+    document_print(&d, stdout);
     return run_why_empty(run, err);
 }
 
-static void tell_next(const char *what, const char *command, const char *run, FILE *out)
+static void say_run(Document *d, const Run *run, const StudySummary *summary)
 {
-    char folder[4 * PATH_MAX + 3];
-    fprintf(out, "%s:  %s %s %s\n", what, program_invocation_name, command, text_shell(run, folder));
-}
-
-static Status report(const Run *run, const StudySummary *summary, Err *err)
-{
-    if (summary->n_front == 0)
-        return report_no_front(run, summary, err);
-    TRY(export_nearest(summary->folder, NULL, 0, NULL, err));
-    printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n",
-           summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
-           stop_reason_words(summary->stopped));
+    const NamedCost named = named_cost(run);
+    char polished[160], folder[4 * PATH_MAX + 3];
     size_t n_failed, most;
+    document_say(d, "p", "front: %s/front.csv", summary->folder);
+    document_say(d, "p", "%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)", run->n_front,
+                 summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
     const char *reason = evaluation_table_failures(&run->table, &n_failed, &most);
     if (n_failed > 0)
-        printf("%zu of %zu failures: %s\n", most, n_failed, reason);
-    putchar('\n');
+        document_say(d, "p", "%zu of %zu failures: %s", most, n_failed, reason);
     if (run->n_repeats > 0)
-        printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
-               run->n_repeats);
-    print_screening(summary);
-    print_front(run, summary);
-    const NamedCost named = named_cost(run);
+        document_say(d, "p", "%zu of the simulations repeat a design, to average the noise (search.replicate_share)",
+                     run->n_repeats);
+    say_screening(d, summary);
+    say_front(d, run, summary);
     if (named.n > 0)
-        printf("refined with smaller steps: %zu designs, %zu of them unpredictable\n", named.n, named.n_unpredictable);
-    if (summary->polish.n_tried > 0) {
-        printf("polished: %zu of %zu designs became better by more than their spread (search.polish); ",
-               summary->polish.n_better, summary->polish.n_tried);
-        improve_cost(&summary->polish.cost);
-    }
+        document_say(d, "p", "refined with smaller steps: %zu designs, %zu of them unpredictable", named.n,
+                     named.n_unpredictable);
+    snprintf(polished, sizeof polished,
+             "polished: %zu of %zu designs became better by more than their spread (search.polish); ",
+             summary->polish.n_better, summary->polish.n_tried);
+    if (summary->polish.n_tried > 0)
+        improve_cost(d, polished, &summary->polish.cost);
     json_t *model = study_model_of(run);
-    show_model_confirmed(stdout, model, summary->folder);
+    document_model_confirmed(d, model, summary->folder);
     json_decref(model);
     if (summary->n_simulated == summary->n_before)
-        printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
-    tell_next("charts and tables", "report", summary->folder, stdout);
-    return STATUS_OK;
+        document_say(d, "p", "This run was finished before; nothing new was simulated. --new starts another one.");
+    document_say(d, "p", "charts and tables:  %s report %s", program_invocation_name,
+                 text_shell(summary->folder, folder));
 }
 
 static json_t *json_of_design(const Run *run, size_t row)
@@ -221,12 +188,10 @@ static json_t *json_of_design(const Run *run, size_t row)
     return o;
 }
 
-static Status report_json(const Run *run, const StudySummary *summary, Err *err)
+static json_t *json_of_run(const Run *run, const StudySummary *summary)
 {
     json_t *best = json_object(), *baselines = json_object();
     const Schema *schema = &run->schema;
-    if (summary->n_front == 0)
-        return run_why_empty(run, err);
     for (size_t k = 0; k < schema->n_obj; k++)
         json_object_set_new(best, schema_objective(schema, k)->name, json_of_design(run, run_best(run, k)));
     for (int b = SCENE_IMPACT + 1; b < N_SCENES && summary->has_baselines; b++) {
@@ -236,12 +201,23 @@ static Status report_json(const Run *run, const StudySummary *summary, Err *err)
                                 json_number(summary->baseline[b].value[schema->order.of[k]]));
         json_object_set_new(baselines, SCENES[b].key, o);
     }
-    return show_json(json_of("run=%s stopped=%s simulated=%zu failed=%zu front=%zu seconds=%g knee=%p best=%p "
-                             "baselines=%p review=%p model=%p",
-                             summary->folder, stop_reason_words(summary->stopped), summary->n_simulated,
-                             summary->n_failed, run->n_front, summary->seconds, json_of_design(run, run_knee(run)),
-                             best, baselines, json_review(&summary->review), study_model_of(run)),
-                     err);
+    return json_of("run=%s stopped=%s simulated=%zu failed=%zu front=%zu seconds=%g knee=%p best=%p baselines=%p "
+                   "review=%p model=%p",
+                   summary->folder, stop_reason_words(summary->stopped), summary->n_simulated, summary->n_failed,
+                   run->n_front, summary->seconds, json_of_design(run, run_knee(run)), best, baselines,
+                   json_review(&summary->review), study_model_of(run));
+}
+
+static Status show(const Args *args, const Run *run, const StudySummary *summary, Err *err)
+{
+    if (summary->n_front == 0)
+        return args_has(args, "--json") ? run_why_empty(run, err) : report_no_front(run, summary, err);
+    TRY(export_nearest(summary->folder, NULL, 0, NULL, err));
+    Document d = {.data = json_of_run(run, summary)};
+    say_run(&d, run, summary);
+    if (!args_has(args, "--json"))
+        document_verdict(&d, run, run_knee(run), NULL);
+    return document_give(&d, args, err);
 }
 
 /* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */
@@ -271,11 +247,6 @@ static Status take_settings(const Args *args, Settings *s, RunStore **store, Err
     return args_gives(args, "run.out") ? STATUS_OK : output_place_check(s->run.out, args->operand, err);
 }
 
-static Status show(const Args *args, const Run *run, const StudySummary *summary, Err *err)
-{
-    return args_has(args, "--json") ? report_json(run, summary, err) : report(run, summary, err);
-}
-
 /* Of a run whose records have gone: once it is finished they are not needed. */
 static Status show_finished(const Args *args, RunStore *store, Run *finished, Err *err)
 {
@@ -289,6 +260,7 @@ static Status show_finished(const Args *args, RunStore *store, Run *finished, Er
 static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
+    char folder[4 * PATH_MAX + 3];
     StudySummary summary;
     const char *terminal = getenv("TERM");
     Telling telling = {.terminal = isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0};
@@ -314,7 +286,8 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     if (telling.has_line)
         fputc('\n', stderr);
     if (status == STATUS_STOPPED && summary.n_simulated > 0)
-        tell_next("Resume it with", "optimize", summary.folder, stderr);
+        fprintf(stderr, "Resume it with:  %s optimize %s\n", program_invocation_name,
+                text_shell(summary.folder, folder));
     TRY(status);
     return show(args, finished, &summary, err);
 }

@@ -71,29 +71,26 @@ static const char *verdict_of(const Improved *r)
                : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
-/* Both designs, the cost, the gain of every objective that was to be improved, and what is to be thought of it. */
-static void show(const Improve *m)
+/* Both designs, the gain of every objective that was to be improved, what is to be thought of it, and the cost. */
+static void say_all(Document *d, const Improve *m)
 {
     const Improved *r = &m->result;
     const Evaluation *before = &r->designs.row[POLISH_BEFORE], *end = &r->designs.row[POLISH_END];
-    json_t *table = json_array();
+    json_t *table = document_table(d);
     improve_row(m, table, "before", POLISH_BEFORE, m->run.table.row[m->row].id);
     if (r->has_changed)
         improve_row(m, table, "polished", POLISH_END, m->id);
-    improve_print(m, table);
     for (size_t k = 0; r->has_changed && k < m->run.schema.n_obj; k++) {
         const Column *c = schema_objective(&m->run.schema, k);
         const double gain = c->sense * (before->f[k] - end->f[k]);
         const double error = hypot(before->sd[k], end->sd[k]) / sqrt((double)m->config.replicates);
-        if (!(m->config.weight[k] > 0.0))
-            continue;
-        printf("%s is %s by %.3g", c->name, gain < 0.0 ? "worse" : "better", fabs(gain));
-        if (isfinite(error))
-            printf(" with a standard error of %.2g", error);
-        putchar('\n');
+        char known[60];
+        snprintf(known, sizeof known, isfinite(error) ? " with a standard error of %.2g" : "", error);
+        if (m->config.weight[k] > 0.0)
+            document_say(d, "p", "%s is %s by %.3g%s", c->name, gain < 0.0 ? "worse" : "better", fabs(gain), known);
     }
-    puts(verdict_of(r));
-    improve_say(m);
+    document_say(d, "p", "%s", verdict_of(r));
+    improve_say(d, m);
 }
 
 static Status work(const Args *args, Improve *m, Err *err)
@@ -103,13 +100,12 @@ static Status work(const Args *args, Improve *m, Err *err)
     TRY(improve_design(&m->run, m->row, &m->config, polish_design, &m->result, err));
     if (polish_counts(r))
         TRY(improve_store(m, &r->designs.row[POLISH_END], err));
-    if (args_has(args, "--json"))
-        return show_json(json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
-                                 m->id, verdict_of(r), r->cost.n_evaluated, r->cost.n_simulated, r->cost.n_failed,
-                                 r->cost.seconds, table_of(m)),
-                         err);
-    show(m);
-    return args_has(args, "--csv") ? figures_csv(table_of(m), args_value(args, "--csv"), err) : STATUS_OK;
+    Document d = {.data = json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
+                                  m->id, verdict_of(r), r->cost.n_evaluated, r->cost.n_simulated, r->cost.n_failed,
+                                  r->cost.seconds, table_of(m)),
+                  .rows = table_of(m)};
+    say_all(&d, m);
+    return document_give(&d, args, err);
 }
 
 static Status run(const Args *args, Err *err)

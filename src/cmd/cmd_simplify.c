@@ -3,6 +3,7 @@
 #include "cmd/designs.h"
 #include "cmd/improve.h"
 #include "evaluate/limits.h"
+#include "store/run_read.h"
 #include "study/simplify.h"
 
 static const double KEPT = 0.02, KEPT_OTHERS = 0.1;
@@ -55,14 +56,14 @@ static Status take_options(const Args *args, Improve *m, Err *err)
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-/* The path: of each step devices, cost and objectives. */
-static json_t *table_of(const Improve *m)
+/* The path with its cost, which is returned; then name and number of every variable at its end, gaps and plates in mm. */
+static json_t *say_path(Document *d, const Improve *m)
 {
     static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",
                                         "on steps", "moved on steps", "fewer devices"};
     const Schema *s = &m->run.schema;
     const EvaluationTable *path = &m->result.designs;
-    json_t *table = json_array();
+    json_t *table = document_table(d), *variables = json_object();
     for (size_t i = 0; i < path->n; i++) {
         char label[96];
         const Evaluation *e = &path->row[i];
@@ -71,28 +72,20 @@ static json_t *table_of(const Improve *m)
         if (i != SIMPLIFY_ZONES || m->config.zones > 0)
             improve_row(m, table, label, i, i == SIMPLIFY_START ? m->run.table.row[m->row].id : 0);
     }
-    return table;
-}
-
-/* The path with its cost; then name and number of every variable at its end, gaps and plates in mm. */
-static void show(const Improve *m)
-{
-    const Schema *s = &m->run.schema;
-    const EvaluationTable *path = &m->result.designs;
-    improve_print(m, table_of(m));
-    puts("behind the colon: devices, and the cost by design.prices\n");
+    document_say(d, "p", "behind the colon: devices, and the cost by design.prices");
     const double *x = path->row[path->n - 1].x;
     for (size_t j = 0; j < s->n_var; j++) {
         char text[KIND_WORD_MAX];
-        const int is_length = (int)j < s->design.n_gaps + s->design.n_walls;
+        const int is_gap = (int)j < s->design.n_gaps, is_length = (int)j < s->design.n_gaps + s->design.n_walls;
         if (!schema_word(s, j, x[j], text))
             snprintf(text, sizeof text, is_length ? "%g mm" : "%g", is_length ? 1e3 * x[j] : x[j]);
-        printf("%-20s %s\n", schema_variable(s, j)->name,
-               (int)j < s->design.n_gaps && x[j] >= DESIGN_OPEN_M ? "no stop" : text);
+        json_object_set_new(variables, schema_variable(s, j)->name,
+                            json_string(is_gap && x[j] >= DESIGN_OPEN_M ? "no stop" : text));
     }
-    putchar('\n');
+    document_list(d, variables);
     if (path->row[0].violation > 0.0)
-        puts("The design violates the limits of its run, and so may what is made of it.");
+        document_say(d, "p", "The design violates the limits of its run, and so may what is made of it.");
+    return table;
 }
 
 static int is_unmet(const Improve *m)
@@ -153,21 +146,32 @@ static Status store_end(Improve *m, Err *err)
     return improve_store(m, last, err);
 }
 
+/* The run has changed since it was read. */
+static Status say_verdict(Document *d, const Improve *m, Err *err)
+{
+    Run now;
+    TRY(run_read(&now, m->run.folder, err));
+    document_verdict(d, &now, run_find(&now, m->id), m->run.settings);
+    run_free(&now);
+    return STATUS_OK;
+}
+
 static Status work(const Args *args, Improve *m, Err *err)
 {
     TRY(take_options(args, m, err));
     if (m->run.settings->problem.kind != PROBLEM_TOWER)
         return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", m->run.folder);
     TRY(improve_design(&m->run, m->row, &m->config, simplify_design, &m->result, err));
-    const int as_json = args_has(args, "--json");
-    if (!as_json)
-        show(m);
-    TRY(store_end(m, err));
-    if (as_json)
-        TRY(show_json(json_of("design=%ld path=%p", m->id, table_of(m)), err));
-    else
-        improve_say(m);
-    return is_unmet(m) ? fail_unmet(m, err) : STATUS_OK;
+    Document d = {0};
+    json_t *path = say_path(&d, m);
+    Status status = store_end(m, err);
+    improve_say(&d, m);
+    d.data = json_of("design=%ld path=%p", m->id, json_plain(path));
+    if (!args_has(args, "--json"))
+        THEN(status, say_verdict(&d, m, err));
+    THEN(status, document_give(&d, args, err));
+    document_free(&d);
+    return status == STATUS_OK && is_unmet(m) ? fail_unmet(m, err) : status;
 }
 
 static Status run(const Args *args, Err *err)

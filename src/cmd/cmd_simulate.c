@@ -55,117 +55,54 @@ static Status take_designs(const Args *args, Settings *s, Job *job, Err *err)
     return STATUS_OK;
 }
 
-static Status lay_out_job(Job *job, Err *err)
-{
-    TRY_ROOM(job->tasks, job->n, "simulations", err);
-    TRY_ROOM(job->results, job->n, "simulations", err);
-    TRY_ROOM(job->summary, job->n, "simulations", err);
-    for (size_t i = 0; i < job->n; i++)
-        job->tasks[i] =
-            (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * job->designs.space.n_var] : NULL};
-    return STATUS_OK;
-}
-
-static Status simulate(const Problem *p, Job *job, Err *err)
-{
-    TRY(job->has_parts ? tower_replicate(p, job->n, job->designs.x, job->results, job->summary, err)
-                       : tower_simulate(p, job->n, job->tasks, job->results, err));
-    for (size_t i = 0; i < job->n; i++)
-        if (job->results[i].outcome != RUN_OK)
-            fprintf(stderr, "design %ld failed: %s\n", design_number(&job->designs, i), job->results[i].reason);
-    return STATUS_OK;
-}
-
-static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
-{
-    if (s->sim.engine != ENGINE_FAST)
-        return STATUS_OK;
-    const size_t n = job->n * N_MEASURES;
-    TRY_ROOM(job->error, 2 * n, "estimated errors", err);
-    job->sd = job->error + n;
-    TRY(estimate_designs(p, job->n, job->tasks, job->results, job->error, job->sd, err));
-    known_raise(job->known, job->results, job->sd);
-    return STATUS_OK;
-}
-
 /* Of design i, of an array of all designs. */
 static const double *row_of(const double *all, size_t i)
 {
     return all ? all + i * N_MEASURES : NULL;
 }
 
-static json_t *describe(const Job *job, size_t i, const Tower *t)
+/* All designs as objects, as rows and as lines. */
+static Status give(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
 {
     const Motion *m = &tower_record(t, 0)->motion;
-    json_t *o =
-        json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", design_number(&job->designs, i),
-                m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed);
-    json_object_update_new(o, json_result(tower_measures(t), job->kind, &job->results[i]));
-    if (job->error)
-        put_errors(o, row_of(job->error, i), row_of(job->sd, i));
-    if (job->has_parts)
-        json_put(o, "replicates=%p", json_replicates(tower_measures(t), &job->summary[i]));
-    return o;
-}
-
-static Status print_json(const Job *job, const Tower *t, Err *err)
-{
-    if (job->n == 1)
-        return show_json(describe(job, 0, t), err);
-    json_t *all = json_array();
-    for (size_t i = 0; i < job->n; i++)
-        json_array_append_new(all, describe(job, i, t));
-    return show_json(all, err);
-}
-
-static Status write_csv(const Job *job, const MeasureOrder *order, const char *path, Err *err)
-{
-    json_t *table = json_array();
-    for (size_t i = 0; i < job->n; i++) {
-        const Measured m = measured(&job->results[i]);
-        json_t *row = json_put(figures_row(table), "design=%ld", design_number(&job->designs, i));
-        put_measures(row, order, "", m.value, NULL, NULL);
-        if (job->has_parts)
-            put_replicates(row, order, &job->summary[i]);
-        json_put(row, "outcome=%s", outcome_word((Outcome)m.outcome));
-    }
-    return figures_csv(table, path, err);
-}
-
-static void print_table(const Args *args, const Job *job, const Settings *s, const Tower *t)
-{
     const MeasureOrder *order = tower_measures(t);
     const char *missing = measures_missing(order, s->search.objectives, tower_n_floors(t));
-    json_t *table = json_array();
     char label[DESIGN_LABEL_MAX], damage[DAMAGE_WORDS_MAX];
-    for (size_t i = 0; i < tower_n_records(t); i++)
-        show_motion(stdout, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
-    if (missing && strcmp(s->search.objectives, "auto") != 0)
-        puts(missing);
-    puts(job->kind == SCENE_RIGID ? "\nrigidly connected" : "");
-    for (size_t i = 0; i < job->n; i++) {
-        design_label(&job->designs, args_value(args, "--design"), i, label);
-        figures_result(table, label, order, &job->results[i], row_of(job->error, i), row_of(job->sd, i));
-        if (job->has_parts)
-            figures_replicates(table, order, &job->summary[i], row_of(job->error, i));
-    }
-    figures_print(table);
-    if (job->n == 1 && *damage_words(job->results, damage))
-        printf("\n%s; under %s\n", damage, tower_record(t, 0)->motion.name);
-}
-
-static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
-{
-    const Motion *m = &tower_record(t, 0)->motion;
+    Document d = {.data = json_array(), .rows = json_array()};
     if (m->warning[0] && (args_has(args, "--csv") || args_has(args, "--json"))) /* where no table says it */
         fprintf(stderr, "%s: warning: %s\n", m->name, m->warning);
-    if (args_has(args, "--csv"))
-        TRY(write_csv(job, tower_measures(t), args_value(args, "--csv"), err));
-    if (args_has(args, "--json"))
-        return print_json(job, t, err);
-    if (!args_has(args, "--csv") && !outputs_standard(args, 0))
-        print_table(args, job, s, t);
-    return STATUS_OK;
+    for (size_t i = 0; i < tower_n_records(t); i++)
+        document_motion(&d, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
+    if (missing && strcmp(s->search.objectives, "auto") != 0)
+        document_say(&d, "p", "%s", missing);
+    if (job->kind == SCENE_RIGID)
+        document_say(&d, "p", "rigidly connected");
+    json_t *table = document_table(&d);
+    for (size_t i = 0; i < job->n; i++) {
+        const SimResult *r = &job->results[i];
+        const double *error = row_of(job->error, i), *sd = row_of(job->sd, i);
+        const long number = design_number(&job->designs, i);
+        json_t *o = json_of("design=%ld record=%s pga_g=%g scale=%g stretch=%g processed=%s", number, m->name,
+                            motion_peak(m) / GRAVITY, m->scale, m->stretch, m->processed),
+               *row = json_put(figures_row(d.rows), "design=%ld", number);
+        json_object_update_new(o, json_result(order, job->kind, r));
+        json_array_append_new(d.data, o);
+        put_measures(row, order, "", measured(r).value, NULL, NULL);
+        design_label(&job->designs, args_value(args, "--design"), i, label);
+        figures_result(table, label, order, r, error, sd);
+        if (error)
+            put_errors(o, error, sd);
+        if (job->has_parts) {
+            json_put(o, "replicates=%p", json_replicates(order, &job->summary[i]));
+            put_replicates(row, order, &job->summary[i]);
+            figures_replicates(table, order, &job->summary[i], error);
+        }
+        json_put(row, "outcome=%s", outcome_word((Outcome)r->outcome));
+    }
+    d.data = json_only(d.data);
+    if (job->n == 1 && *damage_words(job->results, damage))
+        document_say(&d, "p", "%s; under %s", damage, m->name);
+    return document_give(&d, args, err);
 }
 
 /* -- responses over time ------------------------------------------------------------------------------------------- */
@@ -212,28 +149,24 @@ static Status check_times(const Args *args, const Job *job, Err *err)
 enum { HORIZON_REPLICATES = 16 };
 static const double HORIZON_CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
 
-static Status print_horizon_json(const Horizon *h, const ReplicateSummary *r, Err *err)
+static Status give_horizon(const Args *args, const Problem *p, const Horizon *h, const ReplicateSummary *r, Err *err)
 {
-    return show_json(json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h->end_s,
-                             json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), json_numbers(HORIZON_LEVELS, h->reached_s),
-                             h->distance_at_end, json_replicates(NULL, r)),
-                     err);
-}
-
-static void print_horizon(const Scenario *w, const MeasureOrder *order, const Horizon *h, const ReplicateSummary *r)
-{
-    json_t *table = json_array();
-    show_motion(stdout, &w->motion, w->options.sim.duration_s);
-    printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", HORIZON_CHANGE);
+    const Scenario *w = tower_record(tower_of(p), 0);
+    Document d = {.data =
+                      json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h->end_s,
+                              json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), json_numbers(HORIZON_LEVELS, h->reached_s),
+                              h->distance_at_end, json_replicates(NULL, r))};
+    document_motion(&d, &w->motion, w->options.sim.duration_s);
+    document_say(&d, "p", "two runs whose gaps differ by %g of themselves are apart by", HORIZON_CHANGE);
     for (int i = 0; i < HORIZON_LEVELS; i++)
         if (isnan(h->reached_s[i]))
-            printf("  %-8g never (the run ends at %.4g s)\n", HORIZON_LEVEL[i], h->end_s);
+            document_say(&d, "p", "  %-8g never (the run ends at %.4g s)", HORIZON_LEVEL[i], h->end_s);
         else
-            printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
-    printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
-           h->distance_at_end);
-    figures_replicates(table, order, r, NULL);
-    figures_print(table);
+            document_say(&d, "p", "  %-8g after %.4g s", HORIZON_LEVEL[i], h->reached_s[i]);
+    document_say(&d, "p", "distance: root of energy of the difference over largest energy so far; at the end %.2g",
+                 h->distance_at_end);
+    figures_replicates(document_table(&d), tower_measures(tower_of(p)), r, NULL);
+    return document_give(&d, args, err);
 }
 
 static Status find_horizon(const Args *args, const Problem *p, const double x[], Err *err)
@@ -245,10 +178,7 @@ static Status find_horizon(const Args *args, const Problem *p, const double x[],
     TRY(horizon_find(w, x, HORIZON_CHANGE, &h, err));
     TRY(tower_replicate(p, 1, x, &as_designed, &r, err));
     r.spread = "gaps 1 um off";
-    if (args_has(args, "--json"))
-        return print_horizon_json(&h, &r, err);
-    print_horizon(w, tower_measures(tower_of(p)), &h, &r);
-    return STATUS_OK;
+    return give_horizon(args, p, &h, &r, err);
 }
 
 /* Replicates whose gaps differ by what nobody can measure, and nothing else: enough to find a contact that grazes. */
@@ -277,45 +207,17 @@ static json_t *describe_slopes(const Sensitivity *s)
     return json_of("parameter=%s value=%g step=%g slopes=%p", s->name, s->value, s->step, slopes);
 }
 
-static json_t *rows_of(size_t n, const Sensitivity list[])
-{
-    json_t *table = json_array();
-    for (size_t i = 0; i < n; i++) {
-        json_t *row =
-            json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
-        put_measures(row, NULL, "_slope", list[i].slope, "_error", list[i].error);
-    }
-    return table;
-}
-
-/* Change of J1 and J2 for one step of the parameter. */
-static void print_slopes(size_t n, const Sensitivity list[])
-{
-    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_J2};
-    json_t *table = json_array();
-    for (size_t i = 0; i < n; i++) {
-        const Sensitivity *s = &list[i];
-        json_t *row = json_put(figures_row(table), "parameter=%s value=%g step=%g", s->name, s->value, s->step);
-        for (size_t k = 0; k < N_OF(SHOWN); k++)
-            figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step, NAN);
-    }
-    puts("change for one step, with the error of the replicates and of halving the step");
-    figures_print(table);
-}
-
 static Status give_slopes(const Args *args, size_t n, const Sensitivity list[], Err *err)
 {
-    json_t *all = json_array();
-    if (args_has(args, "--csv"))
-        TRY(figures_csv(rows_of(n, list), args_value(args, "--csv"), err));
-    for (size_t i = 0; i < n; i++)
-        json_array_append_new(all, describe_slopes(&list[i]));
-    if (args_has(args, "--json"))
-        return show_json(all, err);
-    json_decref(all);
-    if (!args_has(args, "--csv"))
-        print_slopes(n, list);
-    return STATUS_OK;
+    Document d = {.rows = json_array(), .data = json_array()};
+    for (size_t i = 0; i < n; i++) {
+        json_t *row =
+            json_put(figures_row(d.rows), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
+        put_measures(row, NULL, "_slope", list[i].slope, "_error", list[i].error);
+        json_array_append_new(d.data, describe_slopes(&list[i]));
+    }
+    document_slopes(&d, n, list);
+    return document_give(&d, args, err);
 }
 
 static Status show_sensitivities(const Args *args, const Settings *s, const double x[], Err *err)
@@ -333,15 +235,30 @@ static Status show_sensitivities(const Args *args, const Settings *s, const doub
 static Status answer(const Args *args, const Settings *s, const Problem *p, Job *job, Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
+    const size_t n = job->n;
     warn_of_settings(s, warn_on_stderr, NULL);
     building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
-    TRY(lay_out_job(job, err));
-    TRY(simulate(p, job, err));
-    if (args_has(args, "--json") || !args_has(args, "--csv")) /* the only form that has no errors */
-        TRY(estimate(p, s, job, err));
-    TRY(print(args, job, s, tower_of(p), err));
+    TRY_ROOM(job->tasks, n, "simulations", err);
+    TRY_ROOM(job->results, n, "simulations", err);
+    TRY_ROOM(job->summary, n, "simulations", err);
+    for (size_t i = 0; i < n; i++)
+        job->tasks[i] =
+            (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * job->designs.space.n_var] : NULL};
+    TRY(job->has_parts ? tower_replicate(p, n, job->designs.x, job->results, job->summary, err)
+                       : tower_simulate(p, n, job->tasks, job->results, err));
+    for (size_t i = 0; i < n; i++)
+        if (job->results[i].outcome != RUN_OK)
+            fprintf(stderr, "design %ld failed: %s\n", design_number(&job->designs, i), job->results[i].reason);
+    /* Rows have no errors: whoever asks for them alone need not wait for these. */
+    if (s->sim.engine == ENGINE_FAST && (args_has(args, "--json") || !args_has(args, "--csv"))) {
+        TRY_ROOM(job->error, 2 * n * N_MEASURES, "estimated errors", err);
+        job->sd = job->error + n * N_MEASURES;
+        TRY(estimate_designs(p, n, job->tasks, job->results, job->error, job->sd, err));
+        known_raise(job->known, job->results, job->sd);
+    }
+    TRY(give(args, job, s, tower_of(p), err));
     TRY(write_times(args, job, w, err));
-    return job->n > 1 || job->results[0].outcome == RUN_OK
+    return n > 1 || job->results[0].outcome == RUN_OK
                ? STATUS_OK
                : fail(err, STATUS_INTERNAL, "the simulation failed: %s", job->results[0].reason);
 }

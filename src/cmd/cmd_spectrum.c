@@ -10,12 +10,10 @@
 #include "motion/motion.h"
 #include "motion/suite.h"
 #include "motion/spectrum.h"
-#include "report/panels.h"
-#include "report/pictures.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
-enum { N_PERIODS = 121 /* 0.02 to 20 s, equally spaced in their logarithm */, PRINTED_EACH = 6, CURVES_MAX = 6 };
+enum { N_PERIODS = 121 /* 0.02 to 20 s, equally spaced in their logarithm */, PRINTED_EACH = 6 };
 static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;
 
 typedef struct {
@@ -95,74 +93,49 @@ static void spectrum_close(Spectrum *s)
     motion_free(&s->motion);
 }
 
-static void average(size_t n, const Spectrum s[], double mean[N_PERIODS])
+/* ---- files and answers ------------------------------------------------------------------------------------------- */
+
+/* A row for every period, or for every few. */
+static json_t *rows_of(size_t n, const Spectrum s[], size_t every)
 {
-    for (int i = 0; i < N_PERIODS; i++) {
-        mean[i] = 0;
+    json_t *table = json_array();
+    for (size_t i = 0; i < N_PERIODS; i += every) {
+        json_t *row = json_put(figures_row(table), "period_s=%g", s->T[i]);
+        double mean = 0;
         for (size_t k = 0; k < n; k++)
-            mean[i] += s[k].psa[i] / (double)n;
+            mean += s[k].psa[i] / (double)n;
+        if (n == 1)
+            json_put(row, "psa_m_s2=%g psv_m_s=%g sd_m=%g", s->psa[i], s->psv[i], s->sd[i]);
+        else
+            json_put(row, "mean_psa_m_s2=%g", mean);
+        if (n == 1 && s->is_processed)
+            json_put(row, "recorded_psa_m_s2=%g", s->recorded_psa[i]);
+        if (s->code.kind)
+            json_put(row, "target_psa_m_s2=%g", s->target[i]);
+        for (size_t k = 0; k < n && n > 1; k++) {
+            char name[160];
+            cell_text(name, 128, basename(s[k].motion.name));
+            strcat(name, " psa_m_s2");
+            if (json_object_get(row, name))
+                snprintf(name, sizeof name, "%zu psa_m_s2", k + 1);
+            json_object_set_new(row, name, json_number(s[k].psa[i]));
+        }
     }
+    return table;
 }
 
-/* ---- columns ----------------------------------------------------------------------------------------------------- */
-
-typedef struct {
-    char name[160], title[24]; /* of CSV and JSON; of the table on the screen */
-    double unit;               /* of the table; of times, which are not stored, the step */
-    const double *x;           /* NULL: not asked for, or times */
-} Curve;
-
-enum { N_HISTORIES = 5 };
-
-static void curves_of_one(const Spectrum *s, Curve c[CURVES_MAX])
-{
-    c[0] = (Curve){"period_s", "period_s", 1, s->T};
-    c[1] = (Curve){"psa_m_s2", "psa_g", GRAVITY, s->psa};
-    c[2] = (Curve){"psv_m_s", "psv_m_s", 1, s->psv};
-    c[3] = (Curve){"sd_m", "sd_m", 1, s->sd};
-    c[4] = (Curve){"recorded_psa_m_s2", "recorded", GRAVITY, s->is_processed ? s->recorded_psa : NULL};
-    c[5] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
-}
-
-static void histories_of(const Spectrum *s, Curve c[N_HISTORIES])
-{
-    c[0] = (Curve){"time_s", "", s->motion.dt_s, NULL};
-    c[1] = (Curve){"accel_m_s2", "", 1, s->motion.accel};
-    c[2] = (Curve){"velocity_m_s", "", 1, s->velocity};
-    c[3] = (Curve){"displacement_m", "", 1, s->displacement};
-    c[4] = (Curve){"husid", "", 1, s->husid};
-}
-
-static void curves_of_all(size_t n, const Spectrum s[], const double mean[N_PERIODS], Curve c[])
-{
-    c[0] = (Curve){"period_s", "period_s", 1, s->T};
-    c[1] = (Curve){"mean_psa_m_s2", "mean", GRAVITY, mean};
-    c[2] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
-    for (size_t k = 0; k < n; k++) {
-        c[3 + k] = (Curve){.unit = GRAVITY, .x = s[k].psa};
-        cell_text(c[3 + k].name, 128, basename(s[k].motion.name));
-        strcat(c[3 + k].name, " psa_m_s2");
-        snprintf(c[3 + k].title, sizeof c->title, "%zu", k + 1);
-    }
-}
-
-/* Histories may have millions of rows: each is written as it comes. */
-static Status write_curves(const char *path, size_t n_rows, size_t n, const Curve c[], Err *err)
+/* There may be millions of rows: each is written as it comes. */
+static Status write_history(const Spectrum *s, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    fputs(c->name, o.stream);
-    for (size_t k = 1; k < n; k++)
-        if (c[k].x)
-            fprintf(o.stream, ",%s", c[k].name);
-    for (size_t i = 0; i < n_rows; i++) {
+    fputs("time_s,accel_m_s2,velocity_m_s,displacement_m,husid\n", o.stream);
+    for (size_t i = 0; i < s->motion.n; i++) {
+        const double values[] = {s->motion.accel[i], s->velocity[i], s->displacement[i], s->husid[i]};
+        print_number(o.stream, (double)i * s->motion.dt_s);
+        print_cells(o.stream, N_OF(values), values);
         fputc('\n', o.stream);
-        print_number(o.stream, c->x ? c->x[i] : (double)i * c->unit);
-        for (size_t k = 1; k < n; k++)
-            if (c[k].x)
-                print_cells(o.stream, 1, &c[k].x[i]);
     }
-    fputc('\n', o.stream);
     return output_close(&o, err);
 }
 
@@ -184,117 +157,6 @@ static Status write_event(const Motion *m, const char *path, Err *err)
     return status;
 }
 
-static void print_curves(size_t n, const Curve c[])
-{
-    json_t *table = json_array();
-    for (size_t i = 0; i < N_PERIODS; i += PRINTED_EACH) {
-        json_t *row = figures_row(table);
-        for (size_t k = 0; k < n; k++)
-            if (c[k].x)
-                json_object_set_new(row, c[k].title, json_number(c[k].x[i] / c[k].unit));
-    }
-    figures_print(table);
-}
-
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
-
-#define BLUE       CASE_LOOK[SCENE_IMPACT].colour
-#define VERMILLION CASE_LOOK[SCENE_NO_CORE].colour
-enum { BINS = 4000 }; /* of a history: more samples are drawn as the least and the largest of each bin */
-
-/* The times as well, in the units of the eye. */
-static void add_sample(const Spectrum *s, size_t i, json_t *history[N_HISTORIES])
-{
-    const double values[] = {(double)i * s->motion.dt_s, s->motion.accel[i] / GRAVITY, s->velocity[i],
-                             s->displacement[i], s->husid[i]};
-    for (size_t k = 0; k < N_HISTORIES; k++)
-        json_array_append_new(history[k], json_number(values[k]));
-}
-
-/* Of a long history two samples of each bin, the ones of the least and of the largest acceleration, in their order. */
-static void add_samples(const Spectrum *s, json_t *history[N_HISTORIES])
-{
-    const size_t n = s->motion.n, bin = n > 4 * BINS ? n / BINS : 1;
-    for (size_t begin = 0; begin < n; begin += bin) {
-        size_t low = begin, high = begin;
-        for (size_t i = begin; i < begin + bin && i < n; i++) {
-            low = s->motion.accel[i] < s->motion.accel[low] ? i : low;
-            high = s->motion.accel[i] > s->motion.accel[high] ? i : high;
-        }
-        add_sample(s, MIN_OF(low, high), history);
-        if (low != high)
-            add_sample(s, low < high ? high : low, history);
-    }
-}
-
-/* Over the periods, logarithmic; a curve that is not asked for is left out. */
-static void add_spectrum(json_t *lines, const Spectrum *s, const Curve *c, const char *colour, double thick)
-{
-    double values[N_PERIODS];
-    for (int i = 0; c->x && i < N_PERIODS; i++)
-        values[i] = c->x[i] / c->unit;
-    json_t *line = c->x ? curve(N_PERIODS, s->T, values, colour, thick) : NULL;
-    if (line)
-        json_array_append_new(lines, c->x == s->target ? dashed(line) : line);
-}
-
-static json_t *spectrum_panel(const char *label, json_t *lines)
-{
-    json_t *axis = json_of("label=%s type=%s tickFormat=%s domain=%p ticks=%p", "period [s]", "log", "~g",
-                           json_numbers(2, (double[]){SHORTEST_S, LONGEST_S}),
-                           json_numbers(8, (double[]){0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10}));
-    return panel("", axis, json_of("label=%s zero=%c", label, 1), lines);
-}
-
-/* Four histories on the left, under each other; on the right the spectra of acceleration and displacement. */
-static Status draw_one(const Spectrum *s, const Curve c[CURVES_MAX], const char *path, Err *err)
-{
-    static const char *const LABELS[] = {"", "acceleration [g]", "velocity [m/s]", "displacement [m]",
-                                         "share of Arias (Husid)"};
-    const Motion *m = &s->motion;
-    const MotionFigures *f = &s->figures;
-    char title[512];
-    json_t *history[N_HISTORIES], *left = json_array(), *right = json_array(), *psa = json_array(), *sd = json_array();
-    for (size_t k = 0; k < N_HISTORIES; k++)
-        history[k] = json_array();
-    add_samples(s, history);
-    for (size_t k = 1; k < N_HISTORIES; k++)
-        json_array_append_new(left,
-                              panel("", json_of("label=%s", "time [s]"), json_of("label=%s ticks=%d", LABELS[k], 5),
-                                    json_pack("[o]", json_of("mark=%s x=%p y=%p stroke=%s strokeWidth=%g", "line",
-                                                             json_incref(history[0]), history[k], BLUE, 1.0))));
-    json_decref(history[0]);
-    add_spectrum(psa, s, &c[1], BLUE, 2);
-    add_spectrum(psa, s, &c[5], VERMILLION, 1.5);
-    add_spectrum(sd, s, &c[3], BLUE, 2);
-    json_array_append_new(right, spectrum_panel("pseudo-acceleration [g], 5 % damping", psa));
-    json_array_append_new(right, spectrum_panel("displacement [m], 5 % damping", sd));
-    snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
-             m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
-             is_corrected(s) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
-    return drawing_save(drawing(title, json_array(), 840, json_pack("[oo]", left, right)), 1100, path, err);
-}
-
-static Status draw_all(size_t n, const Spectrum s[], const Curve c[], const char *path, Err *err)
-{
-    static const char *const HUES[] = {"#56b4e9", "#009e73", "#cc79a7", "#e69f00", "#0072b2", "#8a6d00", "#9aa4af"};
-    json_t *lines = json_array(), *names = json_array();
-    for (size_t k = 0; k < n; k++) {
-        const char *colour = HUES[k % N_OF(HUES)];
-        add_spectrum(lines, s, &c[3 + k], colour, 1.2);
-        json_array_append_new(names, name_of(basename(s[k].motion.name), colour, "\u25a0"));
-    }
-    add_spectrum(lines, s, &c[1], "#000000", 3);
-    add_spectrum(lines, s, &c[2], VERMILLION, 3);
-    json_array_append_new(names, name_of("mean", "#000000", "\u25a0"));
-    if (c[2].x)
-        json_array_append_new(names, name_of("target", VERMILLION, "\u25a0"));
-    json_t *one = spectrum_panel("pseudo-acceleration [g], 5 % damping", lines);
-    return drawing_save(drawing("", names, 560, json_pack("[[o]]", one)), 1000, path, err);
-}
-
-/* ---- one motion -------------------------------------------------------------------------------------------------- */
-
 /* Figures of the motion; recorded: without base line and filters, where it has such. */
 static void add_figures(json_t *o, const MotionFigures *f)
 {
@@ -303,118 +165,62 @@ static void add_figures(json_t *o, const MotionFigures *f)
              f->d5_95_s);
 }
 
-/* All but the histories, which may be long. */
-static json_t *describe(const Spectrum *s)
+/* with_histories: they may be millions of numbers. */
+static json_t *describe(const Spectrum *s, int with_histories)
 {
     const MotionFigures *r = &s->recorded;
     const Motion *m = &s->motion;
-    Curve c[CURVES_MAX];
     json_t *o = json_of("motion=%s format=%s channel=%s processed=%s corrected=%c warning=%s samples=%ld scale=%g "
                         "stretch=%g step_s=%g damping=%g",
                         m->name, m->format, m->channel, m->processed, is_corrected(s), m->warning, m->n, m->scale,
                         m->stretch, m->dt_s, DAMPING);
     add_figures(o, &s->figures);
-    curves_of_one(s, c);
-    for (size_t k = 0; k < CURVES_MAX; k++)
-        if (c[k].x && c[k].x != s->recorded_psa)
-            json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
+    json_put(o, "period_s=%p psa_m_s2=%p psv_m_s=%p sd_m=%p", json_numbers(N_PERIODS, s->T),
+             json_numbers(N_PERIODS, s->psa), json_numbers(N_PERIODS, s->psv), json_numbers(N_PERIODS, s->sd));
+    if (s->code.kind)
+        json_put(o, "target_psa_m_s2=%p", json_numbers(N_PERIODS, s->target));
     if (s->is_processed)
         json_put(o, "recorded=%p",
                  json_of("pga_m_s2=%g pgv_m_s=%g pgd_m=%g psa_m_s2=%p", r->pga_m_s2, r->pgv_m_s, r->pgd_m,
                          json_numbers(N_PERIODS, s->recorded_psa)));
     if (s->code.kind)
         json_put(o, "target_misfit=%g", target_misfit(m, &s->code));
+    if (with_histories)
+        json_put(o, "accel_m_s2=%p velocity_m_s=%p displacement_m=%p husid=%p", json_numbers(m->n, m->accel),
+                 json_numbers(m->n, s->velocity), json_numbers(m->n, s->displacement), json_numbers(m->n, s->husid));
     return o;
 }
 
-/* The members of o, without the brackets around them. */
-static Status print_members(json_t *o, Err *err)
+/* Of several motions the mean, and each of them. */
+static json_t *describe_all(size_t n, const Spectrum s[], const json_t *rows, int with_histories)
 {
-    const int failed = json_dumpf(o, stdout, JSON_EMBED | JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
-    json_decref(o);
-    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
+    json_t *motions = json_array();
+    for (size_t k = 0; k < n; k++)
+        json_array_append_new(motions, describe(&s[k], with_histories));
+    return json_of("period_s=%p mean_psa_m_s2=%p target_psa_m_s2=%p motions=%p", json_column(rows, "period_s"),
+                   json_column(rows, "mean_psa_m_s2"), json_column(rows, "target_psa_m_s2"), motions);
 }
 
-/* Histories number by number, for there may be millions. */
-static Status print_json(const Spectrum *s, Err *err)
+static Status give(const Args *args, size_t n, const Spectrum s[], Err *err)
 {
-    Curve c[N_HISTORIES];
-    histories_of(s, c);
-    putchar('{');
-    TRY(print_members(describe(s), err));
-    for (size_t k = 1; k < N_HISTORIES; k++) {
-        printf(",\n  \"%s\": ", c[k].name);
-        print_list(stdout, s->motion.n, c[k].x);
-    }
-    puts("}");
-    return STATUS_OK;
-}
-
-/* All that is asked for; the table where nothing is. */
-static Status give_one(const Args *args, const Spectrum *s, Err *err)
-{
-    Curve c[CURVES_MAX], history[N_HISTORIES];
-    const char *csv = args_value(args, "--csv"), *times = args_value(args, "--history");
-    const char *svg = args_value(args, "--svg");
-    curves_of_one(s, c);
-    histories_of(s, history);
-    TRY(csv ? write_curves(csv, N_PERIODS, CURVES_MAX, c, err) : STATUS_OK);
+    const char *times = args_value(args, "--history");
+    const int with_histories = args_has(args, "--json") || (n == 1 && args_has(args, "--svg"));
     if (times)
-        TRY(text_ends(times, ".json") ? write_event(&s->motion, times, err)
-                                      : write_curves(times, s->motion.n, N_HISTORIES, history, err));
-    TRY(svg ? draw_one(s, c, svg, err) : STATUS_OK);
-    if (args_has(args, "--json"))
-        return print_json(s, err);
-    if (csv || times || svg)
-        return STATUS_OK;
-    json_t *o = describe(s);
-    show_motion(stdout, &s->motion, 0);
-    figures_list(2, o);
-    json_decref(o);
-    puts(is_corrected(s) ? "\nresponse at 5 % damping"
-                         : "pgd_m: uncorrected: the drift of the record is in it (motion.baseline, "
-                           "motion.highpass_hz)\n\nresponse at 5 % damping");
-    print_curves(CURVES_MAX, c);
-    return STATUS_OK;
-}
-
-/* ---- several ----------------------------------------------------------------------------------------------------- */
-
-static Status print_all_json(size_t n, const Spectrum s[], const Curve c[], Err *err)
-{
-    json_t *o = json_object();
-    for (size_t k = 0; k < 3; k++)
-        if (c[k].x)
-            json_object_set_new(o, c[k].name, json_numbers(N_PERIODS, c[k].x));
-    putchar('{');
-    TRY(print_members(o, err));
-    for (size_t k = 0; k < n; k++) {
-        fputs(k ? "," : ",\n  \"motions\": [", stdout);
-        TRY(print_json(&s[k], err));
-    }
-    puts("]}");
-    return STATUS_OK;
-}
-
-static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[], Err *err)
-{
-    double mean[N_PERIODS];
-    const char *csv = args_value(args, "--csv"), *svg = args_value(args, "--svg");
-    average(n, s, mean);
-    curves_of_all(n, s, mean, c);
-    TRY(csv ? write_curves(csv, N_PERIODS, n + 3, c, err) : STATUS_OK);
-    TRY(svg ? draw_all(n, s, c, svg, err) : STATUS_OK);
-    if (args_has(args, "--json"))
-        return print_all_json(n, s, c, err);
-    if (csv || svg)
-        return STATUS_OK;
-    for (size_t k = 0; k < n; k++) {
-        printf("%zu  ", k + 1);
-        show_motion(stdout, &s[k].motion, 0);
-    }
-    puts("\npseudo-acceleration [g] at 5 % damping");
-    print_curves(n + 3, c);
-    return STATUS_OK;
+        TRY(text_ends(times, ".json") ? write_event(&s->motion, times, err) : write_history(s, times, err));
+    Document d = {.rows = rows_of(n, s, 1), .drawing = "motion", .width = 1100};
+    d.data = n == 1 ? describe(s, with_histories) : describe_all(n, s, d.rows, with_histories);
+    for (size_t k = 0; k < n; k++)
+        document_motion(&d, &s[k].motion, 0);
+    if (n == 1)
+        document_list(&d, describe(s, 0));
+    if (n == 1 && !is_corrected(s))
+        document_say(&d, "p",
+                     "pgd_m: uncorrected: the drift of the record is in it (motion.baseline, motion.highpass_hz)");
+    document_say(&d, "p", "response at 5 %% damping");
+    json_t *table = rows_of(n, s, PRINTED_EACH);
+    json_array_extend(document_table(&d), table);
+    json_decref(table);
+    return document_give(&d, args, err);
 }
 
 /* ---- all --------------------------------------------------------------------------------------------------------- */
@@ -458,14 +264,12 @@ static Status run(const Args *args, Err *err)
     const size_t n = all.n_max = all.n;
     if (n > 1 && args_has(args, "--history"))
         return misused(err, "--history is of one motion, not of %zu", n);
-    Curve *c = calloc(n + 3, sizeof *c);
     all.s = calloc(n, sizeof *all.s);
-    Status status = all.s && c ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
-    THEN(status, n == 1 ? give_one(args, all.s, err) : give_all(args, n, all.s, c, err));
+    Status status = all.s ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
+    THEN(status, give(args, n, all.s, err));
     for (size_t k = 0; all.s && k < n; k++)
         spectrum_close(&all.s[k]);
     free(all.s);
-    free(c);
     return status;
 }
 

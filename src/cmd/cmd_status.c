@@ -30,11 +30,11 @@ static json_t *json_generations(const Run *run)
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Run *run, double expected)
+static void say_generations(Document *d, const Run *run)
 {
     static const char *const UNSHOWN[] = {"hypervolume_error", "surrogate_error", "finished"};
     const size_t n = run->n_generations, rows = MIN_OF(n, ROWS_MAX);
-    json_t *all = json_generations(run), *table = json_array();
+    json_t *all = json_generations(run), *table = document_table(d);
     for (size_t r = 0; r < rows; r++) {
         const size_t g = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
         const double hypervolume = run->generation[g].hypervolume;
@@ -44,14 +44,9 @@ static void print_generations(const Run *run, double expected)
             json_object_del(row, UNSHOWN[i]);
         json_array_append(table, row);
     }
-    if (n > 0)
-        putchar('\n');
-    figures_print(table);
     json_decref(all);
     if (n > 0 && settings_screens(run->settings))
-        puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
-    if (n > 0)
-        show_expected_gain(expected);
+        document_say(d, "p", "simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
 }
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
@@ -108,7 +103,7 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s)
 }
 
 /* What people read in tables, or wait for: designs of the front are simulated. */
-static void describe_more(json_t *o, const Run *run, const Standing *s)
+static json_t *describe_more(json_t *o, const Run *run, const Standing *s)
 {
     FrontReview review = front_review(run);
     Err err = {0};
@@ -120,6 +115,7 @@ static void describe_more(json_t *o, const Run *run, const Standing *s)
         json_put(json_object_get(o, "front_review"), "never_closing=%p never_closing_unknown=%s", json_null(),
                  err.text);
     }
+    return o;
 }
 
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
@@ -144,7 +140,7 @@ static void add_run(const char *folder, const char *name, void *list)
 }
 
 /* Without hypervolumes: each is a share of a box of that run alone. */
-static void print_runs(json_t *list)
+static void say_runs(Document *d, json_t *list)
 {
     size_t i;
     json_t *row;
@@ -156,7 +152,8 @@ static void print_runs(json_t *list)
         json_object_del(row, "reason");
         json_put(row, "run=%s", basename(json_string_value(json_object_get(row, "run"))));
     }
-    figures_print(list);
+    json_array_extend(document_table(d), list);
+    json_decref(list);
 }
 
 static Status show_folder(const Args *args, const char *folder, Err *err)
@@ -168,44 +165,41 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
         json_decref(list);
         return why;
     }
-    if (args_has(args, "--json"))
-        return show_json(list, err);
+    Document d = {.data = list};
     if (json_array_size(list) == 0)
-        printf("%s: no runs\n", folder);
-    print_runs(list);
-    return STATUS_OK;
+        document_say(&d, "p", "%s: no runs", folder);
+    say_runs(&d, json_deep_copy(list));
+    return document_give(&d, args, err);
 }
 
 /* -- one run ------------------------------------------------------------------------------------------------------- */
 
 /* What the JSON says of the run, in lines. */
-static void print_head(const char *folder, const Run *run, const Standing *s, json_t *described)
+static void say_run(Document *d, const char *folder, const Run *run, const Standing *s, json_t *described)
 {
     char quoted[4 * PATH_MAX + 3];
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
-    printf("%s: %s", folder, state_words(s->state));
+    char more[160] = "";
     if (s->state == RUN_RUNNING)
-        printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
+        snprintf(more, sizeof more, " (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
-        printf(" (%s)", last->stopped);
-    puts("");
+        snprintf(more, sizeof more, " (%s)", last->stopped);
+    document_say(d, "h1", "%s: %s%s", folder, state_words(s->state), more);
     json_object_del(described, "run");
     json_object_del(described, "state");
     json_object_del(described, "process");
-    figures_list(2, described);
+    document_list(d, described);
     if (s->n_lost > 0)
-        printf("%zu evaluations more were stored, as its file `lock` says: the journal run.sqlite-wal is missing\n",
-               s->n_lost);
-    if (isfinite(e.waiting)) {
-        printf("wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search", 100.0 * e.waiting,
-               100.0 * e.surrogate, 100.0 * e.search);
-        if (isfinite(e.busy))
-            printf("; threads %.1f %% busy", 100.0 * e.busy);
-        putchar('\n');
-    }
+        document_say(d, "p",
+                     "%zu evaluations more were stored, as its file `lock` says: the journal run.sqlite-wal is missing",
+                     s->n_lost);
+    snprintf(more, sizeof more, isfinite(e.busy) ? "; threads %.1f %% busy" : "", 100.0 * e.busy);
+    if (isfinite(e.waiting))
+        document_say(d, "p", "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search%s",
+                     100.0 * e.waiting, 100.0 * e.surrogate, 100.0 * e.search, more);
     if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
-        printf("resume it with: imtet optimize %s\n", text_shell(folder, quoted));
+        document_say(d, "p", "resume it with: imtet optimize %s", text_shell(folder, quoted));
 }
 
 static Status run(const Args *args, Err *err)
@@ -219,16 +213,15 @@ static Status run(const Args *args, Err *err)
     standing_of(&standing, folder, &run);
     double expected = NAN;
     Status status = improvement_expected(&run, &expected, err);
-    json_t *o = describe(folder, &run, &standing);
-    if (status == STATUS_OK && args_has(args, "--json")) {
-        describe_more(o, &run, &standing);
-        json_put(o, "expected_gain=%g", expected);
-        status = show_json(json_incref(o), err);
-    } else if (status == STATUS_OK) {
-        print_head(folder, &run, &standing, o);
-        print_generations(&run, expected);
-    }
-    json_decref(o);
+    Document d = {.data = describe(folder, &run, &standing)};
+    say_run(&d, folder, &run, &standing, json_copy(d.data));
+    say_generations(&d, &run);
+    if (args_has(args, "--json"))
+        json_put(describe_more(d.data, &run, &standing), "expected_gain=%g", expected);
+    if (status == STATUS_OK)
+        status = document_give(&d, args, err);
+    else
+        document_free(&d);
     run_free(&run);
     return status;
 }

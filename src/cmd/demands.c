@@ -1,7 +1,7 @@
 #include "cmd/demands.h"
 
 #include "base/units.h"
-#include "cmd/show.h"
+#include "cmd/document.h"
 
 static void put(json_t *row, const char *type, int place, double value, const char *unit)
 {
@@ -62,5 +62,5 @@ Status demands_write(const Evaluations *e, const char *path, Err *err)
         else
             put_pelicun(row, r, e->run[i].pga_g, r->n_floors, r->yields);
     }
-    return figures_csv(table, path, err);
+    return rows_write(table, path, err);
 }

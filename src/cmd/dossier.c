@@ -1,340 +1,154 @@
 #include "cmd/dossier.h"
 
-#include <stdarg.h>
-
-#include "analysis/evaluations.h"
-#include "analysis/fragility.h"
 #include "analysis/full_model.h"
-#include "analysis/sensitivity.h"
 #include "base/text.h"
+#include "cmd/designs.h"
+#include "cmd/fragilities.h"
 #include "cmd/show.h"
 #include "evaluate/limits.h"
 #include "report/panels.h"
 #include "report/pictures.h"
 #include "report/report_json.h"
 #include "report/words.h"
-#include "scene/building.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 #include "store/output.h"
 #include "store/provenance.h"
 
-enum { AS_BUILT = 16, LEVELS = 6 };
-static const double LEVEL_STEP_G = 0.1, GAP_BUILT_M = 0.005, DRIFT_LIMIT = 0.02, YIELD_PA = 235e6;
+enum { LEVELS = 6 };
+static const double LEVEL_STEP_G = 0.1;
+static const char RESPONSE[] = "j1_m,j2_m,drift_ratio,j3_g,ed1_pct,ed5_10_pct,edcs_pct";
 
-static const MeasureId RESPONSE[] = {MEASURE_J1,  MEASURE_J2,     MEASURE_DRIFT_RATIO, MEASURE_J3,
-                                     MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
 typedef struct {
+    Document doc;
     const Report *r;
     const Detail *d;
     const Settings *s;
     const double *x;
-    FILE *out;
-    json_t *drawings; /* by name, what the report's page does not have */
+    json_t *drawings;   /* by name, what the report's page does not have */
+    MeasureOrder order; /* RESPONSE */
     size_t n_records;
     const SimResult *by_record; /* (n_records) the design under every record of the study */
     char record[200];           /* of the figures in detail: "builtin:kobe-like, the first of 22 records" */
 } Dossier;
-
-/* ---- figures --------------------------------------------------------------------------------------------------- */
-
-static void put_text(json_t *row, const char *column, const char *text)
-{
-    json_object_set_new(row, column, json_words(text));
-}
-
-/* A line of what something is, in words. */
-static void add_line(json_t *table, const char *what, const char *text)
-{
-    put_text(json_put(figures_row(table), "=%s", what), " ", text);
-}
-
-enum { HEAD_MAX = 80 };
-
-static Words head_of(Words w, char head[HEAD_MAX])
-{
-    snprintf(head, HEAD_MAX, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
-    return w;
-}
-
-static void put_named(json_t *row, Words words, double value, double error, double sd)
-{
-    char head[HEAD_MAX];
-    const Words w = head_of(words, head);
-    figures_put(row, head, w.factor * value, w.factor * error, w.factor * sd);
-}
-
-/* error (N_MEASURES); NULL: not known. */
-static void add_response(json_t *table, const char *label, const SimResult *r, const double error[])
-{
-    json_t *row = json_put(figures_row(table), "=%s", label);
-    for (size_t i = 0; i < N_OF(RESPONSE); i++)
-        put_named(row, measure(RESPONSE[i])->words, r->outcome == RUN_OK ? measure_value(r, RESPONSE[i]) : NAN,
-                  error ? error[RESPONSE[i]] : NAN, NAN);
-    json_put(row, "impacts=%ld", r->impacts);
-    if (r->outcome != RUN_OK)
-        put_text(row, " ", r->reason);
-}
-
-/* The tags of the page itself, "p" or "/p". */
-static void tag(const Dossier *o, const char *element)
-{
-    fprintf(o->out, "<%s>\n", element);
-}
-
-/* An element (empty: none) with its words: the one place where words come into the page. Tables have their own. */
-__attribute__((format(printf, 3, 4))) static void put(const Dossier *o, const char *element, const char *format, ...)
-{
-    va_list list;
-    char *words = NULL;
-    va_start(list, format);
-    if (vasprintf(&words, format, list) < 0)
-        words = NULL;
-    va_end(list);
-    if (*element)
-        fprintf(o->out, "<%s>", element);
-    text_html(o->out, words ? words : "");
-    if (*element)
-        fprintf(o->out, "</%.*s>", (int)strcspn(element, " "), element);
-    free(words);
-}
-
-static void heading(const Dossier *o, const char *title)
-{
-    put(o, "h2", "%s", title);
-}
-
-/* Where the page draws what it calls by that name (web/app/8-paper.js). */
-static void draw(const Dossier *o, const char *name, const char *caption)
-{
-    tag(o, "figure");
-    fprintf(o->out, "<div data-draw=\"%s\"></div>", name);
-    put(o, "figcaption", "%s", caption);
-    tag(o, "/figure");
-}
-
-/* A table that may have no rows: nothing then. */
-static void show_any(const Dossier *o, json_t *table)
-{
-    if (json_array_size(table) > 0)
-        figures_html(o->out, json_incref(table));
-    json_decref(table);
-}
-
-static void say(const Dossier *o, const char *text)
-{
-    put(o, "p", "%s", text);
-}
-
-/* What is of one record, which it names. */
-static void say_under(const Dossier *o, const char *text)
-{
-    put(o, "p", "%s under %s.", text, o->record);
-}
-
-/* Of a record; N_MEASURES: the shear stress of the core, which is no measure. NAN: the simulation failed. */
-static double demand_of(const SimResult *r, int k)
-{
-    return r->outcome != RUN_OK ? NAN : k < N_MEASURES ? measure_value(r, k) : r->forces.core_shear_stress_pa;
-}
 
 /* Over the records of the study; NAN: none has it. */
 static double largest(const Dossier *o, int k)
 {
     double most = NAN;
     for (size_t i = 0; i < o->n_records; i++)
-        most = fmax(most, demand_of(&o->by_record[i], k));
+        most = fmax(most, o->by_record[i].outcome == RUN_OK ? measure_value(&o->by_record[i], k) : NAN);
     return most;
 }
 
-/* ", which the core exceeds (under 7 of 22 records)", where it does. */
-static void print_exceeded(const Dossier *o, int k, double bound, const char *what)
+/* Without what has no room on paper: notes on a simulation that succeeded, and indentations, which the demands have. */
+static void add_response(const Dossier *o, json_t *table, const char *label, const SimResult *r)
 {
-    size_t n = 0;
-    for (size_t i = 0; i < o->n_records; i++)
-        n += demand_of(&o->by_record[i], k) > bound;
-    if (n > 0)
-        put(o, "", ", which %s exceeds", what);
-    if (n > 0 && o->n_records > 1)
-        put(o, "", " under %zu of %zu records", n, o->n_records);
-}
-
-static void put_lines(json_t *table, const char *what, const char *format, double value)
-{
-    char text[64];
-    snprintf(text, sizeof text, format, value);
-    add_line(table, what, text);
+    json_t *row = figures_result(table, label, &o->order, r, NULL, NULL);
+    json_object_del(row, "indentation");
+    if (r->outcome == RUN_OK)
+        json_object_del(row, " ");
 }
 
 /* ---- what it is ------------------------------------------------------------------------------------------------ */
 
-static void add_standard_errors(const Dossier *o, json_t *table)
+static void say_summary(Dossier *o)
 {
-    const Schema *schema = &o->r->run->schema;
-    char label[64];
-    snprintf(label, sizeof label, "its standard error over %zu records", o->n_records);
-    json_t *row = json_put(figures_row(table), "=%s", label);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        put_named(row, words_of_objective(schema, k), o->d->standard_error[schema->order.of[k]], NAN, NAN);
-}
-
-/* A study of several simulations judges by none of them. */
-static void add_judged(const Dossier *o, json_t *table)
-{
-    const Schema *schema = &o->r->run->schema;
+    Document *doc = &o->doc;
+    const Run *run = o->r->run;
+    const Schema *schema = &run->schema;
     double error[OBJECTIVES_MAX];
-    run_likely(o->r->run, o->r->chosen, error);
-    for (int i = 0; i < N_SCENES; i++) {
-        json_t *row = json_put(figures_row(table), "=%s", i == SCENE_IMPACT ? "this design" : SCENES[i].words);
-        for (size_t k = 0; k < schema->n_obj; k++)
-            put_named(row, words_of_objective(schema, k),
-                      i == SCENE_IMPACT ? run_f(o->r->run, o->r->chosen)[k]
-                                        : o->d->baseline[i].value[schema->order.of[k]],
-                      i < 0 ? error[k] : NAN, NAN);
-        if (i < 0 && o->n_records > 1)
-            add_standard_errors(o, table);
-    }
-}
-
-static void add_single(const Dossier *o, json_t *table)
-{
-    add_response(table, "this design", &o->d->result[SCENE_IMPACT], o->d->error);
-    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
-        add_response(table, SCENES[k].words, &o->d->baseline[k].first, NULL);
-}
-
-static void write_summary(const Dossier *o)
-{
-    const Detail *d = o->d;
-    json_t *table = json_array();
-    char now[24], rule[RULE_WORDS_MAX], *verdicts;
-    size_t length;
-    FILE *verdict = text_open(&verdicts, &length);
+    char now[24], rule[RULE_WORDS_MAX];
     utc_now(now);
     words_of_rule(o->s, rule);
-    put(o, "h1", "Design %ld of %s", o->r->run->table.row[o->r->chosen].id, o->r->run->folder);
-    put(o, "p class=\"note\"", "imtet %s (%s), %s. Found in %zu simulated designs%s%s, %zu of them nondominated.",
-        program_version(), program_revision(), now, o->r->run->table.n, *rule ? ", objectives " : "", rule,
-        o->r->run->n_front);
-    (o->r->is_robust ? add_judged : add_single)(o, table);
-    figures_html(o->out, table);
-    if (o->r->is_robust)
-        put(o, "p", "By what the study judges: %s%s.", rule,
-            o->r->run->table.row[o->r->chosen].kind == KIND_SCREENED
-                ? ", of which this design, screened only, has had a part"
-                : "");
-    else
-        say_under(o, "All");
-    say(o, "Behind the sign stands the error of the integration, which 95 % of such figures keep. The other "
-           "rows use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
-           "dashpot on every floor (one constant, optimized).");
-    if (verdict) {
-        show_verdicts(verdict, o->r->run, o->r->chosen, d->baseline);
-        text_close(verdict);
-    }
-    put(o, "p class=\"lines\"", "%s", verdicts ? verdicts : "");
-    free(verdicts);
-    tag(o, "p");
-    put(o, "", "Largest force of a contact: ");
-    put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_CONTACT_FORCE));
-    put(o, "", ", of a link or tuned mass: ");
-    put(o, "b", "%.3g MN", 1e-6 * largest(o, MEASURE_DEVICE_FORCE));
-    put(o, "", ". Largest bending stress of the core: ");
-    put(o, "b", "%.3g MPa", 1e-6 * largest(o, MEASURE_CORE_STRESS));
-    put(o, "", ", %.3g times the buckling stress of its bare wall", largest(o, MEASURE_CORE_BUCKLING));
+    document_say(doc, "h1", "Design %ld of %s", run->table.row[o->r->chosen].id, run->folder);
+    document_say(doc, "note", "imtet %s (%s), %s. Found in %zu simulated designs, %zu of them nondominated.",
+                 program_version(), program_revision(), now, run->table.n, run->n_front);
+    document_verdict(doc, run, o->r->chosen, o->s);
+    json_t *table = document_table(doc);
+    figures_of_run(table, run, "this design", o->r->chosen);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        error[k] = o->d->standard_error[schema->order.of[k]];
     if (o->n_records > 1)
-        put(o, "", ", each over %zu records", o->n_records);
-    put(o, "", ". Nothing here is designed for them.");
-    tag(o, "/p");
+        figures_design(table, "its standard error over the records", 0, schema, error, NULL, NULL, NULL);
+    figures_baselines(table, schema, o->d->baseline);
+    document_say(doc, "p", "By what the study judges: %s%s.", *rule ? rule : o->record,
+                 run->table.row[o->r->chosen].kind == KIND_SCREENED
+                     ? ", of which this design, screened only, has had a part"
+                     : "");
+    document_say(
+        doc, "p",
+        "Behind the sign stands the error of the integration, which 95 %% of such figures keep. The other rows "
+        "use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
+        "dashpot on every floor (one constant, optimized).");
 }
 
-static void write_building(const Dossier *o)
+static void say_building(Dossier *o)
 {
     Building b = {0};
     Frame frame = {0};
     Err e = {0};
-    const int has_frame = frame_is(o->s->building.model);
-    json_t *table = json_array(), *drawn = NULL;
-    heading(o, "Building, core and ground motion");
-    Status status = building_load(&b, &o->s->building, &e);
-    if (status == STATUS_OK && has_frame)
-        status = frame_read(&frame, &o->s->building, &e);
+    const Detail *d = o->d;
+    const Settings *s = o->s;
+    const int has_frame = frame_is(s->building.model);
+    json_t *drawn = NULL;
+    document_say(&o->doc, "h2", "Building, core and ground motion");
+    Status status = building_load(&b, &s->building, &e);
+    if (has_frame)
+        THEN(status, frame_read(&frame, &s->building, &e));
     THEN(status, building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e));
     if (status == STATUS_OK) {
-        put_lines(table, "floors", "%.0f", b.n);
-        put_lines(table, "mass of the building [t]", "%.0f", 1e-3 * building_mass(&b));
-        put_lines(table, "first period of the building [s]", "%.3f", 1 / o->d->building_hz[0]);
-        put_lines(table, "damping of its first mode [%]", "%.2f", 100 * b.zeta[0]);
-        put_lines(table, "mass of the core [t]", "%.0f", 1e-3 * o->d->result[SCENE_IMPACT].mcore_kg);
-        put_lines(table, "first period of the core [s]", "%.3f", 1 / o->d->core_hz[0]);
-        put_lines(table, "damping of the core [%]", "%.2f", 100 * o->s->core.damping);
-        put_lines(table, "outer side of the core [m]", "%.2f", o->s->core.width_m);
-        put_lines(table, "coefficient of restitution", "%.2f", o->s->contact.restitution);
-        put_lines(table, "radius of a contact [m]", "%.3f", o->s->contact.radius_m);
-        put_lines(table, "peak ground acceleration [g]", "%.3f", o->d->pga_g);
-        put_lines(table, "length of the motion [s]", "%.1f", o->d->duration_s);
-        add_line(table, "model of the building", o->s->building.model);
-        add_line(table, "foundation of the core", o->s->core.foundation);
-        add_line(table, "ground motion", o->record);
-        figures_html(o->out, table);
+        document_list(&o->doc,
+                      json_of("floors=%d mass_of_the_building_t=%g first_period_of_the_building_s=%g damping_pct=%g "
+                              "mass_of_the_core_t=%g first_period_of_the_core_s=%g damping_of_the_core_pct=%g "
+                              "side_of_the_core_m=%g restitution=%g radius_of_a_contact_m=%g peak_of_the_ground_g=%g "
+                              "length_of_the_motion_s=%g model=%s foundation_of_the_core=%s ground_motion=%s",
+                              b.n, 1e-3 * building_mass(&b), 1 / d->building_hz[0], 100 * b.zeta[0],
+                              1e-3 * d->result[SCENE_IMPACT].mcore_kg, 1 / d->core_hz[0], 100 * s->core.damping,
+                              s->core.width_m, s->contact.restitution, s->contact.radius_m, d->pga_g, d->duration_s,
+                              s->building.model, s->core.foundation, o->record));
         json_object_set_new(o->drawings, "panels", drawn);
-        draw(o, "panels", "The building to scale; its first mode shapes with period and share of the mass.");
-    } else {
-        json_decref(table);
+        document_draw(&o->doc, "panels",
+                      "The building to scale; its first mode shapes with period and share of the mass.");
     }
-    if (status != STATUS_OK)
-        say(o, e.text);
+    document_say(&o->doc, "p", "%s", e.text);
     building_free(&b);
     frame_free(&frame);
 }
 
 /* Constants of what stands on every floor and at the roof, and what it reaches under the first record. */
-static void list_devices(const Dossier *o, const Design *design)
+static void say_design(Dossier *o)
 {
     const Detail *d = o->d;
     const SimResult *r = &d->result[SCENE_IMPACT];
-    json_t *table = json_array();
-    char link[64];
-    const int is_even = d->gap_sides == GAPS_BOTH;
-    snprintf(link, sizeof link, "link [MN (s/m)^%g]", o->s->design.link_exponent);
-    for (int j = 0; j < d->n_floors; j++) {
-        const char *const columns[] = {is_even ? "gap [mm]" : "gap right [mm]",
-                                       "gap left [mm]",
-                                       "bumper [MN/m]",
-                                       "contact force [MN]",
-                                       link,
-                                       "friction [MN]",
-                                       "link force [MN]",
-                                       "link stroke [mm]"};
-        const int has_stop = d->gap_m[j] < INFINITY;
-        const double values[] = {1e3 * d->gap_side_m[0][j],
-                                 is_even ? 0 : 1e3 * d->gap_side_m[1][j],
-                                 has_stop * 1e-6 * d->bumper_n_m[j],
-                                 1e-6 * fmax(r->forces.contact_force_n[0][j], r->forces.contact_force_n[1][j]),
-                                 1e-6 * design->link[j],
-                                 1e-6 * design->friction[j],
-                                 1e-6 * r->device[j].force,
-                                 1e3 * r->device[j].stroke};
-        json_t *row = has_stop || design_has_link(design, j) ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
-        for (size_t k = 0; row && k < N_OF(values); k++)
-            if (values[k] > 0 && isfinite(values[k]))
-                figures_put(row, columns[k], values[k], NAN, NAN);
-    }
-    figures_html(o->out, table);
-    if (design->mass_kg > 0)
-        put(o, "p", "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
-            1e3 * r->device[FLOORS_MAX].stroke);
-    say_under(o, "Forces and strokes");
-}
-
-static void write_design(const Dossier *o)
-{
-    const Schema *schema = &o->r->run->schema;
     Design design;
-    design_of(&schema->design, o->x, &design);
-    heading(o, "The design");
-    draw(o, "gaps", "");
-    list_devices(o, &design);
+    design_of(&o->r->run->schema.design, o->x, &design);
+    document_say(&o->doc, "h2", "The design");
+    document_draw(&o->doc, "gaps", "");
+    json_t *table = document_table(&o->doc);
+    for (int j = 0; j < d->n_floors; j++) {
+        const int has_stop = d->gap_m[j] < INFINITY;
+        const struct {
+            const char *column;
+            double value;
+        } cells[] = {{"gap right [mm]", 1e3 * d->gap_side_m[0][j]},
+                     {"gap left [mm]", 1e3 * d->gap_side_m[1][j]},
+                     {"bumper [MN/m]", has_stop * 1e-6 * d->bumper_n_m[j]},
+                     {"contact force right [MN]", 1e-6 * r->forces.contact_force_n[0][j]},
+                     {"contact force left [MN]", 1e-6 * r->forces.contact_force_n[1][j]},
+                     {"link [MN (s/m)^n]", 1e-6 * design.link[j]},
+                     {"friction [MN]", 1e-6 * design.friction[j]},
+                     {"link force [MN]", 1e-6 * r->device[j].force},
+                     {"link stroke [mm]", 1e3 * r->device[j].stroke}};
+        json_t *row = has_stop || design_has_link(&design, j) ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
+        for (size_t k = 0; row && k < N_OF(cells); k++)
+            if (cells[k].value > 0 && isfinite(cells[k].value))
+                figures_put(row, cells[k].column, cells[k].value, NAN, NAN);
+    }
+    if (design.mass_kg > 0)
+        document_say(&o->doc, "p", "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
+                     1e3 * r->device[FLOORS_MAX].stroke);
+    document_say(&o->doc, "p", "Forces and strokes under %s.", o->record);
 }
 
 /* ---- how it responds ------------------------------------------------------------------------------------------- */
@@ -352,415 +166,206 @@ static Status simulate_with(const Dossier *o, const char *key, const char *value
     return status;
 }
 
-static void add_with(const Dossier *o, json_t *table, const char *label, const char *key, const char *value)
+static void add_with(Dossier *o, json_t *table, const char *label, const char *key, const char *value)
 {
     SimResult r = {0};
     Err e = {0};
     if (simulate_with(o, key, value, &r, &e) == STATUS_OK)
-        add_response(table, label, &r, NULL);
+        add_response(o, table, label, &r);
     else
-        add_line(table, label, e.text);
+        json_put(json_put(figures_row(table), "=%s", label), " =%s", e.text);
 }
 
-static void add_full_model(const Dossier *o, json_t *table)
+static void say_response(Dossier *o)
 {
     FullModel m = {0};
     Err e = {0};
     char label[64];
-    if (!frame_is(o->s->building.model)) {
-        add_line(table, "full model", "this building has no degrees of freedom but its floors");
-        return;
-    }
-    if (full_model_find(o->s, SCENE_IMPACT, 1, o->x, 0, &m, &e) == STATUS_OK) {
-        snprintf(label, sizeof label, "full model, %d degrees of freedom", m.dofs[FULL]);
-        add_response(table, label, m.result[FULL], NULL);
-    } else {
-        add_line(table, "full model", e.text);
-    }
-    full_model_free(&m);
-}
-
-static void write_response(const Dossier *o)
-{
-    const SimResult *r = o->d->result;
-    json_t *table = json_array();
-    heading(o, "The response, by four calculations");
-    add_response(table, "as the study knows it", &r[SCENE_IMPACT], o->d->error);
+    document_say(&o->doc, "h2", "The response, by four calculations");
+    json_t *table = document_table(&o->doc);
+    add_response(o, table, "as the study knows it", &o->d->result[SCENE_IMPACT]);
     add_with(o, table, "accuracy fine", "sim.accuracy", "fine");
     add_with(o, table, "by CVODE (SUNDIALS)", "sim.engine", "cvode");
-    add_full_model(o, table);
-    figures_html(o->out, table);
-    say_under(o, "All");
-    say(o, "CVODE integrates the equations of motion without the study's engine. Contacts that graze may separate two "
-           "calculations: J3 is then the least certain figure.");
-    draw(o, "peaks", "Peaks over the height.");
-    draw(o, "displacement", "Below each history its wavelet amplitude; dashed: natural frequencies of the building.");
+    if (frame_is(o->s->building.model) && full_model_find(o->s, SCENE_IMPACT, 1, o->x, 0, &m, &e) == STATUS_OK) {
+        snprintf(label, sizeof label, "full model, %d degrees of freedom", m.dofs[FULL]);
+        add_response(o, table, label, m.result[FULL]);
+    }
+    full_model_free(&m);
+    document_say(
+        &o->doc, "p",
+        "All under %s. CVODE integrates the equations of motion without the study's engine. Contacts that graze "
+        "may separate two calculations: J3 is then the least certain figure. %s",
+        o->record, e.text);
+    document_draw(&o->doc, "peaks", "Peaks over the height.");
+    document_draw(&o->doc, "displacement",
+                  "Below each history its wavelet amplitude; dashed: natural frequencies of the building.");
 }
 
 /* ---- what it has to bear --------------------------------------------------------------------------------------- */
 
 /* The study's limits, on what it judged: of several simulations none by itself. */
-static void write_limits(const Dossier *o)
+static void say_limits(Dossier *o)
 {
     const Run *run = o->r->run;
-    json_t *table = json_array();
     Limits l = {0};
-    if (limits_read(&l, &run->schema, o->s->search.limits, NULL) != STATUS_OK)
-        l.n = 0;
+    if (limits_read(&l, &run->schema, o->s->search.limits, NULL) != STATUS_OK || l.n == 0)
+        document_say(&o->doc, "p", "The study sets no limits.");
+    json_t *table = document_table(&o->doc);
     for (size_t i = 0; i < l.n; i++) {
-        char head[HEAD_MAX], text[64];
         const Limit *limit = &l.limit[i];
-        const Words w = head_of(words_of_objective(&run->schema, limit->result), head);
         const double value = run_result(run, o->r->chosen, limit->result);
-        json_t *row = json_put(figures_row(table), "=%s", head);
-        snprintf(text, sizeof text, "%s %.4g", limit->sign > 0 ? "<=" : ">=", w.factor * limit->bound);
-        figures_put(row, "as the study judges it", w.factor * value, NAN, NAN);
-        put_text(row, " limit of the study", text);
-        put_text(row, " verdict",
-                 isnan(value)                                ? "not known"
-                 : limit->sign * (value - limit->bound) <= 0 ? "kept"
-                                                             : "exceeded");
+        const int keeps = limit->sign * (value - limit->bound) <= 0;
+        char text[64];
+        snprintf(text, sizeof text, "%s %.4g",
+                 limit->sign > 0 ? "<=" : ">=", words_of_objective(&run->schema, limit->result).factor * limit->bound);
+        json_t *row = json_put(figures_row(table), "=%s", schema_objective(&run->schema, limit->result)->name);
+        figures_put(row, "as the study judges it", value, NAN, NAN);
+        json_put(row, " limit of the study=%s", text);
+        json_put(row, " verdict=%s", isnan(value) ? "not known" : keeps ? "kept" : "exceeded");
     }
-    if (l.n == 0)
-        say(o, "The study sets no limits.");
-    show_any(o, table);
 }
 
-/* Row of a demand that it has: of the first record, and the largest. */
-static void add_demand(const Dossier *o, json_t *table, int k, Words words, double error)
-{
-    const double value = demand_of(o->by_record, k), most = largest(o, k);
-    char head[HEAD_MAX], column[220];
-    if (!isfinite(most) || (most <= 0 && k != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
-        return;
-    const Words w = head_of(words, head);
-    json_t *row = json_put(figures_row(table), "=%s", head);
-    snprintf(column, sizeof column, "largest of %zu records", o->n_records);
-    if (o->n_records > 1)
-        figures_put(row, column, w.factor * most, NAN, NAN);
-    snprintf(column, sizeof column, "under %s", o->record);
-    figures_put(row, column, w.factor * value, w.factor * error, NAN);
-}
-
-/* Whether the stop of floor j has closed under any record. */
-static int has_closed(const Dossier *o, int j)
-{
-    size_t i = 0;
-    while (i < o->n_records && o->by_record[i].closings[j] == 0)
-        i++;
-    return i < o->n_records;
-}
-
-static void write_demand(const Dossier *o)
+static void say_demand(Dossier *o)
 {
     int borne[MEASURES_LISTED];
-    json_t *table = json_array();
-    heading(o, "Forces and stresses, with their limits");
-    for (int i = 0; i < measures_borne(borne); i++)
-        add_demand(o, table, borne[i], measure(borne[i])->words, o->d->error[borne[i]]);
-    add_demand(o, table, N_MEASURES, (Words){"core shear stress", "MPa", 1e-6}, NAN);
-    figures_html(o->out, table);
-    write_limits(o);
-    tag(o, "p");
-    put(o, "", "For comparison: ordinary steel yields at %.0f MPa", 1e-6 * YIELD_PA);
-    print_exceeded(o, MEASURE_CORE_STRESS, YIELD_PA, "the core");
-    put(o, "", ", in shear at %.0f MPa", 1e-6 * YIELD_PA / sqrt(3));
-    print_exceeded(o, N_MEASURES, YIELD_PA / sqrt(3), "its shear stress");
-    put(o, "", ". Stops that never close%s, on floors: ", o->n_records > 1 ? " under any of these records" : "");
-    int n = 0;
-    for (int j = 0; j < o->d->n_floors; j++)
-        if (!has_closed(o, j) && o->d->gap_m[j] < INFINITY)
-            put(o, "", "%s%d", n++ ? ", " : "", j + 1);
-    put(o, "", n ? "." : "none.");
-    tag(o, "/p");
-    draw(o, "forces", "");
-    say_under(o, "Both");
-}
-
-static void write_ladder(const Dossier *o)
-{
-    const Ladder *l = o->d->ladder;
-    char verdict[64];
-    json_t *table = json_array();
-    heading(o, "Which effects the model needs");
-    for (size_t i = 0; l && i < l->n; i++) {
-        const LadderEffect *e = &l->effect[i];
-        json_t *row = json_put(figures_row(table), "without=%s", e->words);
-        for (int k = 0; k < LADDER_MEASURES; k++) {
-            char head[64];
-            snprintf(head, sizeof head, "%s [%%]", measure(LADDER_MEASURE[k])->words.title);
-            figures_put(row, head, 100 * e->change[0][k], NAN, NAN);
-        }
-        put_text(row, " in the study", e->is_set ? "yes" : "no");
-        snprintf(verdict, sizeof verdict,
-                 e->is_needed && e->decided_in ? "needed: %s"
-                 : e->is_needed                ? "needed"
-                                               : "not needed",
-                 SCENES[LADDER_SCENE[e->decided_in]].words);
-        put_text(row, " verdict", verdict);
+    char most[64], first[220], never[4 * FLOORS_MAX] = "";
+    document_say(&o->doc, "h2", "Forces and stresses, with their limits");
+    json_t *table = document_table(&o->doc);
+    snprintf(most, sizeof most, "largest of %zu records", o->n_records);
+    snprintf(first, sizeof first, "under %s", o->record);
+    for (int i = 0; i < measures_borne(borne); i++) {
+        const double all = largest(o, borne[i]);
+        if (!isfinite(all) || (all <= 0 && borne[i] != MEASURE_RESIDUAL_DRIFT)) /* it has no such device */
+            continue;
+        json_t *row = json_put(figures_row(table), "=%s", measure(borne[i])->name);
+        if (o->n_records > 1)
+            figures_put(row, most, all, NAN, NAN);
+        figures_put(row, first, measure_value(o->by_record, borne[i]), o->d->error[borne[i]], NAN);
     }
-    show_any(o, table);
-    if (l)
-        say_under(o, "All");
-    say(o, l ? "What leaving out each effect changes of a model that has them all; needed: more than 2 % or the "
-               "scatter as built, of the design, of the core rigidly connected or of the building alone, which is "
-               "named. An "
-               "effect that is needed and not in the study is an open point of this design."
-           : *o->d->no_ladder.text ? o->d->no_ladder.text
-                                   : "Only the engine fast has this.");
+    say_limits(o);
+    for (int j = 0; j < o->d->n_floors; j++) {
+        size_t i = 0;
+        while (i < o->n_records && o->by_record[i].closings[j] == 0)
+            i++;
+        if (i == o->n_records && o->d->gap_m[j] < INFINITY)
+            snprintf(never + strlen(never), 8, "%s%d", *never ? ", " : "", j + 1);
+    }
+    document_say(&o->doc, "p", "Stops that never close%s, on floors: %s.",
+                 o->n_records > 1 ? " under any of these records" : "", *never ? never : "none");
+    document_draw(&o->doc, "forces", "");
 }
 
 /* ---- other earthquakes ----------------------------------------------------------------------------------------- */
 
-static void write_records(const Dossier *o)
+static void say_records(Dossier *o)
 {
-    json_t *table = json_array();
     char label[200];
-    heading(o, "Records one by one");
+    document_say(&o->doc, "h2", "Records one by one");
+    json_t *table = document_table(&o->doc);
     for (size_t i = 0; i <= o->d->n_elsewhere; i++) {
         const Elsewhere *e = i ? &o->d->elsewhere[i - 1] : NULL;
         snprintf(label, sizeof label, "%.120s, %.3g g", basename(e ? e->record : o->d->record),
                  e ? e->pga_g : o->d->pga_g);
-        add_response(table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT], NULL);
-        add_response(table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE], NULL);
+        add_response(o, table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT]);
+        add_response(o, table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE]);
     }
-    figures_html(o->out, table);
-    say(o, "Those of the study first. builtin: motions are synthetic: judge by records.");
+    document_say(&o->doc, "p", "Those of the study first. builtin: motions are synthetic: judge by records.");
 }
 
-static void add_level(json_t *table, const Evaluations *e, size_t l, size_t *exceeded)
-{
-    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
-    static const SceneKind CASES[] = {SCENE_IMPACT, SCENE_NO_CORE};
-    json_t *row = json_put(figures_row(table), "PGA [g]=%g", e->level[l]);
-    for (size_t k = 0; k < N_OF(SHOWN); k++)
-        for (size_t c = 0; c < N_OF(CASES); c++) {
-            const Words w = measure(SHOWN[k])->words;
-            char head[96];
-            snprintf(head, sizeof head, "%s [%s]%s", w.title, w.unit, c ? ", no core" : "");
-            put_fractiles(row, head, e, l, CASES[c], SHOWN[k], w.factor);
-        }
-    for (size_t r = 0; r < e->n_records; r++)
-        *exceeded += e->record[r].readable == STATUS_OK &&
-                     ida_value(&e->run[r * e->n_levels + l], SCENE_IMPACT, MEASURE_DRIFT_RATIO) > DRIFT_LIMIT;
-}
-
-static void write_intensities(const Dossier *o, Evaluations *e)
-{
-    json_t *table = json_array();
-    double level[LEVELS];
-    size_t n_at[LEVELS], exceeded[LEVELS] = {0}, n_exceeded = 0;
-    char text[400];
-    for (size_t l = 0; l < LEVELS; l++) {
-        level[l] = e->level[l];
-        n_at[l] = e->n_read;
-        add_level(table, e, l, &exceeded[l]);
-        n_exceeded += exceeded[l];
-    }
-    figures_html(o->out, table);
-    const Fragility f = fragility_fit(LEVELS, level, n_at, exceeded);
-    int n = snprintf(text, sizeof text,
-                     "Median (16 to 84 %%) of %zu records scaled to each peak. A drift ratio of %.0f %% is ", e->n_read,
-                     100 * DRIFT_LIMIT);
-    if (isfinite(f.median))
-        snprintf(text + n, sizeof text - (size_t)n,
-                 "exceeded with probability one half at %.2g g (logarithmic deviation %.2f): lognormal, by maximum "
-                 "likelihood.",
-                 f.median, f.beta);
-    else
-        snprintf(text + n, sizeof text - (size_t)n,
-                 "exceeded by %zu of these simulations: too few, too many or too sudden for a curve.", n_exceeded);
-    say(o, text);
-}
-
-static void write_ida(const Dossier *o, size_t n, const char *const records[])
+/* All records at every level, with the fragility of a drift ratio of 2 %. */
+static void say_intensities(Dossier *o, size_t n, const char *const records[])
 {
     double level[LEVELS];
     Evaluations e = {.n_levels = LEVELS, .level = level, .intensity = "pga_g"};
     Settings s = *o->s;
     Err why = {0};
-    Status status = STATUS_OK;
+    Fragilities f = {0};
     for (size_t l = 0; l < LEVELS; l++)
         level[l] = LEVEL_STEP_G * (double)(l + 1);
-    heading(o, "Against intensity");
+    document_say(&o->doc, "h2", "Against intensity");
     s.sim.forces = FORCES_AUTO;
-    status = evaluations_add(&e, o->s->motion.record, 1, &why);
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        status = evaluations_add(&e, records[i], 1, &why);
-    status = status == STATUS_OK ? evaluations_read(&e, &s, &why) : status;
-    status = status == STATUS_OK ? evaluations_run(&e, o->r->run->schema.n_var, o->x, NULL, &why) : status;
-    if (status == STATUS_OK)
-        write_intensities(o, &e);
-    else
-        say(o, why.text);
+    Status status = fragilities_read(&f, &o->r->run->schema, "drift_ratio=0.02", NULL, e.intensity, &s, &why);
+    THEN(status, evaluations_add(&e, o->s->motion.record, 1, &why));
+    for (size_t i = 0; i < n; i++)
+        THEN(status, evaluations_add(&e, records[i], 1, &why));
+    THEN(status, evaluations_read(&e, &s, &why));
+    THEN(status, evaluations_run(&e, o->r->run->schema.n_var, o->x, NULL, &why));
+    if (status == STATUS_OK) {
+        MeasureOrder shown;
+        measures_order(&shown, "j1_m,drift_ratio,j3_g", "none", 0, &why);
+        document_ida(&o->doc, &e, &shown);
+        document_fragilities(&o->doc, &f, &e);
+    }
+    document_say(&o->doc, "p", "%s", why.text);
     evaluations_free(&e);
+    fragilities_free(&f);
 }
 
 /* ---- what it hangs on ------------------------------------------------------------------------------------------ */
 
-static Status find_as_built(const Dossier *o, Settings *s, ReplicateSummary *out, Err *err)
+static void say_sensitivities(Dossier *o)
 {
-    Problem p;
-    SimResult shown;
-    s->sim.replicates = AS_BUILT;
-    if (!(s->sim.gap_tolerance_m > 0))
-        s->sim.gap_tolerance_m = GAP_BUILT_M;
-    TRY(tower_open(&p, s, TOWER_AS_SET, AS_BUILT, err));
-    const Status status = tower_replicate(&p, 1, o->x, &shown, out, err);
-    problem_close(&p);
-    return status;
-}
-
-static void write_as_built(const Dossier *o)
-{
-    Settings s = *o->s;
-    ReplicateSummary summary = {0};
-    Err e = {0};
-    char text[300];
-    json_t *table = json_array(), *row = figures_row(table);
-    heading(o, "As built, and what the figures hang on");
-    const Status status = find_as_built(o, &s, &summary, &e);
-    json_object_set_new(row, "",
-                        json_sprintf("%s and standard deviation", status == STATUS_OK ? summary.rule : "mean"));
-    if (status == STATUS_OK && !summary.n_failed)
-        for (size_t i = 0; i < N_OF(RESPONSE); i++)
-            put_named(row, measure(RESPONSE[i])->words, summary.mean[RESPONSE[i]], NAN, summary.sd[RESPONSE[i]]);
-    figures_html(o->out, table);
-    snprintf(text, sizeof text,
-             "%d structures under every record of the study, whose gaps differ from the drawing by %g mm (standard "
-             "deviation; none below 0)%s.",
-             AS_BUILT, 1e3 * s.sim.gap_tolerance_m,
-             spread_word(0, &s.sim.uncertain)[0] == 'a' ? ", with what sim.uncertain of the study says" : "");
-    say(o, status != STATUS_OK ? e.text : text);
-    if (summary.n_failed)
-        say(o, "Some of these simulations failed: there is no mean.");
-}
-
-/* Gaps that move nothing are left out: they never close. */
-static void write_sensitivities(const Dossier *o)
-{
-    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_CONTACT_FORCE, MEASURE_CORE_STRESS};
     Sensitivity *list = NULL;
     size_t n = 0;
     Err e = {0};
-    json_t *table = json_array();
-    if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) != STATUS_OK)
-        say(o, e.text);
-    for (size_t i = 0; i < n; i++) {
-        if (list[i].slope[MEASURE_J1] == 0 && list[i].slope[MEASURE_DRIFT_RATIO] == 0)
-            continue;
-        json_t *row =
-            json_put(figures_row(table), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
-        for (size_t k = 0; k < N_OF(SHOWN); k++)
-            put_named(row, measure(SHOWN[k])->words, list[i].step * list[i].slope[SHOWN[k]],
-                      list[i].step * list[i].error[SHOWN[k]], NAN);
-    }
-    show_any(o, table);
-    say_under(o, "Gaps that change nothing are left out. Change of each result for one step of a parameter, with its "
-                 "error,");
+    document_say(&o->doc, "h2", "What the figures hang on");
+    if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) == STATUS_OK)
+        document_slopes(&o->doc, n, list);
+    document_say(&o->doc, "p", "%s", e.text);
     free(list);
 }
 
 /* ---- what it is not, and where it comes from ------------------------------------------------------------------- */
 
-static void write_not_covered(const Dossier *o)
+static void say_not_covered(Dossier *o)
 {
     const Settings *s = o->s;
-    heading(o, "What is not covered");
-    tag(o, "ul");
-    put(o, "li", "Torsion, friction and the vertical motion. One contact per floor and side.");
-    put(o, "li",
-        "The mass of the core, %.0f t, is that of its bare walls. It has no stiffeners, diaphragms or connections%s.",
-        1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
-        largest(o, MEASURE_CORE_BUCKLING) > 1 ? ", and the bare wall would buckle: stiffeners are needed, "
-                                                "and their mass is missing here and in every objective"
-                                              : "");
-    put(o, "li",
-        "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, floors as "
-        "diaphragms, local stresses and fatigue are not designed.");
+    Document *doc = &o->doc;
+    document_say(doc, "h2", "What is not covered");
+    document_say(doc, "li", "Torsion, friction and the vertical motion. One contact per floor and side.");
+    document_say(doc, "li",
+                 "The mass of the core, %.0f t, is that of its bare walls. It has no stiffeners, diaphragms or "
+                 "connections; where the bare wall buckles, their mass is missing here and in every objective.",
+                 1e-3 * o->d->result[SCENE_IMPACT].mcore_kg);
+    document_say(doc, "li",
+                 "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
+                 "floors as diaphragms, local stresses and fatigue are not designed.");
     if (strcmp(s->core.foundation, "fixed") == 0)
-        put(o, "li", "The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.",
-            1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
+        document_say(doc, "li",
+                     "The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.",
+                     1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
-        put(o, "li", "The tower is linear: nothing yields, whatever its drift.");
+        document_say(doc, "li", "The tower is linear: nothing yields, whatever its drift.");
     if (!s->building.p_delta)
-        put(o, "li", "P-delta is left out.");
-    put(o, "li", "Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.");
-    tag(o, "/ul");
+        document_say(doc, "li", "P-delta is left out.");
+    document_say(doc, "li",
+                 "Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.");
 }
 
 static void put_setting(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
     (void)flags;
     (void)was;
-    add_line(user, key, is);
+    json_object_set_new(user, key, json_words(is));
 }
 
-static void list_provenance(json_t *table, json_t *o)
+static void say_provenance(Dossier *o)
 {
-    const char *key;
-    json_t *value;
-    json_object_foreach(o, key, value)
-    {
-        if (json_is_object(value))
-            list_provenance(table, value);
-        else if (json_is_integer(value))
-            put_lines(table, key, "%.0f", json_number_value(value));
-        else if (json_is_string(value) && json_string_length(value) > 0 && strcmp(key, "flags") != 0)
-            add_line(table, key, json_string_value(value));
-    }
-}
-
-static void write_provenance(const Dossier *o)
-{
-    json_t *table = json_array(), *settings = json_array(), *from = json_loads(o->r->run->provenance, 0, NULL);
+    const Run *run = o->r->run;
+    json_t *settings = json_object(), *from = json_loads(run->provenance, 0, NULL);
     Settings none;
-    heading(o, "Provenance");
-    list_provenance(table, from);
-    figures_html(o->out, table);
-    settings_defaults(&none);
-    settings_compare(&none, o->r->run->settings, put_setting, settings);
-    say(o, "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
-    figures_html(o->out, settings);
     char path[PATH_MAX], used[4 * PATH_MAX + 3], folder[4 * PATH_MAX + 3];
-    folder_path(o->r->run->folder, "settings.ini", path);
-    say(o, "The row of accuracy fine again:");
-    put(o, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json", text_shell(path, used),
-        text_shell(o->r->run->folder, folder), o->r->run->table.row[o->r->chosen].id);
-    json_decref(from);
-}
-
-/* ---- the page -------------------------------------------------------------------------------------------------- */
-
-/* body: the caller's. */
-static Status write_body(char **body, json_t *drawings, const Report *r, const Settings *s, size_t n,
-                         const char *const records[], Err *err)
-{
-    const Detail *d = &r->detail;
-    size_t length;
-    Dossier o = {
-        .r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .drawings = drawings, .n_records = d->n_records};
-    o.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
-    snprintf(o.record, sizeof o.record, o.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
-             o.n_records);
-    o.out = text_open(body, &length);
-    if (!o.out)
-        return fail_memory(err, 1, "a dossier");
-    tag(&o, "main class=\"paper\"");
-    write_summary(&o);
-    write_building(&o);
-    write_design(&o);
-    write_response(&o);
-    write_demand(&o);
-    write_ladder(&o);
-    write_records(&o);
-    write_ida(&o, n, records);
-    write_as_built(&o);
-    write_sensitivities(&o);
-    write_not_covered(&o);
-    write_provenance(&o);
-    tag(&o, "/main");
-    return text_close(o.out) ? fail_memory(err, 1, "a dossier") : STATUS_OK;
+    document_say(&o->doc, "h2", "Provenance");
+    json_object_del(from, "flags");
+    document_list(&o->doc, from);
+    settings_defaults(&none);
+    settings_compare(&none, run->settings, put_setting, settings);
+    document_say(&o->doc, "p", "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
+    document_list(&o->doc, settings);
+    folder_path(run->folder, "settings.ini", path);
+    document_say(&o->doc, "p", "The row of accuracy fine again:");
+    document_say(&o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
+                 text_shell(path, used), text_shell(run->folder, folder), run->table.row[o->r->chosen].id);
 }
 
 /* ---- the file -------------------------------------------------------------------------------------------------- */
@@ -790,9 +395,35 @@ Status dossier_write(const Report *r, const Settings *s, size_t n, const char *c
                      Err *err)
 {
     char *body = NULL;
-    json_t *drawings = json_object();
-    Status status = write_body(&body, drawings, r, s, n, records, err);
-    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), drawings);
+    size_t length;
+    const Detail *d = &r->detail;
+    Dossier o = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .n_records = d->n_records};
+    TRY(measures_order(&o.order, RESPONSE, "none", 0, err));
+    FILE *out = text_open(&body, &length);
+    if (!out)
+        return fail_memory(err, 1, "a dossier");
+    o.drawings = json_object();
+    o.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
+    snprintf(o.record, sizeof o.record, o.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
+             o.n_records);
+    say_summary(&o);
+    say_building(&o);
+    say_design(&o);
+    say_response(&o);
+    say_demand(&o);
+    document_say(&o.doc, "h2", "Which effects the model needs");
+    if (d->ladder || d->no_ladder.text[0])
+        document_draw(&o.doc, "ladder", "");
+    say_records(&o);
+    say_intensities(&o, n, records);
+    say_sensitivities(&o);
+    say_not_covered(&o);
+    say_provenance(&o);
+    fputs("<main class=\"paper\">\n", out);
+    document_html(&o.doc, out);
+    fputs("</main>\n", out);
+    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), o.drawings);
+    Status status = text_close(out) ? fail_memory(err, 1, "a dossier") : STATUS_OK;
     if (status == STATUS_OK)
         status = (is_pdf(path) ? page_print : write_html)(run, body, path, err);
     else

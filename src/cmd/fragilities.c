@@ -2,7 +2,6 @@
 
 #include "base/figure.h"
 #include "cmd/show.h"
-#include "report/pictures.h"
 
 static const double CONFIDENCE = 1.96; /* standard errors of a normal 95 % */
 static const double YEARS = 50;
@@ -150,28 +149,16 @@ static void unknown_words(const Curve *c, char text[4 * FIGURE_MAX])
         snprintf(text, 4 * FIGURE_MAX, "above %g: end higher", from);
 }
 
-/* 0.52 (0.45 to 0.6) */
-static void median_words(const Curve *c, char text[4 * FIGURE_MAX])
-{
-    char median[FIGURE_MAX], low[FIGURE_MAX], high[FIGURE_MAX];
-    if (isnan(c->fit.median)) {
-        unknown_words(c, text);
-        return;
-    }
-    figure_text(c->fit.median, NAN, NAN, "", median);
-    figure_text(c->low, NAN, NAN, "", low);
-    figure_text(c->high, NAN, NAN, "", high);
-    snprintf(text, 4 * FIGURE_MAX, "%s (%s to %s)", median, low, high);
-}
-
 static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, void *table)
 {
     char text[4 * FIGURE_MAX], column[64];
     snprintf(text, sizeof text, "%s%s%g", c->name, relation(c), c->limit->bound);
     json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, SCENES[c->which].words);
-    median_words(c, text);
     snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
-    json_object_set_new(row, column, json_string(text));
+    figures_put_as(row, column, c->fit.median, c->low, c->high, "(");
+    unknown_words(c, text);
+    if (isnan(c->fit.median))
+        json_object_set_new(row, column, json_string(text));
     figures_put(row, "beta", c->fit.beta, NAN, c->fit.sd_beta);
     snprintf(text, sizeof text, "%zu of %zu", c->hits, c->n);
     json_put(row, "exceeded=%s", text);
@@ -181,13 +168,6 @@ static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, 
     figures_put(row, "in_50_years_pct", -100 * expm1(-YEARS * c->rate), NAN, NAN);
     if (fragility_at(&c->fit, f->hazard[0]) > CUT_OFF_NOTICEABLE)
         json_put(row, " =%s", "more often: the hazard curve begins too high");
-}
-
-json_t *fragilities_table(const Fragilities *f, const Evaluations *e)
-{
-    json_t *table = json_array();
-    each_curve(f, e, add_row, table);
-    return table;
 }
 
 static json_t *counts(size_t n, const size_t of[])
@@ -213,13 +193,6 @@ static void add_object(const Fragilities *f, const Evaluations *e, const Curve *
     json_array_append_new(list, o);
 }
 
-json_t *fragilities_json(const Fragilities *f, const Evaluations *e)
-{
-    json_t *list = json_array();
-    each_curve(f, e, add_object, list);
-    return list;
-}
-
 /* ---- annual loss ------------------------------------------------------------------------------------------------- */
 
 /* How much of it is not of the levels, and what helps. */
@@ -239,70 +212,31 @@ static json_t *describe_loss(const Fragilities *f, const Evaluations *e, const c
                    scene, y->per_year, y->error, below, above, y->n_failed, note);
 }
 
-json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people)
+/* Of every scene. */
+static json_t *annual_losses(const Fragilities *f, const Evaluations *e)
 {
     json_t *list = json_array();
     for (SceneKind k = 0; k < N_SCENES; k++) {
         if (!evaluated_has(e, e->run, k))
             continue;
         const AnnualLoss y = ida_annual_loss(e, k, f->n_hazard, f->hazard);
-        json_array_append_new(list, describe_loss(f, e, for_people ? SCENES[k].words : SCENES[k].key, &y));
+        json_array_append_new(list, describe_loss(f, e, SCENES[k].key, &y));
     }
     return list;
 }
 
-/* ---- picture ----------------------------------------------------------------------------------------------------- */
-
-json_t *intensity_axis(const Evaluations *e)
+void document_fragilities(Document *d, const Fragilities *f, const Evaluations *e)
 {
-    return json_of("label=%s zero=%c ticks=%d",
-                   e->intensity[0] == 's' ? "spectral acceleration [g]" : "peak ground acceleration [g]", 1, 5);
-}
-
-/* The share of every intensity that exceeded the limit, and the curve through them, where there is one. */
-static void draw_curve(const Fragilities *f, const Evaluations *e, const Curve *c, void *user)
-{
-    enum { POINTS = 200 };
-    json_t *panels = user, *marks;
-    double x[POINTS], y[POINTS], share[IDA_LEVELS_MAX];
-    const double most = e->level[e->n_levels - 1] * 1.05;
-    const CaseLook *look = &CASE_LOOK[c->which];
-    char title[200];
-    (void)f;
-    snprintf(title, sizeof title, "%s %s %g", c->name, relation(c), c->limit->bound);
-    if (c->which == SCENE_IMPACT)
-        json_array_append_new(panels,
-                              panel(title, intensity_axis(e),
-                                    json_of("label=%s domain=%p", "probability", json_numbers(2, (double[]){0, 1})),
-                                    json_array()));
-    marks = json_object_get(json_array_get(panels, json_array_size(panels) - 1), "marks");
-    for (size_t l = 0; l < e->n_levels; l++)
-        share[l] = (double)c->exceeded[l] / (double)c->n_at[l];
-    json_array_append_new(marks, json_of("mark=%s x=%p y=%p fill=%s r=%d symbol=%s", "dot",
-                                         json_numbers(e->n_levels, e->level), json_numbers(e->n_levels, share),
-                                         look->colour, 3, look->symbol));
-    for (int i = 0; i < POINTS; i++) {
-        x[i] = most * (i + 1) / POINTS;
-        y[i] = fragility_at(&c->fit, x[i]);
-    }
-    json_array_append_new(marks, curve(POINTS, x, y, look->colour, 2.5));
-}
-
-/* Three panels beside each other at most. */
-Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err)
-{
-    json_t *panels = json_array(), *columns = json_array(), *names = json_array();
-    each_curve(f, e, draw_curve, panels);
-    const size_t n = json_array_size(panels), across = MIN_OF(n, 3);
-    for (size_t i = 0; i < n; i++) {
-        if (i < across)
-            json_array_append_new(columns, json_array());
-        json_array_append(json_array_get(columns, i % across), json_array_get(panels, i));
-    }
-    for (SceneKind k = 0; k < N_SCENES; k++)
-        if (evaluated_has(e, e->run, k))
-            json_array_append_new(names, name_of(SCENES[k].words, CASE_LOOK[k].colour, CASE_LOOK[k].mark));
-    json_decref(panels);
-    const int rows = (int)((n + across - 1) / across);
-    return drawing_save(drawing("", names, 380 * rows, columns), 30 + 400 * (int)across, path, err);
+    json_t *list = json_array();
+    each_curve(f, e, add_row, document_table(d));
+    each_curve(f, e, add_object, list);
+    json_put(d->data, "fragility=%p", list);
+    if (!f->hazard)
+        return;
+    json_t *losses = annual_losses(f, e);
+    json_array_extend(document_table(d), losses);
+    json_put(d->data, "annual_loss=%p", losses);
+    const double own = json_number_value(json_object_get(json_array_get(losses, SCENE_IMPACT), "annual_loss")),
+                 alone = json_number_value(json_object_get(json_array_get(losses, SCENE_NO_CORE), "annual_loss"));
+    document_say(d, "p", "A year costs %.3g of a new building, %.3g times as much as with no core.", own, own / alone);
 }

@@ -2,13 +2,11 @@
  * with a hazard curve how often, and what is lost in a year (analysis/fragility.h), of a design and of what stands
  * beside it.
  *
- * Life cycle  fragilities_read -> fragilities_table, _json, _draw ... -> fragilities_free (an empty one is fine) */
+ * Life cycle  fragilities_read -> document_fragilities -> fragilities_free (an empty one is fine) */
 #pragma once
 
-#include <jansson.h>
-
 #include "analysis/evaluations.h"
-#include "report/panels.h"
+#include "cmd/document.h"
 
 typedef struct Settings Settings;
 
@@ -25,12 +23,7 @@ typedef struct {
 Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, const char *hazard,
                         const char *intensity, Settings *s, Err *err);
 
-json_t *fragilities_table(const Fragilities *f, const Evaluations *e); /* rows for people */
-json_t *fragilities_json(const Fragilities *f, const Evaluations *e);
+/* Their tables, and fragility and annual_loss of the data; with a hazard curve also what is lost in a year. */
+void document_fragilities(Document *d, const Fragilities *f, const Evaluations *e);
 
-/* Of every scene, where there is a hazard curve: rows, for people or for JSON. */
-json_t *annual_losses(const Fragilities *f, const Evaluations *e, int for_people);
-
-json_t *intensity_axis(const Evaluations *e);
-Status fragilities_draw(const Fragilities *f, const Evaluations *e, const char *path, Err *err);
 void fragilities_free(Fragilities *f);

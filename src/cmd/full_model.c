@@ -19,7 +19,6 @@ typedef struct {
     DesignSpace space;
     MeasureOrder order;
     int estimates;
-    json_t *list;    /* NULL: a table */
     FullModel found; /* under the record at hand */
 } Job;
 
@@ -47,78 +46,50 @@ static json_t *describe(const Job *job, size_t i)
                     json_result(NULL, job->kind, reduced), json_result(NULL, job->kind, full), of_reduced);
 }
 
-static void add_design(json_t *table, const Job *job, const char *word, size_t i)
+/* Both models of every design, and how far the reduced one is off. */
+static Status verify_under(const Args *args, Job *job, const Settings *s, Document *d, Err *err)
 {
     char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX], text[24];
-    design_label(&job->designs, word, i, name);
-    for (int m = 0; m < MODELS; m++) {
-        snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], job->found.dofs[m]);
-        figures_result(table, label, &job->order, &job->found.result[m][i],
-                       job->found.error ? job->found.error + i * N_MEASURES : NULL, NULL);
-    }
-    json_t *row = json_put(figures_row(table), "=%s", "  error of the reduced");
-    for (int o = 0; o < job->order.n_obj; o++) {
-        const int k = job->order.of[o];
-        snprintf(text, sizeof text, "%.3f %%",
-                 100 * relative(measure_value(&job->found.result[REDUCED][i], k),
-                                measure_value(&job->found.result[FULL][i], k)));
-        json_object_set_new(row, measures_name(&job->order, k), json_string(text));
-    }
-}
-
-static void print_table(const Job *job, const char *word)
-{
-    json_t *table = json_array();
-    show_motion(stdout, &job->found.motion, 0);
-    puts("model (degrees of freedom)");
-    for (size_t i = 0; i < job->n; i++)
-        add_design(table, job, word, i);
-    figures_print(table);
-    putchar('\n');
-}
-
-/* ---- designs and records ----------------------------------------------------------------------------------------- */
-
-static void tell_failures(const Job *job)
-{
-    for (int m = 0; m < MODELS; m++)
-        for (size_t i = 0; i < job->n; i++)
-            if (job->found.result[m][i].outcome != RUN_OK)
-                fprintf(stderr, "design %zu, %s model: failed: %s\n", i + 1, WORDS[m], job->found.result[m][i].reason);
-}
-
-static Status verify_under(const Args *args, Job *job, const Settings *s, Err *err)
-{
+    const FullModel *found = &job->found;
     TRY(full_model_find(s, job->kind, job->n, job->designs.x, job->estimates, &job->found, err));
-    tell_failures(job);
-    for (size_t i = 0; i < job->n && job->list; i++)
-        json_array_append_new(job->list, describe(job, i));
-    if (!job->list)
-        print_table(job, args_value(args, "--design"));
-    full_model_free(&job->found);
-    return STATUS_OK;
-}
-
-static Status verify_all(const Args *args, Job *job, Settings *s, Err *err)
-{
-    const char *path;
-    if (!args_has(args, "--record"))
-        return verify_under(args, job, s, err);
-    for (int i = 0; (path = args_next(args, "--record", &i));) {
-        TRY(option_put_path(s->motion.record, path, err));
-        TRY(verify_under(args, job, s, err));
+    document_motion(d, &found->motion, 0);
+    document_say(d, "p", "model (degrees of freedom)");
+    json_t *table = document_table(d);
+    for (size_t i = 0; i < job->n; i++) {
+        json_array_append_new(d->data, describe(job, i));
+        design_label(&job->designs, args_value(args, "--design"), i, name);
+        for (int m = 0; m < MODELS; m++) {
+            snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], found->dofs[m]);
+            figures_result(table, label, &job->order, &found->result[m][i],
+                           found->error ? found->error + i * N_MEASURES : NULL, NULL);
+        }
+        json_t *row = json_put(figures_row(table), "=%s", "  error of the reduced");
+        for (int o = 0; o < job->order.n_obj; o++) {
+            const int k = job->order.of[o];
+            snprintf(text, sizeof text, "%.3f %%",
+                     100 * relative(measure_value(&found->result[REDUCED][i], k),
+                                    measure_value(&found->result[FULL][i], k)));
+            json_object_set_new(row, measures_name(&job->order, k), json_string(text));
+        }
     }
+    full_model_free(&job->found);
     return STATUS_OK;
 }
 
 static Status show(const Args *args, Job *job, Settings *s, Err *err)
 {
-    job->list = args_has(args, "--json") ? json_array() : NULL;
-    const Status status = verify_all(args, job, s, err);
-    json_t *only = json_array_size(job->list) == 1 ? json_array_get(job->list, 0) : job->list;
-    const Status shown = status == STATUS_OK && only ? show_json(json_incref(only), err) : status;
-    json_decref(job->list);
-    return shown;
+    const char *path;
+    Document d = {.data = json_array()};
+    Status status = args_has(args, "--record") ? STATUS_OK : verify_under(args, job, s, &d, err);
+    for (int i = 0; status == STATUS_OK && (path = args_next(args, "--record", &i));) {
+        status = option_put_path(s->motion.record, path, err);
+        THEN(status, verify_under(args, job, s, &d, err));
+    }
+    d.data = json_only(d.data);
+    if (status == STATUS_OK)
+        return document_give(&d, args, err);
+    document_free(&d);
+    return status;
 }
 
 /* --design; of a run also ID, knee, best_NAME alone. run NULL: there is none. */

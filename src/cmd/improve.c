@@ -59,28 +59,23 @@ void improve_row(const Improve *m, json_t *table, const char *label, size_t i, l
     figures_design(table, label, id, &m->run.schema, e->f, m->result.error[i], e->sd, e->extra);
 }
 
-void improve_cost(const ImproveCost *c)
+void improve_cost(Document *d, const char *before, const ImproveCost *c)
 {
-    printf("%zu designs tried in %zu simulations, %zu failed, %.1f s\n", c->n_evaluated, c->n_simulated, c->n_failed,
-           c->seconds);
+    document_say(d, "p", "%s%zu designs tried in %zu simulations, %zu failed, %.1f s", before, c->n_evaluated,
+                 c->n_simulated, c->n_failed, c->seconds);
 }
 
-void improve_print(const Improve *m, json_t *table)
+void improve_say(Document *d, const Improve *m)
 {
     const SimOptions *s = &m->run.settings->sim;
-    figures_print(table);
-    if (isfinite(m->result.designs.row[0].sd[0]))
-        printf("sd: %s\n", spread_word(s->gap_tolerance_m, &s->uncertain));
-    putchar('\n');
-    improve_cost(&m->result.cost);
-}
-
-void improve_say(const Improve *m)
-{
     const long before = m->run.n_front > 0 ? m->run.table.row[run_knee(&m->run)].id : 0;
+    if (isfinite(m->result.designs.row[0].sd[0]))
+        document_say(d, "p", "sd: %s", spread_word(s->gap_tolerance_m, &s->uncertain));
+    improve_cost(d, "", &m->result.cost);
     if (m->id)
-        printf(m->knee ? "stored in the run as design %ld.\n" : "it is design %ld of the run: nothing new to store.\n",
-               m->id);
+        document_say(
+            d, "p", m->knee ? "stored in the run as design %ld." : "it is design %ld of the run: nothing new to store.",
+            m->id);
     if (m->knee > 0 && m->knee != before)
-        printf("%s:knee was design %ld and is now design %ld.\n", m->run.folder, before, m->knee);
+        document_say(d, "p", "%s:knee was design %ld and is now design %ld.", m->run.folder, before, m->knee);
 }

@@ -26,11 +26,9 @@ Status improve_store(Improve *m, const Evaluation *design, Err *err);
 /* A row of the report: design i of the path, 0 or its id. */
 void improve_row(const Improve *m, json_t *table, const char *label, size_t i, long id);
 
-/* Prints what it cost, in a line. */
-void improve_cost(const ImproveCost *c);
+/* What it cost, in a line. */
+void improve_cost(Document *d, const char *before, const ImproveCost *c);
 
-/* Prints these rows, what the deviations are of, and the cost. */
-void improve_print(const Improve *m, json_t *table);
-
-/* Prints the id of what was stored, and the knee where it has moved: other commands name a design by it. */
-void improve_say(const Improve *m);
+/* What the deviations are of, the cost, the id of what was stored, and the knee where it has moved: other commands name
+ * a design by it. */
+void improve_say(Document *d, const Improve *m);

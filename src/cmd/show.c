@@ -6,246 +6,10 @@
 #include "base/hypervolume.h"
 #include "base/text.h"
 #include "motion/suite.h"
+#include "report/verdict.h"
 #include "report/words.h"
 #include "store/output.h"
-#include "study/progress.h"
-
-/* ---- tables ------------------------------------------------------------------------------------------------------ */
-
-json_t *figures_row(json_t *table)
-{
-    json_t *row = json_object();
-    json_array_append_new(table, row);
-    return row;
-}
-
-static void put_as(json_t *row, const char *column, double value, double error, double sd, const char *word)
-{
-    static const double NOTHING = 0.05; /* [%] of a share, which is not negative but by rounding or a deviation */
-    char text[FIGURE_MAX] = "0.0";
-    if (!(strstr(column, "_pct") && value < 0 && value > -NOTHING && isnan(error) && isnan(sd)))
-        figure_text(value, error, sd, word, text);
-    json_object_set_new(row, column, json_string(text));
-}
-
-void figures_put(json_t *row, const char *column, double value, double error, double sd)
-{
-    put_as(row, column, value, error, sd, "sd");
-}
-
-/* Behind the point, of a number that is known: 0.03, not 0.03000. */
-static void drop_zeros(char *text)
-{
-    size_t n = strchr(text, '.') && !strchr(text, '^') ? strlen(text) : 0;
-    while (n > 0 && text[n - 1] == '0')
-        n--;
-    if (n > 0)
-        text[n - (text[n - 1] == '.')] = 0;
-}
-
-enum { CELL_MAX = 600 };
-
-/* As it is shown; NULL: empty. */
-static void cell_words(const json_t *cell, char text[CELL_MAX])
-{
-    if (!cell || json_is_string(cell))
-        snprintf(text, CELL_MAX, "%s", cell ? json_string_value(cell) : "");
-    else if (json_is_integer(cell))
-        snprintf(text, CELL_MAX, "%" JSON_INTEGER_FORMAT, json_integer_value(cell));
-    else if (json_is_boolean(cell))
-        snprintf(text, CELL_MAX, "%s", json_is_true(cell) ? "yes" : "no");
-    else
-        figure_text(json_is_real(cell) ? json_real_value(cell) : NAN, 0, NAN, "", text);
-    if (json_is_real(cell))
-        drop_zeros(text);
-}
-
-/* Characters, not bytes. */
-static int width_of(const char *text)
-{
-    int n = 0;
-    for (; *text; text++)
-        n += (*text & 0xC0) != 0x80;
-    return n;
-}
-
-/* Every column with its width; the table has one row at least. */
-static json_t *columns_of(json_t *table)
-{
-    json_t *columns = json_object(), *row, *cell;
-    const char *name;
-    char text[CELL_MAX];
-    size_t i;
-    json_array_foreach(table, i, row) json_object_foreach(row, name, cell)
-    {
-        const json_int_t before = json_integer_value(json_object_get(columns, name));
-        cell_words(cell, text);
-        const int head = width_of(name), own = width_of(text), width = MAX_OF(head, own);
-        if (!before || width > before)
-            json_object_set_new(columns, name, json_integer(width));
-    }
-    return columns;
-}
-
-/* row NULL: the names. Words stand left, in the first column and in those whose name begins with a blank. */
-static void print_row(json_t *columns, const json_t *row)
-{
-    const char *name, *gap = "";
-    json_t *width;
-    char text[CELL_MAX];
-    json_object_foreach(columns, name, width)
-    {
-        if (row)
-            cell_words(json_object_get(row, name), text);
-        else
-            snprintf(text, sizeof text, "%s", name);
-        const int blanks = (int)json_integer_value(width) - width_of(text), is_word = !*gap || *name == ' ';
-        if (is_word)
-            printf("%s%s%*s", gap, text, *name == ' ' ? 0 : blanks, "");
-        else
-            printf("%s%*s%s", gap, blanks, "", text);
-        gap = "  ";
-    }
-    putchar('\n');
-}
-
-void figures_print(json_t *table)
-{
-    json_t *columns = columns_of(table), *row;
-    size_t i;
-    if (json_array_size(table) > 0)
-        print_row(columns, NULL);
-    json_array_foreach(table, i, row) print_row(columns, row);
-    json_decref(columns);
-    json_decref(table);
-}
-
-enum { LISTED_MAX = 32 }; /* numbers in a line: more are not for the eye */
-
-static void list_value(const json_t *value)
-{
-    char text[CELL_MAX];
-    size_t i;
-    json_t *item;
-    json_array_foreach(value, i, item) list_value(item);
-    cell_words(value, text);
-    if (!json_is_array(value))
-        printf(" %s", text);
-}
-
-/* Behind seconds of a study that are many: hours and minutes. */
-static void list_duration(const char *key, const json_t *value)
-{
-    char text[32];
-    duration_words(json_number_value(value), text);
-    if (strncmp(key, "seconds", 7) == 0 && json_number_value(value) >= 100)
-        printf(" (%s)", text);
-}
-
-/* Nothing to be seen: no value, no text, or rows, which a table shows. */
-static int is_listed(const json_t *value)
-{
-    const size_t n = json_array_size(value);
-    return !json_is_null(value) && !(json_is_string(value) && !json_string_length(value)) &&
-           (!json_is_array(value) || (n > 0 && n <= LISTED_MAX && !json_is_object(json_array_get(value, 0))));
-}
-
-void figures_list(int indent, json_t *o)
-{
-    const char *key;
-    json_t *value;
-    json_object_foreach(o, key, value)
-    {
-        if (!is_listed(value) || (json_is_object(value) && json_object_size(value) == 0))
-            continue;
-        printf("%*s%s", indent, "", key);
-        if (!json_is_object(value)) {
-            printf("%*s", 24 - (int)strlen(key), "");
-            list_value(value);
-            list_duration(key, value);
-        }
-        putchar('\n');
-        figures_list(indent + 2, value);
-    }
-}
-
-/* row NULL: the names. */
-static void write_row(FILE *out, json_t *columns, const json_t *row)
-{
-    const char *name, *comma = "";
-    char text[CELL_MAX], safe[CELL_MAX];
-    json_t *unused;
-    json_object_foreach(columns, name, unused)
-    {
-        const json_t *cell = json_object_get(row, name);
-        fputs(comma, out);
-        comma = ",";
-        if (json_is_real(cell)) {
-            print_number(out, json_real_value(cell));
-        } else if (cell && !json_is_null(cell)) {
-            cell_words(cell, text);
-            cell_text(safe, sizeof safe, text);
-            fputs(safe, out);
-        } else if (!row) {
-            fputs(name, out);
-        }
-    }
-    fputc('\n', out);
-}
-
-Status figures_csv(json_t *table, const char *path, Err *err)
-{
-    Output o;
-    size_t i;
-    json_t *row, *columns = columns_of(table);
-    Status status = output_open(&o, path, err);
-    if (status == STATUS_OK) {
-        write_row(o.stream, columns, NULL);
-        json_array_foreach(table, i, row) write_row(o.stream, columns, row);
-        status = output_close(&o, err);
-    }
-    json_decref(columns);
-    json_decref(table);
-    return status;
-}
-
-/* row NULL: the names. */
-static void html_row(FILE *out, json_t *columns, const json_t *row)
-{
-    const char *name, *tag = "th";
-    char text[CELL_MAX];
-    json_t *unused;
-    fputs("<tr>", out);
-    json_object_foreach(columns, name, unused)
-    {
-        cell_words(json_object_get(row, name), text);
-        fprintf(out, "<%s%s>", tag, *name == ' ' ? " class=\"words\"" : "");
-        text_html(out, row ? text : name);
-        fprintf(out, "</%s>", tag);
-        tag = row ? "td" : "th";
-    }
-    fputs("</tr>\n", out);
-}
-
-void figures_html(FILE *out, json_t *table)
-{
-    json_t *columns = columns_of(table), *row;
-    size_t i;
-    fputs("<table>\n", out);
-    html_row(out, columns, NULL);
-    json_array_foreach(table, i, row) html_row(out, columns, row);
-    fputs("</table>\n", out);
-    json_decref(columns);
-    json_decref(table);
-}
-
-Status show_json(json_t *all, Err *err)
-{
-    const int failed = json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
-    json_decref(all);
-    putchar('\n');
-    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
-}
+#include "study/record_paths.h"
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
@@ -362,29 +126,55 @@ void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSumma
     put_measures(row, order, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
-void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, SceneKind c, int k,
-                   double factor)
+void document_ida(Document *d, const Evaluations *e, const MeasureOrder *order)
 {
-    char value[IDA_FRACTILES][FIGURE_MAX];
-    for (int f = 0; f < IDA_FRACTILES; f++)
-        figure_text(factor * ida_fractile(e, level, c, k, IDA_FRACTILE[f]), NAN, NAN, "", value[f]);
-    json_object_set_new(row, column,
-                        e->n_read == 1 ? json_string(value[1])
-                                       : json_sprintf("%s (%s to %s)", value[1], value[0], value[2]));
+    for (SceneKind c = 0; c < N_SCENES; c++) {
+        if (case_has_device(c))
+            continue;
+        document_say(d, "p", e->n_read == 1 ? "%s, %zu record" : "%s, %zu records: median (16 %% to 84 %%)",
+                     SCENES[c].words, e->n_read);
+        json_t *table = document_table(d);
+        for (size_t l = 0; l < e->n_levels; l++) {
+            json_t *row = figures_row(table);
+            json_object_set_new(row, e->intensity, json_number(e->level[l]));
+            for (int i = 0; i < MIN_OF(order->n_obj, IDA_SHOWN); i++) {
+                double at[IDA_FRACTILES];
+                for (int f = 0; f < IDA_FRACTILES; f++)
+                    at[f] = e->n_read > 1 || f == 1 ? ida_fractile(e, l, c, order->of[i], IDA_FRACTILE[f]) : NAN;
+                figures_put_as(row, measures_name(order, order->of[i]), at[1], at[0], at[2], e->n_read > 1 ? "(" : "");
+            }
+        }
+    }
 }
 
-void show_motion(FILE *out, const Motion *m, double duration_s)
+void document_slopes(Document *d, size_t n, const Sensitivity list[])
 {
-    char peak[MOTION_PEAK_TEXT_MAX];
+    static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J2, MEASURE_CORE_STRESS};
+    document_say(d, "p", "change for one step, with the error of the replicates and of halving the step");
+    json_t *table = document_table(d);
+    for (size_t i = 0; i < n; i++) {
+        const Sensitivity *s = &list[i];
+        if (s->slope[MEASURE_J1] == 0 && s->slope[MEASURE_J2] == 0)
+            continue;
+        json_t *row = json_put(figures_row(table), "parameter=%s value=%g step=%g", s->name, s->value, s->step);
+        for (size_t k = 0; k < N_OF(SHOWN); k++)
+            if (isfinite(s->slope[SHOWN[k]]))
+                figures_put(row, measure(SHOWN[k])->name, s->slope[SHOWN[k]] * s->step, s->error[SHOWN[k]] * s->step,
+                            NAN);
+    }
+}
+
+void document_motion(Document *d, const Motion *m, double duration_s)
+{
+    char peak[MOTION_PEAK_TEXT_MAX], first[40] = "";
     motion_peak_text(m, peak);
-    fprintf(out, "%s: ", m->name);
     if (duration_s > 0 && duration_s < motion_duration(m))
-        fprintf(out, "the first %.4g of ", duration_s);
-    fprintf(out, "%.4g s, %s\n", motion_duration(m), peak);
+        snprintf(first, sizeof first, "the first %.4g of ", duration_s);
+    document_say(d, "p", "%s: %s%.4g s, %s", m->name, first, motion_duration(m), peak);
     if (m->processed[0])
-        fprintf(out, "  %s\n", m->processed);
+        document_say(d, "p", "  %s", m->processed);
     if (m->warning[0])
-        fprintf(out, "  warning: %s\n", m->warning);
+        document_say(d, "p", "  warning: %s", m->warning);
 }
 
 const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
@@ -405,8 +195,8 @@ static void put_objectives(json_t *row, const MeasureOrder *order, const double 
 {
     for (int i = 0; i < order->n_obj; i++) {
         const int k = order->of[i];
-        put_as(row, measures_name(order, k), value[k], error ? ESTIMATE_FACTOR * error[k] : NAN, sd ? sd[k] : NAN,
-               word);
+        figures_put_as(row, measures_name(order, k), value[k], error ? ESTIMATE_FACTOR * error[k] : NAN,
+                       sd ? sd[k] : NAN, word);
     }
 }
 
@@ -419,7 +209,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     json_put(row, "impacts=%ld", r->impacts);
     figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
     if (r->outcome != RUN_OK)
-        snprintf(note, sizeof note, "%s", outcome_word((Outcome)r->outcome));
+        snprintf(note, sizeof note, "%s: %s", outcome_word((Outcome)r->outcome), r->reason);
     else if (beyond_contact_law(r))
         snprintf(note, sizeof note, "deeper than %g of the contact's radius: beyond the contact law",
                  INDENTATION_RATIO_MAX);
@@ -469,6 +259,17 @@ json_t *figures_design(json_t *table, const char *label, long id, const Schema *
     return row;
 }
 
+void figures_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_SCENES])
+{
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
+        const double *value = baseline[k].value;
+        double natural[OBJECTIVES_MAX], extra[N_MEASURES];
+        for (size_t i = 0; i < schema->n_obj + schema->n_extra && i < N_MEASURES; i++)
+            *(i < schema->n_obj ? &natural[i] : &extra[i - schema->n_obj]) = value[schema->order.of[i]];
+        figures_design(table, SCENES[k].words, 0, schema, natural, NULL, NULL, extra);
+    }
+}
+
 json_t *json_review(const FrontReview *r)
 {
     json_t *smallest = json_array(), *largest = json_array(), *never = json_array();
@@ -487,51 +288,19 @@ json_t *json_review(const FrontReview *r)
     return o;
 }
 
-/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth and
- * what is not known of them; none of what the baseline does not have: a core, whose mass is then 0, or what would
- * dissipate a share. */
-static void print_better(FILE *out, const char *verb, const Schema *schema, double sign, const double natural[],
-                         const double error[], const Baseline *b)
+void document_verdict(Document *d, const Run *run, size_t row, const Settings *used)
 {
-    static const double SHARE = 1e-3;
-    int n = 0;
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        const Column *c = schema_objective(schema, k);
-        const int id = schema->order.of[k];
-        const double other = b->value[id];
-        if ((other != 0 || (c->sense > 0 && id != MEASURE_MCORE)) &&
-            sign * c->sense * (other - natural[k]) > fmax(SHARE * fabs(other), error[k]))
-            fprintf(out, "%s%s", n++ ? ", " : verb, words_of_objective(schema, k).title);
-    }
-    if (n == 0)
-        fprintf(out, "%snothing", verb);
-}
-
-void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_SCENES])
-{
-    double error[OBJECTIVES_MAX];
-    char words[CASE_TEXT_MAX], has[PROTECTION_MAX];
-    Design design;
-    const Schema *schema = &run->schema;
-    const double *natural = run_f(run, row);
-    run_likely(run, row, error);
-    design_of(&schema->design, run_x(run, row), &design);
-    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
-        fprintf(out, "against %s: with %s ", case_text(k, &baseline[k].device, words),
-                design_protection(&schema->design, &design, has));
-        print_better(out, "better in ", schema, 1, natural, error, &baseline[k]);
-        print_better(out, "; worse in ", schema, -1, natural, error, &baseline[k]);
-        fputc('\n', out);
-    }
-}
-
-void show_expected_gain(double gain)
-{
-    if (isfinite(gain) && gain < hypervolume_error(0.5))
-        puts("Doubling the simulations would raise the hypervolume by no more than its noise.");
-    else if (isfinite(gain))
-        printf("Doubling the simulations would raise the hypervolume by about %.2g (of the box about the front).\n",
-               fmax(gain, 0.0));
+    Settings s = *(used ? used : run->settings);
+    char *verdict = NULL;
+    Err why = {0};
+    if (s.problem.kind != PROBLEM_TOWER)
+        return;
+    Status status = used ? STATUS_OK : record_paths_find(&s, run->provenance, &(RecordPaths){0}, &why);
+    run_steps(run, row, &s.sim);
+    THEN(status, verdict_of_run(run, row, &s, &verdict, &why));
+    document_say(d, "h2", "Verdict on design %ld", run->table.row[row].id);
+    document_say(d, "p", "%s", status == STATUS_OK ? verdict : why.text);
+    free(verdict);
 }
 
 /* ---- warnings ---------------------------------------------------------------------------------------------------- */
@@ -542,43 +311,27 @@ void warn_on_stderr(const char *key, const char *text, void *user)
     fprintf(stderr, "warning: %s: %s\n", key, text);
 }
 
-typedef struct {
-    const MotionOptions *motion;
-    const char *source;
-    size_t n; /* times that it is there */
-    int is_told;
-    WarnFn warn;
-    void *user;
-} Twice;
-
-static Status count_same(const char *source, void *user, Err *err)
+static Status count_source(const char *source, void *counts, Err *err)
 {
-    Twice *t = user;
     (void)err;
-    t->n += strcmp(source, t->source) == 0;
-    return STATUS_OK;
-}
-
-static Status tell_twice(const char *source, void *user, Err *err)
-{
-    Twice *t = user;
-    char text[OPTION_TEXT_MAX + 80];
-    t->source = source;
-    t->n = 0;
-    TRY(t->is_told ? STATUS_OK : suite_of_study(t->motion, count_same, t, err));
-    if (t->n < 2)
-        return STATUS_OK;
-    t->is_told = 1;
-    snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", source);
-    t->warn("motion.records", text, t->user);
+    json_object_set_new(counts, source, json_integer(json_integer_value(json_object_get(counts, source)) + 1));
     return STATUS_OK;
 }
 
 /* Every record counts as often as it is listed. */
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
+    json_t *counts = json_object(), *n;
+    const char *source, *twice = NULL;
+    char text[OPTION_TEXT_MAX + 80];
     if (s->problem.kind == PROBLEM_TOWER)
-        suite_of_study(&s->motion, tell_twice, &(Twice){.motion = &s->motion, .warn = warn, .user = user}, NULL);
+        suite_of_study(&s->motion, count_source, counts, NULL);
+    json_object_foreach(counts, source, n) twice = json_integer_value(n) > 1 && !twice ? source : twice;
+    if (twice) {
+        snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", twice);
+        warn("motion.records", text, user);
+    }
+    json_decref(counts);
 }
 
 void warn_of_designs(const Designs *d, const char *word, WarnFn warn, void *user)

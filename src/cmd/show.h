@@ -1,35 +1,13 @@
-/* cmd/show.h -- what commands print: tables of figures, results as their rows, and JSON.
- *
- *   table   a JSON array of rows; a row is an object, a column a key of it, in the order in which the rows bring them
- *   cell    text, a whole number, a number, or none (null, or left out)
- *   shown   aligned under the names on standard output or in HTML, numbers with four digits; as CSV and JSON with all
- *
- * Ownership  figures_print, _csv, _html and show_json take the reference; rows are borrowed from their table */
+/* cmd/show.h -- results as parts of documents (cmd/document.h): their rows, their paragraphs and their JSON. */
 #pragma once
 
 #include "analysis/baselines.h"
 #include "analysis/evaluations.h"
-#include "base/json.h"
+#include "analysis/sensitivity.h"
+#include "cmd/document.h"
 #include "evaluate/schema.h"
-#include "scene/design.h"
 #include "scene/summary.h"
 #include "study/front_review.h"
-
-typedef struct Settings Settings;
-
-json_t *figures_row(json_t *table); /* a further one */
-
-/* As text with the digits that are known (base/figure.h). error: the likely one; sd: standard deviation; NAN: not
- * known. */
-void figures_put(json_t *row, const char *column, double value, double error, double sd);
-
-void figures_print(json_t *table);
-
-/* An object on standard output, a line for every member that is neither empty nor rows; borrowed. */
-void figures_list(int indent, json_t *o);
-Status figures_csv(json_t *table, const char *path, Err *err);
-void figures_html(FILE *out, json_t *table);
-Status show_json(json_t *all, Err *err);
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
@@ -54,13 +32,16 @@ json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r);
  * all empty. */
 void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r);
 
-/* "median (16 % to 84 %)" of measure k at an intensity, times factor; of one record its value. */
-void put_fractiles(json_t *row, const char *column, const Evaluations *e, size_t level, SceneKind c, int k,
-                   double factor);
+/* Incremental dynamic analysis: of every case without a device a table of its first objectives by intensity. */
+enum { IDA_SHOWN = 3 };
+void document_ida(Document *d, const Evaluations *e, const MeasureOrder *order);
+
+/* Change of results for one step of each parameter; of gaps that never close, which change nothing, none. */
+void document_slopes(Document *d, size_t n, const Sensitivity list[]);
 
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling; lines of what
  * was done to the samples and of what does not fit, where there is any. */
-void show_motion(FILE *out, const Motion *m, double duration_s);
+void document_motion(Document *d, const Motion *m, double duration_s);
 
 /* A simulation: label, objectives with their likely errors and standard deviations, of gaps 1 um off (N_MEASURES;
  * analysis/estimate.h), or NULL, impacts, and a note where it failed or left the contact law. Returns its row. */
@@ -82,16 +63,16 @@ void figures_replicates(json_t *table, const MeasureOrder *order, const Replicat
 json_t *figures_design(json_t *table, const char *label, long id, const Schema *schema, const double natural[],
                        const double error[], const double sd[], const double extra[]);
 
+/* A row of every case that designs are compared with. */
+void figures_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_SCENES]);
+
 /* Of a front: designs beyond the contact law; by floor those whose gap is on a bound of the search; floors whose gap
  * closes in none of the designs that were simulated again, where some were. */
 json_t *json_review(const FrontReview *r);
 
-/* "against viscous links (...): with impacts better in ...; worse in ..." by more than a thousandth and than the likely
- * errors; of the design in that row. */
-void show_verdicts(FILE *out, const Run *run, size_t row, const Baseline baseline[N_SCENES]);
-
-/* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
-void show_expected_gain(double gain);
+/* What a design of the run comes to (report/verdict.h), or why that is not known; nothing where there is no tower.
+ * used: the settings of the run, its records where they are now; NULL: those of the run. */
+void document_verdict(Document *d, const Run *run, size_t row, const Settings *used);
 
 /* ---- what is implausible but no fault ---------------------------------------------------------------------------- */
 

@@ -22,79 +22,77 @@ static long whole(const json_t *o, const char *key)
     return (long)json_integer_value(json_object_get(o, key));
 }
 
-/* A row for an effect: what it changes in the design where it changes most, and in which scene that is most of all. */
-static void show_effect(FILE *out, const json_t *e, const json_t *settings)
+void document_model(Document *d, const json_t *model)
 {
-    const char *value = word(settings, word(e, "setting"));
-    const int is_set = strcmp(word(e, "is_set"), "yes") == 0, is_on = strcmp(value, word(e, "with")) == 0;
-    fprintf(out, "  %-4s %-24s", is_set ? "set" : is_on ? "on" : "off", word(e, "without"));
-    if (is_set)
-        fprintf(out, "%39s", "");
-    else
-        fprintf(out, "%8.2g %8.2g %8.2g  %11s ", number(e, "j1_m_pct"), number(e, "drift_ratio_pct"),
-                number(e, "j3_g_pct"), number(e, "in_tolerances") > 1 ? word(e, "most_in") : "");
-    fprintf(out, "%s\n", value);
-}
-
-void show_model(FILE *out, const json_t *model)
-{
+    const json_t *settings = json_object_get(model, "settings");
     size_t i;
     json_t *e;
-    fprintf(out, "model: %ld simulations of %ld designs under %ld record%s; %.2g times as fast as with all effects\n",
-            whole(model, "simulations"), whole(model, "designs"), whole(model, "records"),
-            whole(model, "records") == 1 ? "" : "s", number(model, "speed_factor"));
-    fprintf(out, "  %-4s %-24s%8s %8s %8s  %11s %s\n", "", "without", "J1 %", "drift %", "J3 %", "matters in", "value");
-    json_array_foreach(json_object_get(model, "effects"), i, e) show_effect(out, e, json_object_get(model, "settings"));
-}
-
-/* The designs that need more, by both models. */
-static void show_needy(FILE *out, const json_t *designs)
-{
-    size_t i;
-    json_t *d;
-    fprintf(out, "  %-7s %-7s%10s %10s   %8s %8s   %8s %8s\n", "design", "record", "J1 [m]", "more", "drift", "more",
-            "J3 [g]", "more");
-    json_array_foreach(designs, i, d)
+    document_say(d, "p",
+                 "model: %ld simulations of %ld designs under %ld record%s; %.2g times as fast as with all effects",
+                 whole(model, "simulations"), whole(model, "designs"), whole(model, "records"),
+                 whole(model, "records") == 1 ? "" : "s", number(model, "speed_factor"));
+    json_t *table = document_table(d);
+    json_array_foreach(json_object_get(model, "effects"), i, e)
     {
-        const json_t *set = json_object_get(d, "by_the_set"), *more = json_object_get(d, "with_more");
-        if (json_is_false(json_object_get(d, "is_enough")))
-            fprintf(out, "  %-7ld %-7ld%10.4g %10.4g   %8.4g %8.4g   %8.4g %8.4g\n", whole(d, "design"),
-                    whole(d, "record"), number(set, "j1_m"), number(more, "j1_m"), number(set, "drift_ratio"),
-                    number(more, "drift_ratio"), number(set, "j3_g"), number(more, "j3_g"));
+        const char *value = word(settings, word(e, "setting"));
+        const int is_set = strcmp(word(e, "is_set"), "yes") == 0, is_on = strcmp(value, word(e, "with")) == 0;
+        json_t *row = json_put(figures_row(table), "=%s", is_set ? "set" : is_on ? "on" : "off");
+        json_put(row, " without=%s", word(e, "without"));
+        if (!is_set) {
+            figures_put(row, "J1 %", number(e, "j1_m_pct"), NAN, NAN);
+            figures_put(row, "drift %", number(e, "drift_ratio_pct"), NAN, NAN);
+            figures_put(row, "J3 %", number(e, "j3_g_pct"), NAN, NAN);
+        }
+        json_put(row, "matters in=%s", !is_set && number(e, "in_tolerances") > 1 ? word(e, "most_in") : "");
+        json_put(row, " value=%s", value);
     }
 }
 
-static void show_more(FILE *out, const json_t *confirmed, const char *folder)
+/* What to search with, and the designs that need more, by both models. */
+static void say_more(Document *d, const json_t *confirmed, const char *folder)
 {
-    char text[4 * PATH_MAX + 3], setting[PATH_MAX];
+    char text[4 * PATH_MAX + 3], setting[PATH_MAX], *sets = NULL;
     const char *key;
-    json_t *value;
-    fprintf(out,
-            "model: some of the knee and the best of each objective, or their baselines, need more. Search again:\n"
-            "  %s optimize %s --new",
-            program_invocation_name, text_shell(folder, text));
+    json_t *value, *one;
+    size_t length, i;
+    FILE *f = text_open(&sets, &length);
     json_object_foreach(json_object_get(confirmed, "more"), key, value)
     {
         snprintf(setting, sizeof setting, "%s=%s", key, json_string_value(value));
-        fprintf(out, " --set %s", text_shell(setting, text));
+        if (f)
+            fprintf(f, " --set %s", text_shell(setting, text));
     }
-    fputc('\n', out);
-    show_needy(out, json_object_get(confirmed, "designs"));
+    if (f)
+        text_close(f);
+    document_say(
+        d, "p", "model: some of the knee and the best of each objective, or their baselines, need more. Search again:");
+    document_say(d, "p", "  %s optimize %s --new%s", program_invocation_name, text_shell(folder, text), sets);
+    free(sets);
+    json_t *table = document_table(d);
+    json_array_foreach(json_object_get(confirmed, "designs"), i, one)
+    {
+        const json_t *set = json_object_get(one, "by_the_set"), *more = json_object_get(one, "with_more");
+        if (json_is_false(json_object_get(one, "is_enough")))
+            json_put(
+                figures_row(table),
+                "design=%ld record=%ld j1_m=%g more_j1_m=%g drift_ratio=%g more_drift_ratio=%g j3_g=%g more_j3_g=%g",
+                whole(one, "design"), whole(one, "record"), number(set, "j1_m"), number(more, "j1_m"),
+                number(set, "drift_ratio"), number(more, "drift_ratio"), number(set, "j3_g"), number(more, "j3_g"));
+    }
 }
 
-void show_model_confirmed(FILE *out, const json_t *model, const char *folder)
+void document_model_confirmed(Document *d, const json_t *model, const char *folder)
 {
     const json_t *confirmed = json_object_get(model, "confirmed"), *within = json_object_get(model, "tolerance");
     if (!confirmed)
         return;
     if (json_array_size(json_object_get(confirmed, "designs")) == 0)
-        fputs("model: not confirmed, for with all effects the knee and the best of each objective fail\n", out);
+        document_say(d, "p", "model: not confirmed, for with all effects the knee and the best of each objective fail");
     else if (json_object_size(json_object_get(confirmed, "more")) > 0)
-        show_more(out, confirmed, folder);
+        say_more(d, confirmed, folder);
     else
-        fprintf(
-            out,
-            "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are within "
-            "%.2g, %.2g, %.2g %%\n",
-            number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));
+        document_say(d, "p",
+                     "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are "
+                     "within %.2g, %.2g, %.2g %%",
+                     number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));
 }

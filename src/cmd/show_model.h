@@ -3,12 +3,11 @@
  * Threads  no state */
 #pragma once
 
-#include <jansson.h>
-#include <stdio.h>
+#include "cmd/document.h"
 
 /* What is on, what is left out, and what each changes; borrowed. */
-void show_model(FILE *out, const json_t *model);
+void document_model(Document *d, const json_t *model);
 
 /* At the end: whether it is enough for the designs that the study names, and what to do where it is not; NULL: the
  * model was given. */
-void show_model_confirmed(FILE *out, const json_t *model, const char *folder);
+void document_model_confirmed(Document *d, const json_t *model, const char *folder);

@@ -3,6 +3,7 @@
 #include "analysis/estimate.h"
 #include "base/units.h"
 #include "evaluate/tower.h"
+#include "report/verdict.h"
 #include "settings/options.h"
 
 static const double QUIET = 0.02; /* of the peak displacement */
@@ -185,7 +186,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     Settings once = *s;
     once.sim.replicates = 1;
     once.sim.forces = FORCES_YES; /* what the design has to bear */
-    memset(out, 0, sizeof *out);
+    *out = (Detail){.run = options->run, .row = options->row};
     TRY(tower_open(&p, &once, TOWER_AS_SET, N_SCENES, err));
     Status status = STATUS_OK;
     out->n_floors = scene_n_floors(tower_record(tower_of(&p), 0)->scene);
@@ -203,6 +204,8 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     if (status == STATUS_OK) /* last, as it takes longest */
         status = take_here(&p, x, options, out, err);
     if (status == STATUS_OK && options->with_ladder)
+        verdict_of_run(options->run, options->row, s, &out->verdict, &(Err){0});
+    if (status == STATUS_OK && options->with_ladder)
         status = take_ladder(s, tower_record(tower_of(&p), 0), x, out, err);
     problem_close(&p);
     if (status != STATUS_OK)
@@ -218,5 +221,6 @@ void detail_free(Detail *d)
     free(d->elsewhere);
     free(d->by_record);
     free(d->ladder);
+    free(d->verdict);
     memset(d, 0, sizeof *d);
 }

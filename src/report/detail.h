@@ -26,6 +26,8 @@ typedef struct {
 } Elsewhere;
 
 typedef struct {
+    const struct Run *run; /* as in DetailOptions */
+    size_t row;
     int n_floors, floor;         /* floor from 0: whose displacement is followed */
     double storey_m[FLOORS_MAX]; /* heights */
     double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX], bumper_n_m[FLOORS_MAX]; /* the last 0: steel on steel */
@@ -43,6 +45,7 @@ typedef struct {
     double standard_error[N_MEASURES]; /* of what those are by its rule (evaluate/replicates.h); NAN: there is one */
     Ladder *ladder;                    /* of the design; NULL: not asked for, or `no_ladder` says why there is none */
     Err no_ladder;
+    char *verdict; /* report/verdict.h; NULL: not asked for, or not to be had */
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
     Spectrogram *spectrum; /* (2) the same */
@@ -52,8 +55,10 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    RecordPaths moved;   /* where the run's own records are now */
-    int with_ladder;     /* of the engine fast: which effects the design needs */
+    RecordPaths moved;     /* where the run's own records are now */
+    int with_ladder;       /* of the engine fast: which effects the design needs, and the verdict */
+    const struct Run *run; /* whose row it is */
+    size_t row;
     int without_devices; /* only no core and rigidly connected beside it: no parameters are searched for */
     const Settings *other;
     size_t n_records;

@@ -2,38 +2,18 @@
 
 #include "base/json.h"
 
-const CaseLook CASE_LOOK[N_SCENES] = {[SCENE_IMPACT] = {"#0072b2", "\u25cf", "circle"},
-                                      [SCENE_NO_CORE] = {"#d55e00", "\u25c6", "diamond2"},
-                                      [SCENE_RIGID] = {"#8a6d00", "\u25b2", "triangle"},
-                                      [SCENE_TMD] = {"#009e73", "\u25a0", "square"},
-                                      [SCENE_LINKS] = {"#cc79a7", "\u2605", "star"}};
+static const char BLUE[] = "#0072b2", VERMILLION[] = "#d55e00"; /* of the page (web/app/1-run.js) */
 static const double ROOM =
     1.9; /* height of a drawing over the width of its frame, where it is as narrow as in a dossier */
 
-json_t *drawing(const char *title, json_t *names, int height, json_t *columns)
+static json_t *drawing(const char *title, json_t *names, int height, json_t *columns)
 {
     return json_of("title=%s names=%p height=%d columns=%p", title, names, height, columns);
 }
 
-json_t *panel(const char *title, json_t *x, json_t *y, json_t *marks)
+static json_t *panel(const char *title, json_t *x, json_t *y, json_t *marks)
 {
     return json_of("title=%s x=%p y=%p marks=%p", title, x, y, marks);
-}
-
-json_t *curve(size_t n, const double x[], const double y[], const char *colour, double width)
-{
-    return json_of("mark=%s x=%p y=%p stroke=%s strokeWidth=%g", "line", json_numbers(n, x), json_numbers(n, y), colour,
-                   width);
-}
-
-json_t *dashed(json_t *curve)
-{
-    return json_put(curve, "strokeDasharray=%s", "6 4");
-}
-
-json_t *name_of(const char *words, const char *colour, const char *mark)
-{
-    return json_pack("[oss]", json_words(words), colour, mark);
 }
 
 /* ---- the building ---------------------------------------------------------------------------------------------- */
@@ -111,7 +91,7 @@ static void add_node(const Building *b, const FrameNode *n, json_t *dots)
                 n->fixed[FRAME_ROT] ? "black" : "white");
     if (n->floor) {
         snprintf(title, sizeof title, "floor %d: %.4g t", n->floor, building_floor_mass(b, n->floor - 1) / 1e3);
-        add_dot(dots, n->x, n->z, title, "circle", CASE_LOOK[SCENE_NO_CORE].colour);
+        add_dot(dots, n->x, n->z, title, "circle", VERMILLION);
     }
 }
 
@@ -124,7 +104,7 @@ static json_t *height_axis(const double range[2])
  * share of the mass. */
 static json_t *modes_panel(const Building *b, int modes, double ground, const double range[2])
 {
-    json_t *heads = json_array(), *lines = json_of("mark=%s stroke=%s", "line", CASE_LOOK[SCENE_IMPACT].colour);
+    json_t *heads = json_array(), *lines = json_of("mark=%s stroke=%s", "line", BLUE);
     char head[80];
     for (int mode = 0; mode < b->n && mode < modes; mode++) {
         double largest = 0;

@@ -134,15 +134,16 @@ static Status save(const char *drawn, const char *name, const char *path, int in
 
 /* ---- pictures -------------------------------------------------------------------------------------------------- */
 
-Status drawing_save(json_t *drawing, int width, const char *path, Err *err)
+Status drawing_save(const char *name, json_t *data, int width, const char *path, Err *err)
 {
-    char *drawn = NULL;
-    json_t *none = json_of("objectives=%p variables=%p words=%p limited=%p", json_array(), json_array(), json_array(),
-                           json_array());
-    json_t *run = json_of("schema=%p drawings=%p paper=%p", none, json_of("panels=%p", drawing),
-                          json_pack("[[si]]", "panels", width));
+    char *drawn = NULL, picture[40];
+    json_t *drawings = json_object(), *none = json_of("objectives=%p variables=%p words=%p limited=%p", json_array(),
+                                                      json_array(), json_array(), json_array());
+    json_object_set_new(drawings, name, data);
+    snprintf(picture, sizeof picture, "%s.svg", name);
+    json_t *run = json_of("schema=%p drawings=%p paper=%p", none, drawings, json_pack("[[si]]", name, width));
     Status status = draw(run, NULL, "", path, &drawn, err);
-    THEN(status, save(drawn, "panels.svg", path, 0, err));
+    THEN(status, save(drawn, picture, path, 0, err));
     free(drawn);
     return status;
 }

@@ -11,7 +11,10 @@ static Status take_detail(Report *r, const DetailOptions *options, Err *err)
     run_steps(r->run, r->chosen, &s.sim);
     if (!r->has_detail)
         return STATUS_OK;
-    TRY(detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), options, &r->detail, err));
+    DetailOptions of_run = *options;
+    of_run.run = r->run;
+    of_run.row = r->chosen;
+    TRY(detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), &of_run, &r->detail, err));
     /* A design that the study named has errors of its own, which are better known: one figure has one error. */
     const double *known = r->is_robust ? NULL : r->run->table.row[r->chosen].err;
     for (size_t k = 0; known && k < r->run->schema.n_obj + r->run->schema.n_extra; k++)

@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "base/hypervolume.h"
+#include "report/verdict.h"
 #include "report/words.h"
 #include "store/notes.h"
 #include "settings/settings.h"
@@ -31,11 +32,10 @@ json_t *result_json(const SimResult *r, const MeasureOrder *order)
     json_t *closings = json_array();
     for (size_t j = 0; j < n; j++)
         json_array_append_new(closings, json_integer(r->closings[j]));
-    char damage[DAMAGE_WORDS_MAX];
     json_t *o =
-        json_of("damage=%s objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
+        json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
                 "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
-                damage_words(r, damage), objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
+                objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
                 r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
                 json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
                 json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));
@@ -65,19 +65,31 @@ static json_t *json_of_history(const History *h, const Spectrogram *s)
         json_numbers(SPECTRUM_TIMES, s->t), json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
 }
 
-/* Values of all records by the rule of the run. */
-static json_t *json_of_baselines(const Baseline baseline[N_SCENES], const MeasureOrder *order)
+/* Values of all records by the rule of the run, and whether the design is better (verdict_compare); null: of what the
+ * case does not have: a core, whose mass is then 0, or what would dissipate a share. */
+static json_t *json_of_baselines(const Detail *d, const MeasureOrder *order)
 {
     json_t *list = json_array();
+    double likely[OBJECTIVES_MAX];
+    const int is_known = d->run && run_likely(d->run, d->row, likely);
     for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++) {
         double values[N_MEASURES];
-        for (int i = 0; i < order->n_obj; i++)
-            values[i] = baseline[k].value[order->of[i]];
         char device[DEVICE_TEXT_MAX];
-        case_device_text(k, &baseline[k].device, device);
-        const int ok = baseline[k].outcome == OUTCOME_OK;
-        json_array_append_new(list, json_of("key=%s words=%s device=%s objectives=%p", SCENES[k].key, SCENES[k].words,
-                                            device, ok ? json_numbers(order->n_obj, values) : json_null()));
+        json_t *better = json_array();
+        for (int i = 0; i < order->n_obj; i++) {
+            const int id = order->of[i], sense = (int)measure(id)->sense;
+            values[i] = d->baseline[k].value[id];
+            json_array_append_new(better,
+                                  !d->run || (values[i] == 0 && (sense < 0 || id == MEASURE_MCORE))
+                                      ? json_null()
+                                      : json_integer(verdict_compare(sense, run_f(d->run, d->row)[i],
+                                                                     is_known ? likely[i] : d->error[id], values[i])));
+        }
+        case_device_text(k, &d->baseline[k].device, device);
+        const int ok = d->baseline[k].outcome == OUTCOME_OK;
+        json_array_append_new(list, json_of("key=%s words=%s device=%s better=%p objectives=%p", SCENES[k].key,
+                                            SCENES[k].words, device, better,
+                                            ok ? json_numbers(order->n_obj, values) : json_null()));
     }
     return list;
 }
@@ -141,27 +153,6 @@ static json_t *json_of_band(const Detail *d)
     return band;
 }
 
-/* Of the core beside the yield stress of S235, the lowest of EN 10025-2, and the bare wall's buckling stress. */
-static json_t *core_warnings(const SimResult *r)
-{
-    static const double S235_PA = 235e6;
-    const double stress = measure_value(r, MEASURE_CORE_STRESS), buckling = measure_value(r, MEASURE_CORE_BUCKLING);
-    const double shear = r->forces_known ? r->forces.core_shear_stress_pa : NAN;
-    json_t *list = json_array();
-    if (stress > S235_PA)
-        json_array_append_new(
-            list,
-            json_sprintf("Stress of the core %.3g MPa: beyond the yield stress of S235, 235 MPa.", 1e-6 * stress));
-    if (shear > S235_PA / sqrt(3))
-        json_array_append_new(
-            list, json_sprintf("Shear stress of the core %.3g MPa: S235 yields in shear at 136 MPa.", 1e-6 * shear));
-    if (buckling > 1)
-        json_array_append_new(list, json_sprintf("Stress of the core is %.3g times what buckles its bare wall: it "
-                                                 "needs stiffeners, whose mass is not in this model.",
-                                                 buckling));
-    return list;
-}
-
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = d->n_floors;
@@ -174,12 +165,12 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     }
     json_t *o = json_of(
         "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-        "pga_g=%g scale=%g stretch=%g core_warnings=%p loads=%p baselines=%p history_with_core=%p "
+        "pga_g=%g scale=%g stretch=%g loads=%p baselines=%p history_with_core=%p "
         "history_no_core=%p forces=%p elsewhere=%p",
         d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
         json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
-        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, core_warnings(&d->result[SCENE_IMPACT]),
-        json_of_loads(d), json_of_baselines(d->baseline, order), json_of_history(&d->history[0], &d->spectrum[0]),
+        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_loads(d),
+        json_of_baselines(d, order), json_of_history(&d->history[0], &d->spectrum[0]),
         json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
     json_t *error = json_array(), *standard = json_array();
     for (int k = 0; k < order->n_obj; k++) {
@@ -189,6 +180,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     json_put(o, "error=%p standard_error=%p band=%p records=%ld", error, standard, json_of_band(d), d->n_records);
     if (d->ladder || d->no_ladder.text[0])
         json_put(o, "ladder=%p", d->ladder ? ladder_json(d->ladder) : json_of("reason=%s", d->no_ladder.text));
+    json_put(o, "verdict=%s", d->verdict);
     if (d->gap_sides != GAPS_BOTH)
         json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)

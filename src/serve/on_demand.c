@@ -106,6 +106,8 @@ static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err
     TRY(elsewhere_otherwise(&others, &s.motion, err));
     const DetailOptions options = {.moved = *o->moved,
                                    .with_ladder = with_devices,
+                                   .run = run,
+                                   .row = row,
                                    .other = &s,
                                    .without_devices = !with_devices,
                                    .n_records = others.n,

@@ -33,8 +33,8 @@ int folder_is_run(const char *path)
 
 int folder_keeps(const char *path)
 {
-    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl",  "lock",
-                                        "front.csv",    "nearest.csv",     "notes.json", "run.sqlite"};
+    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl",  "lock",         "front.csv",
+                                        "nearest.csv",  "notes.json",      "run.sqlite", "verdicts.json"};
     char real[PATH_MAX];
     if (!realpath(path, real))
         snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);

@@ -133,7 +133,7 @@ const SCENES = {
 // Beside the designs in every picture of the front: a value per column, in the units of the eye, NaN where there is none.
 // What is pushed here is drawn after the next layoutChanged.
 const overlaysOf = (detail) => (detail?.baselines ?? []).filter((b) => b.objectives).map((b) => ({
-  ...SCENES[b.key], key: b.key, isShown: true, raw: b.objectives, device: b.device,
+  ...SCENES[b.key], key: b.key, isShown: true, raw: b.objectives, better: b.better, device: b.device,
   value: new Map(objectives.map((c, k) => [c, b.objectives[k] === null ? NaN : b.objectives[k] * c.factor])),
 }));
 const overlays = overlaysOf(run.detail);

@@ -12,31 +12,13 @@ function change(value, before) {
 
 // The likely errors of the chosen design.
 const chosenError = () => run.chosen_error ?? (run.rule ? null : run.detail?.error);
-// 1: more than before, -1: less, 0: neither, within a thousandth and its error.
-const compareTo = (before, v, error) => (Math.abs(v - before) <= Math.max(1e-3 * Math.abs(before), error ?? 0) ? 0 : Math.sign(v - before));
-
-// -1: the design is worse than the baseline in objective k, 1: better, 0: neither; NaN: not known, or of
-// what the baseline does not have: a core, whose mass is then 0, or what would dissipate a share.
-function verdict(raw, b, k) {
-  const before = b.raw[k], { sense, name } = objectives[k];
-  return before === null || (before === 0 && (sense < 0 || name === "mcore_kg")) || raw[k] === null ? NaN : -sense * compareTo(before, raw[k], chosenError()?.[k]);
-}
-
-// The first objective that gains against the building alone, and the one that pays most.
-function gainAndPrice(raw, b) {
-  const known = objectives.map((c, k) => ({ c, k, ratio: (raw[k] / b.raw[k]) ** c.sense }));
-  const gain = known.find(({ k }) => verdict(raw, b, k) > 0), price = known.filter(({ k }) => verdict(raw, b, k) < 0).sort((p, q) => q.ratio - p.ratio)[0];
-  const words = (up, { c, k }, down) => `${raw[k] < b.raw[k] === (up === "reduces") ? up : down} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)}${b.raw[k] === 0 ? "" : ` (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`}`;
-  return [gain && words("reduces", gain, "raises"), price && words("at the price of raising", price, "at the price of reducing")].filter(Boolean).join(", ");
-}
 
 function sentence(d) {
   const whose = run.chosen === run.knee ? `the knee (design ${run.chosen})` : `design ${run.chosen}`;
   const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(run.front)} on the front${run.front > n ? `, ${count(n)} of them on this page` : ""}`;
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)} is nearest to the best of every objective.`;
-  const alone = overlays.find((o) => o.key === "no_core"), more = run.rule ? `; every objective is the ${run.rule}` : "";
-  const what = alone && gainAndPrice(run.chosen_f, alone);
-  return `A building of ${d.gap_m.length} storeys, ${show(charts.sum(d.storey_m))} m (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, core inside, protected by ${d.protection}: ${done}${more}. Compared with the building without core, ${whose} ${what || "neither gains nor pays"}.`;
+  const more = run.rule ? `; every objective is the ${run.rule}` : "";
+  return `A building of ${d.gap_m.length} storeys, ${show(charts.sum(d.storey_m))} m (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}, core inside, protected by ${d.protection}: ${done}${more}. Shown: ${whose}.`;
 }
 
 // ---- cards: the objectives of the chosen design, better or worse than what it is compared with
@@ -56,7 +38,7 @@ const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", tit
 function cards() {
   const raw = run.chosen_f, error = chosenError();
   const against = (c, k, o) => {
-    const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
+    const [kind, sign] = VERDICT[o.better[k]] ?? [];
     if (!kind) return "";
     return element("div", { class: `change ${kind}`, title: `${kind} than ${o.words}: ${withUnit(c, o.raw[k] * c.factor)}` }, `${sign} ${change(raw[k] * c.factor, o.raw[k] * c.factor)} `, element("small", o.key === "no_core" ? "no core" : "rigid"));
   };
@@ -71,13 +53,9 @@ function cards() {
 const listed = (words, most = 8) => words.slice(0, most).join(", ") + (words.length > most ? ` and ${words.length - most} more` : "");
 
 function boundWarning(d) {
-  const row = rowOf.get(run.chosen), gaps = variables.filter((c) => /^gap_/.test(c.name));
-  const at = (i, side) => gaps.filter((c) => atBound(c, c.value[i]) === side);
-  const many = charts.range(n).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
-  const own = row === undefined ? [] : [[1, "largest"], [-1, "smallest"]].map(([side, word]) => [at(row, side), word]).filter(([list]) => list.length)
-    .map(([list, word]) => `the ${word} (${withUnit(list[0], list[0].bounds[word === "largest" ? 1 : 0])}): ${listed(list.map((c) => c.title))}`);
+  const gaps = variables.filter((c) => /^gap_/.test(c.name)), many = charts.range(n).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
   const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits || (d.gap_m[j] ?? NO_STOP_M) >= NO_STOP_M ? [] : [j + 1]));
-  return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front${own.length ? `; in this one at ${own.join("; at ")}` : ""}. A wider box may hold better designs, unless such a gap never closes.` : "",
+  return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front. A wider box may hold better designs, unless such a gap never closes.` : "",
     shut.length ? `Gaps that never close${underRecord(d) || " under this motion"}: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }
 
@@ -85,34 +63,10 @@ const DISSIPATED = "the modes are those of the building before it yields, and wh
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 
-// What the ± of the numbers leaves out: J1, drift ratio and J3 by the settings that the ladder calls enough, and where with them one of the three
-// ranks otherwise against the rigid connection or the building alone.
 const LADDER = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100], ["j3_g", "J3", "g", 1]];
-function leftOut(d) {
-  const set = d.ladder?.by_the_set, lacks = d.ladder?.effects?.filter((e) => d.ladder.settings[e.setting] !== e.otherwise && e.is_set === "no").map((e) => e.without.replace(/^between/, "what lies between")) ?? [];
-  if (!lacks.length || set.with_core.j1_m === null || d.with_core.reason) return [];
-  const peaks = (r) => ({ j1_m: Math.max(...r.displacement_m), drift_ratio: Math.max(...r.drift_m.map((v, j) => v / d.storey_m[j])), j3_g: Math.max(...r.acceleration_g) });
-  const here = peaks(d.with_core), list = LADDER.map(([name, title, unit, factor]) => `${title} is ${show(factor * set.with_core[name])} ${unit} instead of ${show(factor * here[name])}`).filter((text) => !/ (\S+) \S+ instead of \1$/.test(text));
-  const turned = ["rigid", "no_core"].flatMap((key) => LADDER.flatMap(([name, title, unit, factor]) => {
-    if (d[key].reason || set[key].reason || set[key][name] === null) return [];
-    const [a, b, c, e] = [here[name], peaks(d[key])[name], set.with_core[name], set[key][name]].map((v) => v * factor);
-    const error = factor * (chosenError()?.[objectives.findIndex((o) => o.name === name)] ?? 0);
-    return compareTo(b, a, error) * compareTo(e, c, error) >= 0 ? [] : [[c > e, `${title} ${show(c)} ${unit} against ${show(e)} ${unit} ${SCENES[key].words} (by this run\u2019s model ${show(a)} and ${show(b)} ${unit})`]];
-  }));
-  return [[turned.some(([isWorse]) => isWorse) ? "worse" : "note", "Errors after \u00b1 are of the simulation, not of the model: with " + listed(lacks) + `, which this design needs and this run leaves out, ${list.join(", ") || "the peaks stay"}${underRecord(d)}.` +
-    (turned.length ? ` The ranking turns over: ${turned.map(([, words]) => words).join(", ")}.` : "")]];
-}
-
 function warnings(d) {
-  // Of links and a tuned mass only where they are better in half of the objectives or more: then they are the simpler answer.
-  const worse = overlays.map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)])
-    .filter(([o, list]) => list.length >= (["no_core", "rigid"].includes(o.key) ? 1 : objectives.length / 2));
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
-    d.with_core.damage ? ["note", `${d.with_core.damage[0].toUpperCase()}${d.with_core.damage.slice(1)}${underRecord(d)}.`] : null,
-    ...leftOut(d),
-    ...d.core_warnings.map((text) => ["worse", text.replace("the core", `the core${underRecord(d)}`)]),
-    ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
     d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,
     d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
     beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)} designs of the front are beyond the contact law (\u26a0 in the table).`] : null,
@@ -149,7 +103,7 @@ function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = byId("summary");
   document.title = `${run.name} \u2013 imtet report`;
   byId("title").textContent = `Study ${run.name}`;
-  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
+  host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), ...(d?.verdict?.match(/.+/g) ?? []).map((text) => element("p", { class: "verdict" }, text)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
   if (run.notes_fault) host.append(warn(`Notes: ${run.notes_fault}`));
   if (d && run.rule) host.append(note(`The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);

@@ -1,0 +1,56 @@
+/* cmd/document.h -- what a command has to say, said once; one layer prints it as text, CSV, JSON and HTML.
+ *
+ *   part     a heading, a paragraph, a table, a list of figures or a drawing of the page, in the order of their coming
+ *   table    a JSON array of rows; a row is an object, a column a key of it, in the order in which the rows bring them
+ *   cell     text, a whole number, a number, a figure (a number with what is not known of it), or none (null, left out)
+ *
+ *   text     paragraphs wrapped to the terminal, tables aligned below their names, in as many bands as it takes; four
+ *            digits, or those that are known
+ *   HTML     the same; a column or a row that a measure names (evaluate/measures.h) has its title and unit. The one
+ *            place where words come into a page: all of them are escaped
+ *   CSV      `rows`, with all digits     JSON    `data`     drawing    `drawing`, one of DRAWINGS of web/app/8-paper.js
+ *
+ * Ownership  json_t that are given are taken over; document_give, _print and _html release all of it,
+ *            after which the Document is empty */
+#pragma once
+
+#include "base/json.h"
+#include "cmd/args.h"
+#include "sim/result.h"
+
+typedef struct {
+    json_t *parts, *rows, *data, *drawn; /* drawn: data of the drawing; NULL: those of JSON */
+    const char *drawing;
+    int width; /* [px] */
+} Document;
+
+/* element: of HTML, p, h1, h2, li, code; "note": a paragraph in small. Every line becomes one, an empty one none. */
+__attribute__((format(printf, 3, 4))) void document_say(Document *d, const char *element, const char *format, ...);
+
+json_t *document_table(Document *d);        /* an empty one, borrowed; without rows it is not shown */
+void document_list(Document *d, json_t *o); /* a line for every member that is neither empty nor rows */
+void document_draw(Document *d, const char *name, const char *caption); /* DRAWINGS of web/app/8-paper.js; HTML alone */
+
+/* What the options ask for: --csv, --svg, --json; the text where nothing else goes to standard output. */
+Status document_give(Document *d, const Args *args, Err *err);
+void document_print(Document *d, FILE *out);
+void document_html(Document *d, FILE *out);
+void document_free(Document *d);
+
+int terminal_width(int fd); /* COLUMNS where it is set; INT_MAX: no terminal */
+
+/* ---- rows -------------------------------------------------------------------------------------------------------- */
+
+json_t *json_only(json_t *list);                           /* a list of one is its item */
+json_t *json_plain(const json_t *rows);                    /* a copy: of figures the values alone */
+json_t *json_column(const json_t *rows, const char *name); /* its cells; NULL: the first row has none */
+
+json_t *figures_row(json_t *table); /* a further one */
+
+/* A figure (base/figure.h). error: the likely one; sd: standard deviation; NAN: not known. word: in the place of "sd";
+ * "(": "value (error to sd)". */
+void figures_put(json_t *row, const char *column, double value, double error, double sd);
+void figures_put_as(json_t *row, const char *column, double value, double error, double sd, const char *word);
+
+Status rows_write(json_t *table, const char *path, Err *err); /* as CSV */
+Status show_json(json_t *all, Err *err);

@@ -1,0 +1,257 @@
+#include "report/verdict.h"
+
+#include "analysis/ladder.h"
+#include "base/figure.h"
+#include "base/json.h"
+#include "base/stat.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "motion/motion_scale.h"
+#include "motion/suite.h"
+#include "settings/settings.h"
+#include "store/folder.h"
+#include "store/output.h"
+
+static const double S235_PA = 235e6, OFF_DRAWING = 0.1; /* [-] of J1, from where on a search has to see it */
+
+typedef struct {
+    const Evaluations *e;
+    const double *x;
+    FILE *out;                       /* a line for every sentence */
+    size_t first;                    /* record that was read */
+    double own[LADDER_MEASURES];     /* under it */
+    size_t n_links[LADDER_MEASURES]; /* records under which links are the better ones */
+    char set[600];                   /* " --set KEY=VALUE", what a search should have; empty: nothing */
+} Verdict;
+
+int verdict_compare(double sense, double value, double error, double other)
+{
+    static const double SHARE = 1e-3;
+    const double gain = sense * (other - value), least = fmax(SHARE * fabs(other), error);
+    return gain > least ? 1 : gain < -least ? -1 : 0;
+}
+
+/* "J1 0.0581 m, drift 0.53 %, J3 1.9 g"; sd NULL: not known. */
+static void say_values(const Verdict *v, const double value[], const double sd[])
+{
+    static const char *const FORMATS[LADDER_MEASURES] = {"J1 %s m", ", drift %s %%", ", J3 %s g"};
+    char text[FIGURE_MAX];
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        const double factor = measure(LADDER_MEASURE[k])->words.factor;
+        figure_text(factor * value[k], NAN, sd ? factor * sd[k] : NAN, "", text);
+        text[strlen(text) - (text[strlen(text) - 1] == ' ')] = 0;
+        fprintf(v->out, FORMATS[k], text);
+    }
+}
+
+/* What failed is infinite. */
+static void say_others(Verdict *v)
+{
+    static const SceneKind OTHERS[] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_LINKS};
+    const Evaluations *e = v->e;
+    for (size_t o = 0; o < N_OF(OTHERS) && evaluated_has(e, &e->run[v->first], OTHERS[o]); o++) {
+        fprintf(v->out, "%s %s", o ? "; against" : "Against", SCENES[OTHERS[o]].words);
+
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            double ratio[TOWER_RECORDS_MAX];
+            size_t n = 0, better = 0;
+            for (size_t i = 0; i < e->n_records && n < TOWER_RECORDS_MAX; i++) {
+                const double own = ida_value(&e->run[i], SCENE_IMPACT, LADDER_MEASURE[k]);
+                const double other = ida_value(&e->run[i], OTHERS[o], LADDER_MEASURE[k]);
+                if (e->record[i].readable != STATUS_OK)
+                    continue;
+                ratio[n++] = own / other;
+                better += verdict_compare(1, own, 0, other) > 0;
+                v->n_links[k] += OTHERS[o] == SCENE_LINKS && verdict_compare(1, other, 0, own) > 0;
+            }
+            sort_values(n, ratio);
+            fprintf(v->out, "%s \u00d7 %.3g (%s%zu of %zu)",
+                    k == 0   ? " J1"
+                    : k == 1 ? ", drift"
+                             : ", J3",
+                    0.5 * (ratio[(n - 1) / 2] + ratio[n / 2]), o + k ? "" : "better under ", better, n);
+        }
+    }
+    fputs(".\n", v->out);
+}
+
+/* s: under the first record alone. */
+static Status say_model(Verdict *v, const Settings *s, Err *err)
+{
+    Building b;
+    Motion m;
+    Ladder *l;
+    TRY(building_load(&b, &s->building, err));
+    const double period = 2 * M_PI / b.omega[0];
+    building_free(&b);
+    TRY(tower_motion(&v->e->tower, v->first, &m, err));
+    const double strong_s = motion_strong_part(&m, period);
+    motion_free(&m);
+    TRY_ROOM(l, 1, "a ladder", err);
+    const Status status = ladder_find(s, v->x, strong_s, 1, l, err);
+    for (size_t i = 0; i < l->n && status == STATUS_OK; i++) {
+        const LadderEffect *effect = &l->effect[i];
+        const size_t used = strlen(v->set);
+        if (!effect->is_kept || effect->is_set)
+            continue;
+        fprintf(v->out, "%s%s", used ? ", " : "With ", effect->words);
+        snprintf(v->set + used, sizeof v->set - used, " --set '%s=%s'", effect->key, effect->with);
+    }
+    if (v->set[0]) {
+        fputs(", which it needs and this model leaves out, it has ", v->out);
+        say_values(v, l->set[0], NULL);
+        fputs(" instead of ", v->out);
+    } else {
+        fputs("The model has every effect that it needs: ", v->out);
+    }
+    say_values(v, v->own, NULL);
+    fprintf(v->out, " under %s.\n", evaluated_name(&v->e->record[v->first]));
+    free(l);
+    return status;
+}
+
+static Status say_as_built(Verdict *v, Settings *s, Err *err)
+{
+    Problem p;
+    SimResult shown;
+    ReplicateSummary sum;
+    double mean[LADDER_MEASURES], sd[LADDER_MEASURES];
+    s->sim.replicates = VERDICT_REPLICATES;
+    s->sim.gap_tolerance_m = s->sim.gap_tolerance_m > 0 ? s->sim.gap_tolerance_m : VERDICT_GAP_M;
+    TRY(tower_open(&p, s, TOWER_AS_SET, VERDICT_REPLICATES, err));
+    const Status status = tower_replicate(&p, 1, v->x, &shown, &sum, err);
+    problem_close(&p);
+    TRY(status);
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        mean[k] = sum.mean[LADDER_MEASURE[k]];
+        sd[k] = sum.sd[LADDER_MEASURE[k]];
+    }
+    const double off = mean[0] / v->own[0] - 1;
+    fprintf(v->out, "As built, with gaps %g mm off (mean ± standard deviation of %d, %zu failed): ",
+            1e3 * s->sim.gap_tolerance_m, VERDICT_REPLICATES, sum.n_failed);
+    say_values(v, mean, sd);
+    fprintf(v->out, "; J1 is on average %+.0f %% off the drawing.\n", 100 * off);
+    if (!(off <= OFF_DRAWING) && !v->set[0])
+        snprintf(v->set, sizeof v->set, " --set sim.gap_tolerance_m=%g --set sim.replicates=4", s->sim.gap_tolerance_m);
+    return STATUS_OK;
+}
+
+static void say_limits(Verdict *v, const Settings *s)
+{
+    enum { EXTENSIVE = 2 }; /* DamagePart.median */
+    const struct DamagePart *part = DAMAGE_PARTS;
+    const int is_clamped = strcmp(s->core.foundation, "fixed") == 0;
+    const double held_nm = v->e->run[v->first].result->mcore_kg * GRAVITY * s->core.width_m / 2;
+    struct {
+        const char *what;
+        MeasureId id;
+        double limit, factor;
+    } all[] = {{"stress of the core (S235)", MEASURE_CORE_STRESS, S235_PA, 0},
+               {"buckling of the bare wall", MEASURE_CORE_BUCKLING, 1, 0},
+               {"uplift of the core", MEASURE_UPLIFT, 1, 0},
+               {"overturning of the clamped core over what its weight holds", MEASURE_CORE_OVERTURNING,
+                is_clamped ? held_nm : INFINITY, 0},
+               {"indentation (contact law)", MEASURE_INDENTATION, INDENTATION_RATIO_MAX, 0},
+               {part[0].words, MEASURE_DRIFT_RATIO, part[0].median[EXTENSIVE], 0},
+               {part[1].words, MEASURE_DRIFT_RATIO, part[1].median[EXTENSIVE], 0},
+               {part[2].words, MEASURE_J3, part[2].median[EXTENSIVE], 0}};
+    fputs("Demand over limit, the gravest first (of the building: extensive damage)", v->out);
+    for (size_t i = 0; i < N_OF(all); i++)
+        for (size_t k = 0; k < v->e->n_records; k++)
+            if (v->e->record[k].readable == STATUS_OK)
+                all[i].factor = fmax(all[i].factor, measure_value(v->e->run[k].result, all[i].id) / all[i].limit);
+    for (size_t i = 0; i < N_OF(all); i++) {
+        size_t most = 0;
+        for (size_t j = 1; j < N_OF(all); j++)
+            most = all[j].factor > all[most].factor ? j : most;
+        if (all[most].factor > 0)
+            fprintf(v->out, "%s %s %.3g", i ? "," : ":", all[most].what, all[most].factor);
+        if (all[most].factor > 1 && all[most].id != MEASURE_CORE_OVERTURNING && !v->set[0])
+            snprintf(v->set, sizeof v->set, " --set 'search.limits=%s<=%g'", measure(all[most].id)->name,
+                     all[most].limit);
+        all[most].factor = 0;
+    }
+    fputs(".\n", v->out);
+}
+
+Status verdict_find(const Settings *given, const Evaluations *e, const double x[], const char *run, const char *design,
+                    char **out, Err *err)
+{
+    Verdict v = {.e = e, .x = x};
+    Settings s = *given;
+    size_t length;
+    char folder[4 * PATH_MAX + 3];
+    *out = NULL;
+    if (s.sim.engine != ENGINE_FAST)
+        return bad_data(err, "sim.engine: a verdict takes the engine fast");
+    while (v.first < e->n_records && e->record[v.first].readable != STATUS_OK)
+        v.first++;
+    if (v.first == e->n_records)
+        return bad_data(err, "no verdict: %s", e->record[0].why.text);
+    TRY(option_put_path(s.motion.record, e->record[v.first].path, err));
+    TRY(settings_put(&s, "motion.records", "none", err));
+    for (int k = 0; k < LADDER_MEASURES; k++)
+        v.own[k] = ida_value(&e->run[v.first], SCENE_IMPACT, LADDER_MEASURE[k]);
+    v.out = text_open(out, &length);
+    if (!v.out)
+        return fail_memory(err, 1, "a verdict");
+    say_others(&v);
+    Status status = say_model(&v, &s, err);
+    THEN(status, say_as_built(&v, &s, err));
+    say_limits(&v, &s);
+    if (!v.set[0] && v.n_links[0] + v.n_links[2] > e->n_read)
+        snprintf(v.set, sizeof v.set,
+                 " --set design.variables=gaps,thickness,links --set design.devices=gap,link,none");
+    fprintf(v.out,
+            v.set[0] ? "Next: imtet optimize %s --new%s\n" : "Next: imtet simplify %s --design %s --gap-step 5\n",
+            text_shell(run, folder), v.set[0] ? v.set : design);
+    if (text_close(v.out) != 0)
+        THEN(status, fail_memory(err, 1, "a verdict"));
+    if (status == STATUS_OK)
+        return STATUS_OK;
+    free(*out);
+    *out = NULL;
+    return status;
+}
+
+static Status add_own(const char *source, void *user, Err *err)
+{
+    return evaluations_add(user, source, 1, err);
+}
+
+Status verdict_of_run(const Run *run, size_t row, const Settings *used, char **out, Err *err)
+{
+    Settings s = *used;
+    Evaluations e = {.n_levels = 1, .has_links = 1};
+    Output o;
+    char path[PATH_MAX], id[24], folder[4 * PATH_MAX + 3], *text;
+    Status status = STATUS_OK;
+    snprintf(id, sizeof id, "%ld", run->table.row[row].id);
+    folder_path(run->folder, "verdicts.json", path);
+    json_t *all = json_load_file(path, 0, NULL);
+    const char *known = json_string_value(json_object_get(all, id));
+    text = known ? strdup(known) : NULL;
+    s.sim.forces = FORCES_YES;
+    *out = NULL;
+    if (!known) {
+        all = all ? all : json_object();
+        status = suite_of_study(&s.motion, add_own, &e, err);
+        THEN(status, evaluations_read(&e, &s, err));
+        THEN(status, evaluations_run(&e, run->schema.n_var, run_x(run, row), NULL, err));
+        THEN(status, verdict_find(&s, &e, run_x(run, row), "RUN", id, &text, err));
+        evaluations_free(&e);
+        if (status == STATUS_OK)
+            json_object_set_new(all, id, json_words(text));
+        if (status == STATUS_OK && !run->id_step && output_open_inside(&o, path, &(Err){0}) == STATUS_OK) {
+            json_dumpf(all, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS);
+            output_close(&o, &(Err){0});
+        }
+    }
+    /* The folder may have moved since: it is named as it is now. */
+    const char *at = text ? strstr(text, " RUN ") : NULL;
+    if (at && asprintf(out, "%.*s %s%s", (int)(at - text), text, text_shell(run->folder, folder), at + 4) < 0)
+        *out = NULL;
+    free(text);
+    json_decref(all);
+    return status;
+}
