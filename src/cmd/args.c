@@ -3,8 +3,8 @@
 #include <limits.h>
 
 #include "base/linalg.h"
-#include "cmd/designs.h"
 #include "cmd/outputs.h"
+#include "store/folder.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
 #include "study/merged.h"

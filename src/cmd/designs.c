@@ -4,6 +4,7 @@
 
 #include "cmd/show.h"
 #include "evaluate/measures.h"
+#include "store/folder.h"
 #include "store/run_read.h"
 #include "study/initial_designs.h"
 #include "study/record_paths.h"
@@ -196,18 +197,6 @@ typedef struct {
     const char *choice; /* behind the last colon; NULL: there is none */
     int is_run;
 } Place;
-
-int run_drop_name(char *path)
-{
-    char *name = basename(path);
-    if (strcmp(name, "run.sqlite") != 0)
-        return 0;
-    if (name == path)
-        strcpy(path, ".");
-    else
-        name[name - path > 1 ? -1 : 0] = 0; /* of /run.sqlite the root is left */
-    return 1;
-}
 
 static int is_there(const char *word, size_t length, Place *p)
 {

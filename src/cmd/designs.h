@@ -43,9 +43,6 @@ Status designs_of_problem(Designs *d, const char *word, const Schema *schema, Er
 
 long design_number(const Designs *d, size_t i); /* as the run numbers it, else that of its row, from 1 */
 
-/* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
-int run_drop_name(char *path);
-
 /* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1"; without designs "no
  * core". */
 enum { DESIGN_LABEL_MAX = 160 };

@@ -31,6 +31,18 @@ int folder_is_run(const char *path)
     return folder_has(path, "run.sqlite") || folder_has(path, "lock");
 }
 
+int run_drop_name(char *path)
+{
+    char *name = basename(path);
+    if (strcmp(name, "run.sqlite") != 0)
+        return 0;
+    if (name == path)
+        strcpy(path, ".");
+    else
+        name[name - path > 1 ? -1 : 0] = 0; /* of /run.sqlite the root is left */
+    return 1;
+}
+
 int folder_keeps(const char *path)
 {
     static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.jsonl",  "lock",         "front.csv",

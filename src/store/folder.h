@@ -47,6 +47,9 @@ int folder_is_run(const char *path);
 /* Is it a file that a run keeps in its folder? What leads there by a link is. */
 int folder_keeps(const char *path);
 
+/* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
+int run_drop_name(char *path);
+
 /* Behind the message of a run.sqlite that is damaged or empty: what to do. Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);
 
