@@ -292,7 +292,7 @@ static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from
             fprintf(out, "%*s%s", pending, "", text);
             pending = 0;
         }
-        pending += at == 0 ? blanks : 0;
+        pending += at == 0 || is_words ? blanks : 0;
     }
     fputs(is_html ? "</tr>\n<tr>" : "\n", out);
 }

@@ -38,11 +38,9 @@ void document_model(Document *d, const json_t *model)
         const int is_set = strcmp(word(e, "is_set"), "yes") == 0, is_on = strcmp(value, word(e, "with")) == 0;
         json_t *row = json_put(figures_row(table), "=%s", is_set ? "set" : is_on ? "on" : "off");
         json_put(row, " without=%s", word(e, "without"));
-        if (!is_set) {
-            figures_put(row, "J1 %", number(e, "j1_m_pct"), NAN, NAN);
-            figures_put(row, "drift %", number(e, "drift_ratio_pct"), NAN, NAN);
-            figures_put(row, "J3 %", number(e, "j3_g_pct"), NAN, NAN);
-        }
+        figures_put(row, "J1 %", is_set ? NAN : number(e, "j1_m_pct"), NAN, NAN);
+        figures_put(row, "drift %", is_set ? NAN : number(e, "drift_ratio_pct"), NAN, NAN);
+        figures_put(row, "J3 %", is_set ? NAN : number(e, "j3_g_pct"), NAN, NAN);
         json_put(row, "matters in=%s", !is_set && number(e, "in_tolerances") > 1 ? word(e, "most_in") : "");
         json_put(row, " value=%s", value);
     }
