@@ -35,7 +35,7 @@ CPPFLAGS += -Isrc -Iinclude -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -lz -ltcl8.6 -lstdc++ -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -lz -lstdc++ -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. Sanitized, the
 # simulator takes 0.55 of its time at -O2. These flags come last; provenance.json quotes them by the same variables.
@@ -70,7 +70,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
-SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/% src/wasm/%,$(wildcard src/*/*.c src/*/*/*.c))
+SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/% src/wasm/% src/opensees/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv) src/motion/builtin.csv
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(BUILD)/src/store/digits.o $(KERNEL_OBJ) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
 LIB      := $(BUILD)/libprogram.a
@@ -81,12 +81,14 @@ SONAME   := libimtet.so.0
 SHARED   := $(BUILD)/libimtet.so.$(VERSION)
 EXAMPLES := $(patsubst %.c,$(BUILD)/%,$(wildcard examples/*.c))
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
+# Beside the program: what reads OpenSees models for it and for the library.
+READER   := $(PROGRAM)-opensees
 # The program's engines in its tests; `make stability` has all.
 STABILITY := fast cvode
 
 .PHONY: all help setup run test test-sanitized tests format install install-library uninstall uninstall-library clean lib-alone .FORCE
 .SECONDARY:
-all: $(PROGRAM) $(SHARED) $(CORE) ## builds ./imtet, and libimtet in build/release
+all: $(PROGRAM) $(READER) $(SHARED) $(CORE) ## builds ./imtet, and libimtet in build/release
 
 help: ## this list
 	@awk -F ' ## ' '/^[a-z-]+:.* ## / { sub(/:.*/, "", $$1); printf "  make %-16s %s\n", $$1, $$2 }' $(filter-out %.d,$(MAKEFILE_LIST))
@@ -109,6 +111,10 @@ run: setup ## the README's first command: packages, build, self-test, quick stud
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(READER): $(BUILD)/src/opensees/main.o $(BUILD)/src/opensees/model.tcl.o
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -ltcl8.6
 
 $(LIB): $(LIB_OBJ)
 	@rm -f $@
@@ -174,6 +180,9 @@ $(KERNEL_OBJ): $(BUILD)/src/sim/fast/%.o: src/sim/fast/kernel.c
 
 # The two 20-floor buildings and the built-in motions are part of the program: a file becomes the symbols _binary_PATH_start and _end.
 $(BUILD)/%.csv.o: %.csv
+	@mkdir -p $(@D)
+	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
+$(BUILD)/%.tcl.o: %.tcl
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
@@ -258,7 +267,7 @@ else ifeq ($(MODE)$(T),asan)
 JOBS_OF += 'asan short-run scripts/short-run $(PROGRAM)'
 endif
 
-tests: $(PROGRAM) $(TEST_PROGRAM) $(TEXTBOOK) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
+tests: $(PROGRAM) $(READER) $(TEST_PROGRAM) $(TEXTBOOK) $(foreach name,$(IN_MODE),$(BESIDE.$(name))) $(BESIDE.$(MODE)) ## builds the tests of MODE without running one
 
 # A file of tests runs in the mode that it belongs to, or in that which the command gives.
 GIVEN := $(filter command environment,$(origin MODE))
@@ -310,8 +319,9 @@ INCLUDED := imtet.h imtet_scene.h
 # Where the Python of Debian looks.
 PYTHON_DIR ?= $(PREFIX)/lib/$(if $(filter /usr,$(PREFIX)),python3,$(shell /usr/bin/python3 -c 'import sys; print("python3.%d" % sys.version_info[1])' 2>/dev/null || echo python3))/dist-packages
 PYTHON_PACKAGE := $(patsubst python/%,%,$(wildcard python/imtet/*.py)) imtet/py.typed
-install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, the Python package
+install-library: $(SHARED) $(CORE) $(READER) ## libimtet.so, .a, headers, imtet.pc, the Python package
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -D -m 755 $(READER) $(DESTDIR)$(PREFIX)/bin/imtet-opensees
 	install -m 644 $(SHARED) $(CORE) $(DESTDIR)$(LIBDIR)
 	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libimtet.so
@@ -322,7 +332,7 @@ install-library: $(SHARED) $(CORE) ## libimtet.so, .a, headers, imtet.pc, the Py
 	@[ "$(DESTDIR)$(PREFIX)" != /usr/local ] || ldconfig 2>/dev/null || true # so that programs find the library
 
 uninstall-library:
-	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,$(notdir $(SHARED)) $(SONAME) libimtet.so libimtet.a pkgconfig/imtet.pc) \
+	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,$(notdir $(SHARED)) $(SONAME) libimtet.so libimtet.a pkgconfig/imtet.pc) $(DESTDIR)$(PREFIX)/bin/imtet-opensees \
 	    $(addprefix $(DESTDIR)$(PREFIX)/include/,$(INCLUDED)) $(addprefix $(DESTDIR)$(PYTHON_DIR)/,$(PYTHON_PACKAGE))
 
 uninstall: uninstall-library ## removes what install has put under PREFIX

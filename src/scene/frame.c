@@ -94,7 +94,8 @@ Status frame_add_section(Frame *f, const FrameSection *s, Err *err)
 Status frame_add_element(Frame *f, const FrameElement *e, Err *err)
 {
     const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
-    if (!(hypot(b->x - a->x, b->z - a->z) > 0))
+    if (!e->is_spring &&
+        !(hypot(b->x + e->offset[1][0] - a->x - e->offset[0][0], b->z + e->offset[1][1] - a->z - e->offset[0][1]) > 0))
         return bad_data(err, "element %s has no length: nodes %s and %s are at one place", e->name, a->name, b->name);
     return add_part(f, FRAME_ELEMENTS, &f->element, e, sizeof *e, err);
 }

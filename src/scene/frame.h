@@ -8,7 +8,7 @@
  *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
  *
  * Elements are beam-columns: axial stiffness EA/l, bending by scene/core_beam.h (shear where shear_area_m2 is given),
- * pinned ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary
+ * pinned ends without moment; OpenSees models have springs, rigid arms and links besides. Their own mass and the added one lie evenly along them (consistent mass, no rotary
  * inertia of sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary
  * inertia at nodes.
  *
@@ -64,7 +64,10 @@ typedef struct {
     char name[TABLE_NAME_MAX];
     int node[2], section;
     int pinned[2];
-    double added_mass; /* [kg] */
+    double added_mass;   /* [kg] */
+    double offset[2][2]; /* [m] along x and z, from the nodes to its ends, which are rigidly connected to them */
+    int is_spring;       /* no beam, but springs between ends at one place, where its added_mass is */
+    double spring[FRAME_DOFS], axis[2]; /* [N/m] along the axis, across it, [N m/rad] */
 } FrameElement;
 
 typedef enum { FRAME_NODES, FRAME_SECTIONS, FRAME_ELEMENTS, FRAME_KINDS } FrameKind;

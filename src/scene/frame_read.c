@@ -156,7 +156,7 @@ Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
                 "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
                 "for %s",
                 model);
-        status = opensees_read(f, model, u.length, u.stiffness * u.length, err);
+        status = opensees_read(f, model, u.length, u.stiffness * u.length, o->elastic, err);
     }
     for (int i = 0; i < N_SHEETS && !text_ends(model, ".tcl") && status == STATUS_OK; i++)
         if (i < N_REQUIRED || model_has(model, SHEETS[i].file))

@@ -32,10 +32,12 @@ static void transform(int n, double a[], const double T[])
     linalg_congruent(n, n, copy, T, work, a);
 }
 
-/* Bending and stretching of an element along (c, s) in one matrix of x, z, rotation at both ends. */
-static void join_and_turn(const double bend[4][4], double along_same, double along_other, double c, double s,
-                          double a[LOCAL][LOCAL])
+/* Bending and stretching of an element along an axis in one matrix of x, z, rotation of the nodes, to which rigid arms
+ * connect its ends. */
+static void join_and_turn(const double bend[4][4], double along_same, double along_other, const double axis[2],
+                          const double (*arm)[2], double a[LOCAL][LOCAL])
 {
+    const double c = axis[0], s = axis[1];
     static const int BENDING[4] = {1, 2, 4, 5}; /* deflection and rotation at each end */
     double t[LOCAL][LOCAL] = {{0}};
     memset(a, 0, LOCAL * sizeof a[0]);
@@ -49,6 +51,9 @@ static void join_and_turn(const double bend[4][4], double along_same, double alo
         t[end][end + 1] = s;
         t[end + 1][end] = -s;
         t[end + 2][end + 2] = 1;
+        const double *o = arm[end / FRAME_DOFS];
+        t[end][end + 2] = s * o[0] - c * o[1];
+        t[end + 1][end + 2] = c * o[0] + s * o[1];
     }
     transform(LOCAL, a[0], t[0]);
 }
@@ -67,9 +72,21 @@ static void element_matrices(const Frame *f, int element, const int number[], in
     const FrameElement *e = &f->element[element];
     const FrameSection *s = &f->section[e->section];
     const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
-    const double dx = b->x - a->x, dz = b->z - a->z, l = hypot(dx, dz);
-    const double axial = s->E * s->area / l, mass = s->mass_per_m * l + e->added_mass;
+    const double dx = b->x + e->offset[1][0] - a->x - e->offset[0][0],
+                 dz = b->z + e->offset[1][1] - a->z - e->offset[0][1], l = hypot(dx, dz);
     double bend[4][4], sway[4][4];
+    for (int i = 0; i < LOCAL; i++)
+        at[i] = number[displacement_of(e, i)];
+    if (e->is_spring) {
+        const double across = e->spring[1], about = e->spring[2], half = 0.5 * e->added_mass;
+        const double apart[4][4] = {
+            {across, 0, -across, 0}, {0, about, 0, -about}, {-across, 0, across, 0}, {0, -about, 0, about}};
+        const double halves[4][4] = {[0][0] = half, [2][2] = half};
+        join_and_turn(apart, e->spring[0], -e->spring[0], e->axis, e->offset, k);
+        join_and_turn(halves, half, 0, e->axis, e->offset, m);
+        return;
+    }
+    const double axis[2] = {dx / l, dz / l}, axial = s->E * s->area / l, mass = s->mass_per_m * l + e->added_mass;
     beam_element(&(Beam){.EI = s->E * s->inertia,
                          .kGA = s->E / (2 * (1 + s->poisson)) * s->shear_area,
                          .mass_per_m = mass / l,
@@ -88,10 +105,8 @@ static void element_matrices(const Frame *f, int element, const int number[], in
             transform(4, sway[0], T[0]);
         }
     }
-    join_and_turn(bend, axial, -axial, dx / l, dz / l, k);
-    join_and_turn(sway, mass / 3, mass / 6, dx / l, dz / l, m);
-    for (int i = 0; i < LOCAL; i++)
-        at[i] = number[displacement_of(e, i)];
+    join_and_turn(bend, axial, -axial, axis, e->offset, k);
+    join_and_turn(sway, mass / 3, mass / 6, axis, e->offset, m);
 }
 
 /* ---- unknowns ------------------------------------------------------------------------------------------------- */

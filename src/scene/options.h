@@ -21,6 +21,9 @@ enum { SIDES = 2 };        /* of a floor: [0] right, which it reaches by u > v, 
     X(BUILDING_KIP_FT, "kip_ft")
 typedef enum { BUILDING_UNITS_LIST(CHOICE_NAME) } BuildingUnits;
 
+#define ELASTIC_LIST(X) X(ELASTIC_ONLY, "only") X(ELASTIC_INITIAL, "initial")
+typedef enum { ELASTIC_LIST(CHOICE_NAME) } Elastic;
+
 #define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh")
 typedef enum { DAMPING_MODEL_LIST(CHOICE_NAME) } DampingModel;
 
@@ -35,6 +38,7 @@ typedef struct {
     NumberList rayleigh_modes; /* two of them, from 1, ascending */
     NumberList heights_m;      /* storey by storey, the last for the rest; of matrices */
     Switch rigid_floors;       /* of a frame */
+    Elastic elastic;           /* what yields in an OpenSees model */
     long modes;                /* fixed-interface modes beside the floors; 0: condensed */
     Switch p_delta;
     double yield_drift; /* [-] of the storey's height; 0: a storey yields only where the files say so */

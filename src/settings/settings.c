@@ -84,6 +84,8 @@ static const Option OPTIONS[] = {
          "heights of the storeys from the bottom where the files have none; the last for all further storeys"),
     CHOICE(building.rigid_floors, Switch, SWITCH_LIST, "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
+    CHOICE(building.elastic, Elastic, ELASTIC_LIST, "only",
+           "of an OpenSees model: only: what yields is refused; initial: it is taken by its initial stiffness"),
     WHOLE(
         building.modes, "0", 0, 100000,
         "of a frame: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
