@@ -238,7 +238,7 @@ TEST(faults_of_a_frame_name_file_line_and_what_to_do)
         {"elements.csv", "element,node_i,node_j,section\n1,A,Z,column\n", "elements.csv:2: node_j 'Z' is not in"},
         {"elements.csv", "element,node_i,node_j,section\n1,A,C,beem\n", "elements.csv:2: section 'beem' is not in"},
         {"elements.csv", "element,node_i,node_j,section\n1,A,A,beam\n", "element 1 has no length"},
-        {"elements.csv", "element,node_i,node_j,section\n1,A,C,column\n", "no floors"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,C,column\n", "a mechanism: nothing resists when node D"},
         {"masses.csv", "node,mass_kg\nC,-1\n", "masses.csv:2: mass_kg is -1"},
         {"ties.csv", "node,same_as,x\nC,Q,1\n", "ties.csv:2: same_as 'Q'"},
         {"masses.csv", "node,mass_kg\nC,\n", "masses.csv:2: column 2"},

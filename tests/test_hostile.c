@@ -58,7 +58,7 @@ static const struct {
     {"coroutine c apply {{} {while 1 {yield}}}; while 1 {c}\n", "takes more than"},
     {"node [string repeat 1 1000000] 0 0\n", ":1: node: "},
     {"eval [string repeat \\[ 300000]\n", ":1: "},
-    {"expr [string repeat ( 300000]1[string repeat ) 300000]\n", ":1: "},
+    {"expr [string repeat ( 300000]1[string repeat ) 300000]\n", "holds no element"},
     {HEAD "fix 1 1 1 1\nequalDOF 1 2 1\nequalDOF 2 1 1\n", ":6: equalDOF: node 1 and node 2 are one"},
     {HEAD "set s [socket -server x 0]\n", ":4: 'socket' is not among"},
 };

@@ -271,4 +271,161 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     expect(65, "is no tower: ", "building @/other.ini");
 }
 
+/* A portal of one storey whose columns and beam come in the forms of the table; all are the same frame. */
+TEST(one_frame_in_every_form_that_elastic_models_are_written_in)
+{
+#define FEET                                                                                                           \
+    "model basic -ndm 2 -ndf 3\nnode 1 0 0; node 2 6 0; node 3 0 3; node 4 6 3\nmass 3 20 20 0; mass 4 20 20 0\n"
+#define HELD  "fix 1 1 1 1; fix 2 1 1 1\ngeomTransf Linear 1\n"
+#define BEAM  "element elasticBeamColumn 3 3 4 0.1 2e8 1e-3 1\n"
+#define RIGHT "element elasticBeamColumn 2 2 4 0.1 2e8 1e-3 1\n"
+    static const char PLAIN[] = FEET HELD "element elasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\n" RIGHT BEAM;
+    static const char *const SAME[] = {
+        FEET HELD "section Elastic 7 2e8 0.1 1e-3\nelement forceBeamColumn 1 1 3 1 Lobatto 7 5\n" RIGHT BEAM,
+        FEET HELD
+        "section Elastic 7 2e8 0.1 1e-3\nelement dispBeamColumn 1 1 3 1 \"Legendre 7 2\" -mass 0\n" RIGHT BEAM,
+        FEET HELD "section Elastic 7 2e8 0.1 1e-3\nbeamIntegration HingeRadau 4 7 0.3 7 0.3 7\n"
+                  "element forceBeamColumn 1 1 3 1 4 -iter 10 1e-12\n" RIGHT BEAM,
+        FEET HELD "uniaxialMaterial Elastic 1 2e7; uniaxialMaterial Elastic 2 2e5\nsection Aggregator 7 1 P 2 Mz\n"
+                  "element nonlinearBeamColumn 1 1 3 5 7 1\n" RIGHT BEAM,
+        FEET HELD "uniaxialMaterial Elastic 2 2e5\nsection Uniaxial 6 2 Mz\nuniaxialMaterial Elastic 1 2e7\n"
+                  "section Aggregator 7 1 P -section 6\nelement elasticBeamColumn 1 1 3 7 1\n" RIGHT BEAM,
+        FEET "fixY 0 1 1 1\ngeomTransf Corotational 1\nelement ElasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\n" RIGHT BEAM,
+        FEET "fixX 0.0 0 0 0 -tol 0.1\n" HELD "element elasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\n" RIGHT BEAM,
+        FEET HELD "element ElasticTimoshenkoBeam 1 1 3 2e8 8e7 0.1 1e-3 1e9 1\n" RIGHT BEAM,
+        FEET HELD "element elasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\n" RIGHT
+                  "node 33 0 3\nuniaxialMaterial Elastic 9 1e30\nelement zeroLength 9 3 33 -mat 9 9 9 -dir 1 2 6\n"
+                  "element elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n",
+        FEET HELD "element elasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\n" RIGHT
+                  "node 33 0 3\nrigidLink beam 3 33\nelement elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n",
+        FEET HELD "element elasticBeamColumn 1 1 3 0.1 2e8 1e-3 1\nrigidDiaphragm 2 3 4\n" RIGHT BEAM,
+        FEET HELD "set f [open cards.txt r]; gets $f line; close $f; cd [file dirname [info script]]\n"
+                  "set E [lindex [split $line ,] 1]\nset out [open out.txt w]; puts $out $E; close $out\n"
+                  "element elasticBeamColumn 1 1 3 0.1 $E 1e-3 1\n" RIGHT BEAM,
+    };
+    write_in_place("cards.txt", "steel,2e8\n");
+    Building plain = import(PLAIN, BUILDING_KN_M_T);
+    for (size_t i = 0; i < sizeof SAME / sizeof SAME[0]; i++) {
+        Building b = import(SAME[i], BUILDING_KN_M_T);
+        if (fabs(b.K[0] / plain.K[0] - 1) > 2e-6 || fabs(b.M[0] / plain.M[0] - 1) > 1e-12)
+            fail_msg("%s\n  K %.9g, not %.9g", SAME[i], b.K[0], plain.K[0]);
+        building_free(&b);
+    }
+    building_free(&plain);
+}
+
+/* 12 EI / l^3 of a column that cannot turn at its ends, l between the ends of its arms. */
+TEST(rigid_arms_by_offsets_and_by_links_shorten_what_bends)
+{
+    static const char *const ARMS[] = {
+        "geomTransf Linear 1 -jntOffset 0 0.5 0 -0.25\nelement elasticBeamColumn 1 1 3 1e6 2e8 1e-3 1\n",
+        "node 5 0 0.5; node 6 0 2.75; rigidLink beam 1 5; rigidLink beam 3 6\ngeomTransf Linear 1\n"
+        "element elasticBeamColumn 1 5 6 1e6 2e8 1e-3 1\n"};
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "model basic -ndm 2 -ndf 3\nnode 1 0 0; node 3 0 3; node 4 1 3\nmass 3 7 7 0\nfix 1 1 1 1; fix 3 0 1 "
+                 "1; fix 4 0 1 1\n%selement elasticBeamColumn 3 3 4 1 2e8 1 1\n",
+                 ARMS[i]);
+        if (i == 0) /* the beam has no arms */
+            snprintf(strstr(text, "element elasticBeamColumn 3"), 200,
+                     "geomTransf Linear 2\nelement elasticBeamColumn 3 3 4 1 2e8 1 2\n");
+        Building b = import(text, BUILDING_KN_M_T);
+        assert_close(b.K[0], 1e3 * 12 * 2e8 * 1e-3 / pow(2.25, 3), 1e-9);
+        building_free(&b);
+    }
+}
+
+/* A mass m on an arm r turns with its carrier: of a frame that rotates alone, k / (m r^2). Here the carrier may not turn,
+ * and the mass counts as at the carrier. */
+TEST(a_mass_on_a_rigid_arm_moves_with_its_carrier)
+{
+    static const char MODEL[] =
+        "model basic -ndm 2 -ndf 3\nnode 1 0 0; node 3 0 3; node 4 1 3; node 5 0 4 -mass 5 5 0.5\nmass 3 7 7 0\n"
+        "fix 1 1 1 1; fix 3 0 1 1; fix 4 0 1 1\ngeomTransf Linear 1\nrigidLink beam 3 5\n"
+        "element elasticBeamColumn 1 1 3 1e6 2e8 1e-3 1\nelement elasticBeamColumn 3 3 4 1 2e8 1 1\n";
+    Building b = import(MODEL, BUILDING_KN_M_T);
+    assert_close(b.M[0], 12e3, 1e-12);
+    building_free(&b);
+}
+
+/* 48 fibres of a rectangle, two springs that yield, and what says so. */
+TEST(what_yields_is_refused_or_taken_by_its_initial_stiffness)
+{
+    static const char MODEL[] = FEET HELD
+        "uniaxialMaterial Steel01 1 300 2e8 0.01\nsection Fiber 7 {\n  patch rect 1 12 4 -0.3 -0.1 0.3 0.1\n}\n"
+        "element forceBeamColumn 1 1 3 5 7 1\nelement elasticBeamColumn 2 2 4 0.12 2e8 3.575e-3 1\n"
+        "uniaxialMaterial Concrete01 2 -30e3 -0.002 0 -0.01\nnode 33 0 3; equalDOF 3 33 1 2\n"
+        "element zeroLength 9 3 33 -mat 2 -dir 3\nelement elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n";
+    static const char ELASTIC[] = FEET HELD
+        "element elasticBeamColumn 1 1 3 0.12 2e8 3.575e-3 1\nelement elasticBeamColumn 2 2 4 0.12 2e8 3.575e-3 1\n"
+        "uniaxialMaterial Elastic 2 3e7\nnode 33 0 3; equalDOF 3 33 1 2\n"
+        "element zeroLength 9 3 33 -mat 2 -dir 6\nelement elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n";
+    BuildingOptions o = options_of(MODEL, BUILDING_KN_M_T);
+    Building b;
+    Err err = {0};
+    assert_int_equal(building_load(&b, &o, &err), STATUS_BAD_DATA);
+    assert_non_null(
+        strstr(err.text, "uniaxialMaterial Steel01: only Elastic TAG E is read; building.elastic"));
+    o.elastic = ELASTIC_INITIAL;
+    CHECK_OK(building_load(&b, &o, &err), &err);
+    Building wanted = import(ELASTIC, BUILDING_KN_M_T);
+    assert_close(b.K[0], wanted.K[0], 1e-9);
+    building_free(&b);
+    building_free(&wanted);
+    Said s;
+    write_in_place("model.tcl", MODEL);
+    run(&s, "building @/model.tcl --set building.units=kN_m_t --set building.elastic=initial");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "Steel01, Concrete01"));
+    forget(&s);
+}
+
+/* Of masses alone, without a level element, every mass is a floor: 3 EI / h^3 of a cantilever. */
+TEST(a_cantilever_of_one_mass_is_a_building_of_one_floor)
+{
+    Building b =
+        import("model basic -ndm 2 -ndf 3\nnode 1 0 0; node 2 0 4 -mass 5 5 0\nfix 1 1 1 1\ngeomTransf Linear 1\n"
+               "element elasticBeamColumn 1 1 2 1 2e8 1e-3 1\n",
+               BUILDING_KN_M_T);
+    assert_int_equal(b.n, 1);
+    assert_close(b.K[0], 1e3 * 3 * 2e8 * 1e-3 / 64, 1e-9);
+    building_free(&b);
+}
+
+/* Inputs that were refused or read wrongly once, where the folder that holds them is there. */
+TEST(the_models_of_the_shared_cases_are_read_or_refused)
+{
+    static const char *const CASES[][2] = {{"frame_ok", NULL},
+                                           {"display", NULL},
+                                           {"fixy", NULL},
+                                           {"lobatto", NULL},
+                                           {"beamintegration", NULL},
+                                           {"zerolength", NULL},
+                                           {"section_table", NULL},
+                                           {"info_script", NULL},
+                                           {"cd", NULL},
+                                           {"defaultunits", NULL},
+                                           {"remove_ele", "remove element takes away"},
+                                           {"shear1d", "-ndm 1 has no heights"}};
+    const char *folder = access("../shared/cases", F_OK) == 0 ? "../shared/cases" : "../../shared/cases";
+    if (access(folder, F_OK) != 0)
+        skip();
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        BuildingOptions o = scene_defaults().building;
+        Building b;
+        Err err = {0};
+        snprintf(o.model, sizeof o.model, "%s/%s.tcl", folder, CASES[i][0]);
+        o.units = BUILDING_KIP_IN;
+        const Status s = building_load(&b, &o, &err);
+        if (CASES[i][1] ? s != STATUS_BAD_DATA || !strstr(err.text, CASES[i][1]) : s != STATUS_OK)
+            fail_msg("%s: %s", o.model, err.text);
+        if (s == STATUS_OK) {
+            assert_close(2 * M_PI / b.model.omega[0], 0.6803, 1e-4);
+            assert_close(2 * M_PI / b.model.omega[1], 0.1891, 1e-3);
+            building_free(&b);
+        }
+    }
+}
+
 SUITE(make_place, clear_place)

@@ -70,7 +70,7 @@ proc x::node {tag x z args} {
     if {$::wiped} {error "the model above was wiped; keep one of the two"}
     if {!$::ready} {error "'model BasicBuilder -ndm 2 -ndf 3' must stand above"}
     set t [new node $tag]
-    if {$args ne {} && ([lindex $args 0] ne "-mass" || [llength $args] != 1 + $::dofs)} {
+    if {$args ne {} && ([lindex $args 0] ne "-mass" || [llength $args] <= $::dofs)} {
         error "behind TAG x y only -mass mx my mr is read"
     }
     set ::node($t) [numbers $x $z]
@@ -218,7 +218,7 @@ proc x::section {type tag args} {
             if {!($E > 0 && $A > 0 && $I > 0)} {error "area $A, inertia $I and E $E must be above 0"}
             set s [list [expr {$E * $A}] [expr {$E * $I}] [expr {$alpha ne {} ? $G * $A * $alpha : 0}]]
         }
-        Aggregator {
+        Aggregator - Uniaxial {
             if {[lindex $args end-1] eq "-section"} {
                 set s [section_of [lindex $args end]]
                 set args [lrange $args 0 end-2]
@@ -237,7 +237,7 @@ proc x::section {type tag args} {
         }
         default {error " $type: only Elastic TAG E A I, Aggregator and Fiber are read"}
     }
-    if {!([lindex $s 0] > 0 && [lindex $s 1] > 0)} {error " $type: E A is [lindex $s 0] and E I [lindex $s 1]; both must be above 0"}
+    if {[expr [join $s +]] <= 0} {error " $type: E A is 0, and so are E I and G A"}
     set ::section([new section $tag]) $s
 }
 
@@ -326,7 +326,7 @@ proc member {type words} {
             return [list [list [expr {$E * $A}] [expr {$E * $I}] 0] [lindex $words 3]]
         }
         elasticBeamColumn,2 {return [list [lreplace [section_of [lindex $words 0]] 2 2 0] [lindex $words 1]]}
-        ElasticTimoshenkoBeam,6 {
+        elasticTimoshenkoBeam,6 {
             lassign [numbers {*}[lrange $words 0 4]] E G A I shear
             return [list [list [expr {$E * $A}] [expr {$E * $I}] [expr {$G * $shear}]] [lindex $words 5]]
         }
@@ -351,6 +351,7 @@ proc member {type words} {
 }
 
 proc x::element {type tag i j args} {
+    set type [string tolower $type 0 0]
     set i [have node $i]
     set j [have node $j]
     set t [new element $tag]
@@ -376,7 +377,10 @@ proc x::element {type tag i j args} {
             -lMass {set consistent 0}
             -iter {set options [lrange $options 2 end]}
             -integration {set options [lrange $options 1 end]}
-            default {error " $type: '[string range $key 0 59]' is not read"}
+            default {
+                if {[string match -* $key]} {error " $type: '[string range $key 0 59]' is not read"}
+                note $key
+            }
         }
     }
     if {[numbers $rho] < 0} {error "a mass of $rho; it must not be negative"}
@@ -384,7 +388,7 @@ proc x::element {type tag i j args} {
     lassign [span $i $j $offsets] dx dz
     set l [expr {hypot($dx, $dz)}]
     if {!($l > 0)} {error "element $t has no length: nodes $i and $j are at one place"}
-    if {!([lindex $s 0] > 0)} {error "area times E is [lindex $s 0]; it must be above 0"}
+    if {!([lindex $s 0] > 0 && [lindex $s 1] > 0)} {error "E A is [lindex $s 0] and E I [lindex $s 1]; both must be above 0"}
     set ::element($t) [dict create i $i j $j s $s rho [expr {$consistent ? $rho : 0}] \
         mass [expr {$consistent ? 0 : $rho * $l}] pins [list [expr {$release & 1}] [expr {$release >> 1}]] \
         offsets $offsets spring 0 k {0 0 0} axis {1 0}]
@@ -394,10 +398,10 @@ proc x::element {type tag i j args} {
 # ---- around the model ---------------------------------------------------------------------------------------------
 
 # Loads, damping, analysis, output, display: no part of the structure.
-set skipped {algorithm analysis analyze constraints database defaultUnits display eigen eleLoad eleResponse fconfigure flush
+set skipped {algorithm analysis analyze constraints database defaultUnits display eigen eleLoad eleResponse fconfigure fill flush
     getTime groundMotion imposedMotion initialize integrator load loadConst logFile modalDamping modalProperties nodeAccel
-    nodeDisp nodeEigenvector nodeReaction nodeVel numberer parameter pattern plane port print printA projection prp puts
-    rayleigh reactions record recorder region remove reset save setTime sp start stop system test timeSeries viewWindow
+    nodeBounds nodeDisp nodeEigenvector nodeReaction nodeVel numberer parameter pattern plane port print printA projection prp puts
+    rayleigh reactions record recorder region remove reset save setPrecision setTime sp start stop system test timeSeries viewWindow
     vpn vrp vup wipeAnalysis}
 
 # puts is none worth a word. A result of an analysis is 0; eigen has as many eigenvalues of 1 as it was asked for. What
@@ -411,9 +415,15 @@ proc skip {name words} {
     }
     if {$name ne "puts"} {note $name}
     if {$name in {eigen analyze}} {set ::analysed 1}
+    if {$name eq "nodeBounds"} {return {-1 -1 -1 1 1 1}}
     if {$name ne "eigen"} {return 0}
     set n [lindex $words end]
     return [expr {[string is integer -strict $n] && $n > 0 && $n <= 1000 ? [lrepeat $n 1] : {}}]
+}
+
+proc x::nodeCoord {tag {direction {}}} {
+    set xz $::node([have node $tag])
+    return [expr {$direction eq {} ? $xz : [lindex $xz [string map {X 1 Y 2} $direction]-1]}]
 }
 
 proc x::wipe args {set ::wiped [expr {$::nodes ne {}}]}
@@ -485,7 +495,7 @@ proc take {name args} {
     if {[catch {
         if {[info procs ::x::$name] eq {}} {skip $name $args} else {x::$name {*}$args}
     } result]} {
-        if {!$::ended && !$::failed} {
+        if {!$::ended && !$::failed && !($::analysed && $name in {open cd file source})} {
             regsub {^wrong # args: should be "x::\S+ ?(.*)"$} $result {wants \1} result
             refuse "[where]: $::command[expr {$::command eq {} || [string index $result 0] eq " " ? {} : {: }}]$result"
         }

@@ -135,13 +135,15 @@ void frame_free(Frame *f)
 
 /* ---- floors --------------------------------------------------------------------------------------------------- */
 
-/* Numbers the floors: heights of the level elements whose ends may move sideways, each once, from below. */
+/* Numbers the floors: heights of the level elements whose ends may move sideways, or, where there is none, of the masses
+ * that may, each once, from below. */
 static Status number_floors(Frame *f, Err *err)
 {
     const FrameNode *node = f->node;
     double *z, lo = node[0].z, hi = lo;
     int found = 0, n = 0;
-    TRY_ROOM(z, f->n[FRAME_ELEMENTS], "heights of a frame", err);
+    const int room = MAX_OF(f->n[FRAME_ELEMENTS], f->n[FRAME_NODES]);
+    TRY_ROOM(z, room, "heights of a frame", err);
     for (int i = 1; i < f->n[FRAME_NODES]; i++) {
         lo = fmin(lo, node[i].z);
         hi = fmax(hi, node[i].z);
@@ -152,6 +154,10 @@ static Status number_floors(Frame *f, Err *err)
         if (fabs(a->z - b->z) <= tolerance && !a->fixed[FRAME_X] && !b->fixed[FRAME_X])
             z[found++] = a->z;
     }
+    const int is_stick = found == 0;
+    for (int i = 0; i < f->n[FRAME_NODES] && is_stick; i++) /* a stick of masses */
+        if (node[i].mass[FRAME_X] > 0 && !node[i].fixed[FRAME_X])
+            z[found++] = node[i].z;
     sort_values(found, z);
     for (int i = 0; i < found; i++)
         if (n == 0 || z[i] - z[n - 1] > tolerance)

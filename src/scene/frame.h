@@ -13,7 +13,7 @@
  * inertia at nodes.
  *
  * Floors are the heights given in column floor; without it the heights at which a level element ends in nodes that may
- * move sideways. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
+ * move sideways, or, of a stick without level elements, those of masses that may. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
  * node nearest the middle. Everything else is removed by Guyan reduction:
  *
  *   T = [1; -Kss^-1 Ksm],  K = T' K T,  M = T' M T         s the removed unknowns, m the floors

@@ -251,7 +251,8 @@ static void assemble_slaves(const Condensation *c)
         double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
         element_matrices(c->frame, e, c->unknown, at, k, m);
         for (int i = 0; i < LOCAL; i++) {
-            c->diag[at[i]] += k[i][i];
+            for (int j = 0; j < LOCAL; j++) /* what ties cancel is not there to be lost */
+                c->diag[at[i]] += at[i] == at[j] ? k[i][j] : 0;
             for (int j = 0; j < LOCAL && at[i] < n; j++) {
                 if (at[j] >= n && at[j] < c->n)
                     c->T[(at[j] - n) * c->rows + at[i]] -= k[i][j];

@@ -130,7 +130,7 @@ Status opensees_read(Frame *f, const char *path, double length_m, double force_n
     else
         status = take_frame(f, in, err);
     if (word[0] == 'n')
-        snprintf(f->note, sizeof f->note, "%s", text);
+        snprintf(f->note, sizeof f->note, "%.399s", text);
     if (in)
         fclose(in);
     return status;
