@@ -365,8 +365,7 @@ TEST(what_yields_is_refused_or_taken_by_its_initial_stiffness)
     Building b;
     Err err = {0};
     assert_int_equal(building_load(&b, &o, &err), STATUS_BAD_DATA);
-    assert_non_null(
-        strstr(err.text, "uniaxialMaterial Steel01: only Elastic TAG E is read; building.elastic"));
+    assert_non_null(strstr(err.text, "uniaxialMaterial Steel01: only Elastic TAG E is read; building.elastic"));
     o.elastic = ELASTIC_INITIAL;
     CHECK_OK(building_load(&b, &o, &err), &err);
     Building wanted = import(ELASTIC, BUILDING_KN_M_T);

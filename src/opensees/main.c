@@ -1,7 +1,7 @@
-/* opensees/main.c -- the program that reads an OpenSees model for scene/opensees.c, which executes it: a model is a program
- * and may crash, wait or fill the memory. It has limits of memory, processor time and clock, reads files below the
- * model's folder, writes into its standard output alone, and ends with the program that started it. model.tcl, which is
- * part of it, does the reading.
+/* opensees/main.c -- the program that reads an OpenSees model for scene/opensees.c, which executes it: a model is a
+ * program and may crash, wait or fill the memory. It has limits of memory, processor time and clock, reads files below
+ * the model's folder, writes into its standard output alone, and ends with the program that started it. model.tcl,
+ * which is part of it, does the reading.
  *
  *   imtet-opensees MODEL METRES_PER_UNIT NEWTONS_PER_UNIT 0|1 (what yields is taken by its initial stiffness) */
 #include <limits.h>
@@ -49,8 +49,8 @@ static void set_limits(void)
     alarm(OPENSEES_SECONDS);
 }
 
-/* level: of the commands of the innermost file; 0: none of them has run; -1: nor has the one that runs the file. Says the line under way, for the case that it is
- * the last. */
+/* level: of the commands of the innermost file; 0: none of them has run; -1: nor has the one that runs the file. Says
+ * the line under way, for the case that it is the last. */
 static int level;
 static int say_line(ClientData around, Tcl_Interp *tcl, int deep, const char *text, Tcl_Command command, int n,
                     Tcl_Obj *const words[])

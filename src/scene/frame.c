@@ -135,8 +135,8 @@ void frame_free(Frame *f)
 
 /* ---- floors --------------------------------------------------------------------------------------------------- */
 
-/* Numbers the floors: heights of the level elements whose ends may move sideways, or, where there is none, of the masses
- * that may, each once, from below. */
+/* Numbers the floors: heights of the level elements whose ends may move sideways, or, where there is none, of the
+ * masses that may, each once, from below. */
 static Status number_floors(Frame *f, Err *err)
 {
     const FrameNode *node = f->node;

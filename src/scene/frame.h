@@ -8,13 +8,14 @@
  *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
  *
  * Elements are beam-columns: axial stiffness EA/l, bending by scene/core_beam.h (shear where shear_area_m2 is given),
- * pinned ends without moment; OpenSees models have springs, rigid arms and links besides. Their own mass and the added one lie evenly along them (consistent mass, no rotary
- * inertia of sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary
- * inertia at nodes.
+ * pinned ends without moment; OpenSees models have springs, rigid arms and links besides. Their own mass and the added
+ * one lie evenly along them (consistent mass, no rotary inertia of sections); masses.csv adds masses (along z the same
+ * as along x unless mass_z_kg says otherwise) and rotary inertia at nodes.
  *
  * Floors are the heights given in column floor; without it the heights at which a level element ends in nodes that may
- * move sideways, or, of a stick without level elements, those of masses that may. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
- * node nearest the middle. Everything else is removed by Guyan reduction:
+ * move sideways, or, of a stick without level elements, those of masses that may. With rigid floors all nodes of a
+ * floor have one displacement x; else the floor is represented by its node nearest the middle. Everything else is
+ * removed by Guyan reduction:
  *
  *   T = [1; -Kss^-1 Ksm],  K = T' K T,  M = T' M T         s the removed unknowns, m the floors
  *
