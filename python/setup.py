@@ -18,8 +18,10 @@ class BuildWithLibrary(build_py):
     def run(self) -> None:
         super().run()
         name = f"build/release/libimtet.so.{VERSION}"
-        subprocess.run(["make", "-C", ROOT, f"-j{os.cpu_count()}", name], check=True)
+        reader = "imtet-opensees"  # which the library executes
+        subprocess.run(["make", "-C", ROOT, f"-j{os.cpu_count()}", name, reader], check=True)
         shutil.copy(os.path.join(ROOT, name), os.path.join(self.build_lib, "imtet", "libimtet.so"))
+        shutil.copy(os.path.join(ROOT, reader), os.path.join(self.build_lib, "imtet", reader))
 
 
 class WheelOfThisMachine(bdist_wheel):

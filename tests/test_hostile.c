@@ -64,10 +64,10 @@ static const struct {
 };
 enum { N_HOSTILE = sizeof HOSTILE / sizeof HOSTILE[0] };
 
-static Status read_model(const char *path, Err *err)
+static Status read_model(const char *path, Err *why)
 {
     Frame f;
-    const Status status = opensees_read(&f, path, 1, 1, 0, err);
+    const Status status = opensees_read(&f, path, 1, 1, 0, why);
     frame_free(&f);
     return status;
 }
@@ -119,7 +119,7 @@ TEST(files_that_are_no_models_are_refused)
     assert_int_equal(symlink("/dev/zero", zero), 0);
     assert_int_equal(mkfifo(pipe, 0777), 0);
     assert_int_equal(mkdir(folder, 0777), 0);
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(read_model(deep, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "deep.tcl:1: brackets in brackets, more than 200 deep"));
     char *const others[] = {zero, pipe, folder};
@@ -139,7 +139,7 @@ TEST(a_model_changes_neither_locale_nor_signals_nor_limits_of_its_caller)
     struct rlimit before, after;
     write_in_place("bad.tcl", "set x a; while 1 {append x $x}\n");
     char *path = in_place("bad.tcl");
-    Err err = {0};
+    err = (Err){0};
     getrlimit(RLIMIT_AS, &before);
     assert_int_equal(read_model(path, &err), STATUS_BAD_DATA);
     getrlimit(RLIMIT_AS, &after);

@@ -363,7 +363,7 @@ TEST(what_yields_is_refused_or_taken_by_its_initial_stiffness)
         "element zeroLength 9 3 33 -mat 2 -dir 6\nelement elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n";
     BuildingOptions o = options_of(MODEL, BUILDING_KN_M_T);
     Building b;
-    Err err = {0};
+    err = (Err){0};
     assert_int_equal(building_load(&b, &o, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "uniaxialMaterial Steel01: only Elastic TAG E is read; building.elastic"));
     o.elastic = ELASTIC_INITIAL;
@@ -413,7 +413,7 @@ TEST(the_models_of_the_shared_cases_are_read_or_refused)
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         BuildingOptions o = scene_defaults().building;
         Building b;
-        Err err = {0};
+        err = (Err){0};
         snprintf(o.model, sizeof o.model, "%s/%s.tcl", folder, CASES[i][0]);
         o.units = BUILDING_KIP_IN;
         const Status s = building_load(&b, &o, &err);
