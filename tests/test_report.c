@@ -39,7 +39,7 @@ static int set_up(void **state)
     expect(0, "twin.csv has the content of ", "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2");
     expect(0, "", "report @/dtlz");
     CHECK_OK(run_read(&tower, path_of("tower", path), &err), &err);
-    const DetailOptions options = {.floor = -1, .other = tower.settings, .n_records = 1, .records = records};
+    const DetailOptions options = {.other = tower.settings, .n_records = 1, .records = records};
     CHECK_OK(report_open(&report, &tower, tower.n_front > 0 ? run_knee(&tower) : 0, &options, &err), &err);
     return 0;
 }
@@ -357,7 +357,7 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
     CHECK_OK(settings_put(&s, "sim.robust", "mean", &err), &err);
     CHECK_OK(settings_put(&s, "sim.duration_s", "3", &err), &err);
     const double *x = tower.table.row[run_knee(&tower)].x;
-    const DetailOptions options = {.floor = -1, .without_devices = 1, .other = &s};
+    const DetailOptions options = {.without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
     json_t *page = detail_json(&several, &tower.schema.order),
            *ends = json_object_get(json_object_get(page, "band"), "drift_m");
