@@ -7,11 +7,11 @@ WASM_FLAGS.random        := -D__aarch64__
 WASM_FLAGS.building_read := -Dbuilding_read=building_of_files
 COMMA := ,
 WASM_KERNELS := kernel_base plain_base
+# What reads files, draws random motions or needs LAPACK has its stand-in in src/wasm; the linker leaves out what nobody calls.
 WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c \
-            $(addprefix src/scene/,building.c building_read.c core_beam.c design.c foundation.c frame_reduce.c neighbour.c reduction.c) \
-            $(addprefix src/base/,csv.c filter.c keyed.c linalg_sums.c list.c option.c pack.c random.c stat.c status.c visible.c) \
-            $(addprefix src/settings/,rules.c settings.c settings_read.c) \
-            $(addprefix src/motion/,forces.c motion.c motion_read.c motion_scale.c spectrum.c suite.c text_form.c) \
+            $(filter-out %/opensees.c %/sheets.c,$(wildcard src/scene/*.c)) $(wildcard src/settings/*.c) \
+            $(filter-out %/linalg.c %/text.c %/json.c %/whole_file.c,$(wildcard src/base/*.c)) \
+            $(filter-out %/builtin.c %/synthetic.c,$(wildcard src/motion/*.c)) \
             $(addprefix src/evaluate/,consequences.c measures.c portable.c replicates.c scenario.c)
 WASM_OBJ := $(WASM_SRC:%.c=build/wasm/%.o) $(WASM_KERNELS:%=build/wasm/%.o)
 

@@ -133,7 +133,7 @@ unsigned char *engine_room(size_t n)
     return malloc(n);
 }
 
-Page *pngine_open(unsigned char *bytes, size_t n)
+Page *engine_open(unsigned char *bytes, size_t n)
 {
     Err err = {0};
     Page *p = calloc(1, sizeof *p);
