@@ -192,7 +192,7 @@ TEST(the_tower_has_its_known_response_at_the_corner)
     settings_defaults(&s);
     CHECK_OK(settings_read(&s, "configs/engineer.ini", NULL, NULL, &err), &err);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", KOBE);
-    snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=11.3 weight=2.4e7");
+    snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=11.3 weight=2.4e7 anchors=1e9");
     s.building.yield_drift = 0;
     s.contact.eccentricity = LIST_OF(SHARE);
     s.sim.duration_s = 80;
