@@ -18,7 +18,7 @@ static const struct {
     {"set x a; while 1 {append x $x}\n", "more than"},
     {"binary format a2000000000 x\n", "more than"},
     {HEAD "string repeat x 2000000000\n", ":4: "},
-    {"set x [lrepeat 100000000 [lrepeat 10 a]]\n", "more than"},
+    {"set x [lrepeat 500000000 [lrepeat 10 a]]\n", "more than"},
     {"set x 1\n\nset l a; for {set i 0} {$i < 60} {incr i} {set l [list $l $l]}; string length $l\n", ":3: "},
     {"format %2000000000d 1\n", ":1: "},
     {"regexp {(a*)*b} [string repeat a 5000]; expr {7**900000000}\n", ":1: "},
