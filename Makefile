@@ -5,8 +5,8 @@
 #   T="moga rbf"                              with test: these tests only, in MODE
 
 VERSION  := 0.2.0
-# Of the manual pages: the day of the last commit, or where there is no history that of the changelog of Debian.
-DATE     ?= $(shell git log -1 --format=%cs 2>/dev/null || dpkg-parsechangelog -S Date | date +%F -f -)
+# Of the manual pages: the day of the last commit; without history the newest day of the changelog.
+DATE     ?= $(shell git log -1 --format=%cs 2>/dev/null || grep -om1 '20[0-9][0-9]-[0-9][0-9]-[0-9][0-9]' CHANGELOG.md)
 REVISION ?= $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 MODE     ?= release
 BUILD    := build/$(MODE)
