@@ -261,18 +261,18 @@ TEST(damping_peak_and_gaps_beyond_reason_are_noticed)
 
 #define LIFTS "--design @/lifts.csv --set sim.duration_s=8 --set "
 
-/* No weight holds a core on a disc of 1 m; springs of their own may be anchored. */
+/* No weight holds a core on a disc of 1 m; where nothing is said, weight alone holds it. Springs of their own may be anchored. */
 TEST(a_foundation_that_would_lift_is_noticed)
 {
     write_building(1, 1, 0);
     write_in_place("lifts.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                                 "0.001,0.001,0.001,0.001,0.001,0.001,0.012,0.01\n");
     expect_warnings("core.foundation", LIFTS "'core.foundation=soil=C radius=1'");
-    expect_text("more than weight can hold", LIFTS "'core.foundation=soil=C radius=1'");
+    expect_text("the core's mat lifts: it turns by", LIFTS "'core.foundation=soil=C radius=1'");
+    expect_text("anchors must hold it down by", LIFTS "'core.foundation=soil=C radius=1 anchors=inf'");
     expect_warnings("", LIFTS "'core.foundation=soil=C radius=10 weight=1e9'");
     expect_warnings("", LIFTS "core.foundation=rotation=1e11");
-    expect_output("begins to lift",
-                  "simulate @/six.ini --set sim.forces=yes " LIFTS "'core.foundation=soil=C radius=1'");
+    expect_output("mat lifts", "simulate @/six.ini --set sim.forces=yes " LIFTS "'core.foundation=soil=C radius=1'");
 }
 
 TEST(an_objective_or_a_limit_that_no_run_can_have_is_a_fault)

@@ -245,7 +245,7 @@ TEST(the_cost_is_that_of_the_table_of_prices)
             Tower t;
             tower_set(&t, "gaps, thickness, bumper, links, tuned_mass", ENGINE_FAST, 0.006);
             snprintf(t.settings.design.devices, OPTION_TEXT_MAX, "bumper, link, none");
-            t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13};
+            t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13, 0};
             t.settings.design.device_zones = 2;
             t.settings.design.link_zones = 1;
             t.settings.sim.duration_s = 3;
@@ -259,7 +259,7 @@ TEST(the_cost_is_that_of_the_table_of_prices)
     Tower t;
     tower_set(&t, "gaps, thickness", ENGINE_FAST, 1);
     t.settings.sim.duration_s = 3;
-    t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13};
+    t.settings.design.prices = (PriceOptions){3, 0.5, 7, 11, 13, 0};
     const SimResult links = tower_run(&t, SCENE_LINKS, (LinearDevice){.link_ns_m = 1e6});
     const SimResult mass = tower_run(&t, SCENE_TMD, (LinearDevice){.tmd_hz = 0.25, .tmd_damping = 0.1});
     assert_true(links.n_devices == FLOORS && mass.n_devices == 1);

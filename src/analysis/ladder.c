@@ -46,19 +46,21 @@ static void take_value(const char *key, const char *value, void *to)
 
 /* -- effects ------------------------------------------------------------------------------------------------------- */
 
-/* Those of the settings, else weight alone; and without them. */
-static void set_anchors(const char *now, LadderEffect *e)
+/* Those of the settings, else weight alone; and a mat that never lifts. */
+static void set_anchors(const char *now, int is_set, LadderEffect *e)
 {
-    const char *word = strstr(now, "anchors=");
-    e->is_set = word != NULL;
-    const char *const weight = " anchors=1";
-    snprintf(e->with, sizeof e->with, "%.*s%s", (int)(sizeof e->with - strlen(weight) - 1), now, word ? "" : weight);
-    if (word)
-        snprintf(e->without, sizeof e->without, "%.*s%s", (int)(word - now), now, word + strcspn(word, " "));
+    const char *word = strstr(now, " anchors=");
+    const int n = word ? (int)(word - now) : (int)strlen(now);
+    e->is_set = is_set;
+    snprintf(e->without, sizeof e->without, "%.*s anchors=inf%s", n, now,
+             word ? word + 1 + strcspn(word + 1, " ") : "");
+    if (!is_set)
+        snprintf(e->with, sizeof e->with, "%.*s anchors=1%s", n, now, word ? word + 1 + strcspn(word + 1, " ") : "");
 }
 
 static void set_values(const Job *job, int kind, const char *now, LadderEffect *e)
 {
+    Foundation f;
     const char *with = EFFECTS[kind].with ? EFFECTS[kind].with : now;
     const char *without = EFFECTS[kind].without ? EFFECTS[kind].without : now;
     *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key};
@@ -67,10 +69,10 @@ static void set_values(const Job *job, int kind, const char *now, LadderEffect *
     snprintf(e->without, sizeof e->without, "%s", kind == STEPS && e->is_set ? "standard" : without);
     if (kind == END)
         snprintf(e->without, sizeof e->without, "%.6g", job->strong_s);
-    if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core */
-        snprintf(e->with, sizeof e->with, "soil=C radius=%g", job->s.core.width_m);
+    if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core, held down */
+        snprintf(e->with, sizeof e->with, "soil=C radius=%g anchors=inf", job->s.core.width_m);
     if (kind == LIFT)
-        set_anchors(now, e);
+        set_anchors(now, foundation_parse(job->s.core.foundation, 1, &f, NULL) == STATUS_OK && f.anchors > 0, e);
 }
 
 static int is_there(const Job *job, int kind)

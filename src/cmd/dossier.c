@@ -321,21 +321,29 @@ static void say_not_covered(Dossier *o)
 {
     const Settings *s = o->s;
     Document *doc = &o->doc;
+    char text[UPLIFT_WORDS_MAX];
     document_say(doc, "h2", "What is not covered");
-    document_say(doc, "li", "Torsion, friction and the vertical motion. One contact per floor and side.");
     document_say(doc, "li",
-                 "The mass of the core, %.0f t, is that of its bare walls. It has no stiffeners, diaphragms or "
-                 "connections; where the bare wall buckles, their mass is missing here and in every objective.",
+                 "Torsion but of contacts off the centre, ground motion in two directions, the vertical motion. One "
+                 "contact per floor and side, without friction.");
+    document_say(doc, "li",
+                 "The mass of the core, %.0f t, is that of its walls and of core.stiffeners. It has no diaphragms or "
+                 "connections; where a wall buckles, the mass of further stiffeners is missing here and in every "
+                 "objective.",
                  1e-3 * o->d->result[SCENE_IMPACT].mcore_kg);
     document_say(doc, "li",
                  "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
-                 "floors as diaphragms, local stresses and fatigue are not designed.");
+                 "collectors that yield, floors as diaphragms, local stresses and fatigue are not designed.");
+    if (foundation_lifts(&o->d->result[SCENE_IMPACT]))
+        document_say(doc, "li", "Foundation: %s.", uplift_words(&o->d->result[SCENE_IMPACT], text));
     if (strcmp(s->core.foundation, "fixed") == 0)
         document_say(doc, "li",
                      "The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.",
                      1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
         document_say(doc, "li", "The tower is linear: nothing yields, whatever its drift.");
+    else
+        document_say(doc, "li", "Damping of the tower stays that of its elastic modes while storeys yield.");
     if (!s->building.p_delta)
         document_say(doc, "li", "P-delta is left out.");
     document_say(doc, "li",

@@ -177,17 +177,6 @@ void document_motion(Document *d, const Motion *m, double duration_s)
         document_say(d, "p", "  warning: %s", m->warning);
 }
 
-const char *uplift_words(const SimResult *r, char text[NOTE_MAX])
-{
-    if (r->mat_rotation_rad > 0)
-        snprintf(text, NOTE_MAX, "the mat lifts: it turns by %.3g rad", r->mat_rotation_rad);
-    else
-        snprintf(text, NOTE_MAX,
-                 "the core's moment is %.3g times that at which its foundation begins to lift%s: anchors must hold it",
-                 r->forces.uplift_ratio, r->forces.uplift_ratio > LIFTED ? ", more than weight can hold" : "");
-    return text;
-}
-
 /* What there is of errors and deviations; NULL: nothing. error: likely ones, behind the sign stands their bound,
  * which 95 % keep, as the errors of named designs do. word: what the deviation is, in the place of "sd". */
 static void put_objectives(json_t *row, const MeasureOrder *order, const double value[], const double error[],

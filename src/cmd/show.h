@@ -50,9 +50,6 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
 
 enum { NOTE_MAX = 200 };
 
-/* Of a foundation that lifts (sim/result.h), in text; returns it. */
-const char *uplift_words(const SimResult *r, char text[NOTE_MAX]);
-
 /* A row of means and standard deviations of the objectives (standard errors, where every one of several records has one
  * replicate); without them where a replicate failed. error: likely ones of the integration (N_MEASURES), which every
  * replicate has; NULL: not known. */

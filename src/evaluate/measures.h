@@ -97,7 +97,7 @@ enum {
       "largest stroke of a link or tuned mass")                                                                        \
     X(DEVICE_SHARE, "ed_devices_pct", "%", -1, IS_BORNE, r->ed_devices_pct, "share of links and tuned mass", "%", 1,   \
       "share of the input dissipated by links and the tuned mass")                                                     \
-    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "cost", "", 1, "of devices and core by design.prices")             \
+    X(COST, "cost", "-", 1, NEEDS_NOTHING, r->cost, "cost", "", 1, "of devices, core and anchors by design.prices")    \
     X(LOSS, "loss", "-", 1, NEEDS_NOTHING, damage_loss(r), "repair cost", "%", 100,                                    \
       "expected cost of repair over that of replacing the building (evaluate/consequences.h)")                         \
     X(ANNUAL_LOSS, "annual_loss", "1/year", 1, NEEDS_NOTHING,                                                          \
@@ -113,7 +113,10 @@ enum {
       r->neighbour.j3_filtered_g, "neighbour's J3 filtered", "g", 1,                                                   \
       "its largest floor acceleration behind a low-pass of sim.filter_hz")                                             \
     X(NEIGHBOUR_LOSS, "neighbour_loss", "-", 1, NEEDS_NEIGHBOUR | IS_BORNE, damage_loss_of_neighbour(r),               \
-      "neighbour's repair cost", "%", 100, "loss of the building of core.model")
+      "neighbour's repair cost", "%", 100, "loss of the building of core.model")                                       \
+    X(ANCHOR_FORCE, "anchor_force_n", "N", 1, NEEDS_FEW_FORCES | NEEDS_RADIUS | IS_BORNE, r->forces.anchor_force_n,    \
+      "anchors", "MN", 1e-6,                                                                                           \
+      "force by which anchors hold the core's foundation down beside its weight; anchors=inf: what that takes")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, title, shown, factor, what) MEASURE_##id,

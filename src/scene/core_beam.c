@@ -158,6 +158,16 @@ double core_beam_dashpot_share(const CoreBeam *c)
     return fmax(turns, f->translation > 0 ? omega * f->translation_dashpot / f->translation : 0);
 }
 
+double core_beam_weight(const CoreBeam *c)
+{
+    return c->base.weight_n + GRAVITY * c->mass_kg;
+}
+
+double core_beam_anchor(const CoreBeam *c)
+{
+    return fmax(c->base.anchors - 1, 0) * core_beam_weight(c);
+}
+
 /* [s] A dashpot that gives way sooner than this is none. */
 static const double DASHPOT_FELT_S = 1e-4;
 
@@ -166,7 +176,7 @@ static Uplift uplift_of(const CoreBeam *c, double share)
 {
     const Foundation *f = &c->base;
     const double K = f->rotation, whole = K / (1 - share), C = f->rotation_dashpot;
-    const double moment = f->anchors * foundation_uplift_nm(f, f->weight_n + GRAVITY * c->mass_kg);
+    const double moment = f->anchors * foundation_uplift_nm(f, core_beam_weight(c));
     return (Uplift){moment / K, K, whole, C > DASHPOT_FELT_S * whole ? C : 0, f->cone_s};
 }
 
@@ -182,6 +192,7 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     memset(c, 0, sizeof *c);
     c->n = c->top = n;
     TRY(foundation_parse(o->foundation, o->foundation_factor, &c->base, err));
+    c->base.anchors = o->anchors > 0 ? o->anchors : base->anchors;
     for (int e = 0; e < n; e++) {
         const CoreStorey a = core_beam_storey(o, n, e, t_base_m, t_top_m);
         beam[e] = (Beam){.EI = E * a.inertia,

@@ -76,6 +76,10 @@ double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], in
 /* omega C / K at the first mode of the larger of the foundation's dashpots. */
 double core_beam_dashpot_share(const CoreBeam *c);
 
+/* [N] On its foundation; by which anchors of that factor hold it down beside that, 0: none, or it never lifts. */
+double core_beam_weight(const CoreBeam *c);
+double core_beam_anchor(const CoreBeam *c);
+
 /* The section in storey 0..n-1. */
 typedef struct {
     double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */

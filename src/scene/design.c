@@ -5,7 +5,7 @@
 /* -- variables ----------------------------------------------------------------------------------------------------- */
 
 /* The groups of variables in the order of x. */
-typedef enum { GAP, WALL, BUMPER, SIDE, LINK, SLIP, MASS, DEVICE, ROOF, N_GROUPS } Group;
+typedef enum { GAP, WALL, BUMPER, SIDE, ANCHOR, LINK, SLIP, MASS, DEVICE, ROOF, N_GROUPS } Group;
 _Static_assert((int)N_GROUPS == DESIGN_GROUPS, "a count for each group");
 
 /* A group by floors or zones has a unit, and its names are made of the first one and that; gaps have one for each of
@@ -21,6 +21,7 @@ static const struct {
     [BUMPER] =
         {"bumper", {"bumper"}, "_log10_n_m", 0, "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m"},
     [SIDE] = {"side", {"side_m"}, NULL, 1, "it must be above 0"},
+    [ANCHOR] = {"anchors", {"anchors"}, NULL, 1, "it must be 1, weight alone, or more"},
     [LINK] = {"links", {"link"}, "_n_s_m", 0, "a dashpot is not negative; 0: there is none"},
     [SLIP] = {"friction", {"friction"}, "_n", 0, "a force is not negative; 0: there is none"},
     [MASS] = {"tuned_mass", {"tuned_mass_kg", "tuned_mass_hz", "tuned_mass_damping"}, NULL, 3, "it must be above 0"},
@@ -31,7 +32,7 @@ static const struct {
 /* The words of design.variables as a set of groups. */
 static Status read_variables(const char *list, unsigned *set, Err *err)
 {
-    static const Group LISTED[] = {GAP, WALL, BUMPER, SIDE, LINK, MASS, SLIP};
+    static const Group LISTED[] = {GAP, WALL, BUMPER, SIDE, ANCHOR, LINK, MASS, SLIP};
     enum { N = N_OF(LISTED) };
     const char *words[N];
     char word[64];
@@ -202,8 +203,9 @@ int design_is_log(const DesignSpace *s, int j)
 
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
 {
-    const NumberList *const lists[] = {&o->gap_m,      &o->thickness_m, &o->bumper_n_m, &o->width_m,     &o->link_n_s_m,
-                                       &o->link_n_s_m, &o->mass_kg,     &o->mass_hz,    &o->mass_damping};
+    const NumberList anchors = {2, {1, o->anchors_max}};
+    const NumberList *const lists[] = {&o->gap_m,      &o->thickness_m, &o->bumper_n_m, &o->width_m, &anchors,
+                                       &o->link_n_s_m, &o->link_n_s_m,  &o->mass_kg,    &o->mass_hz, &o->mass_damping};
     for (int j = 0; j < s->n_var; j++) {
         int i = j;
         const Group group = group_of(s, &i);
@@ -271,6 +273,7 @@ void design_of(const DesignSpace *s, const double x[], Design *d)
     d->t_base = s->n_walls ? wall[0] : 0;
     d->t_top = s->n_walls ? wall[1] : 0;
     d->side = s->has_side ? x[s->first[SIDE]] : 0;
+    d->anchors = s->has_anchors ? x[s->first[ANCHOR]] : 0;
     d->mass_kg = has_mass ? mass[0] : 0;
     d->mass_hz = has_mass ? mass[1] : 0;
     d->mass_damping = has_mass ? mass[2] : 0;
@@ -341,6 +344,7 @@ Status design_check(const DesignSpace *space, int j, double value, const char *w
     const Group group = group_of(space, &j);
     if (group >= DEVICE                                  ? is_word
         : group == GAP || group == LINK || group == SLIP ? value >= 0
+        : group == ANCHOR                                ? value >= 1
                                                          : value > 0 && (group != BUMPER || value < 15))
         return STATUS_OK;
     return bad_data(err, "%s: %s is %g; %s", where, name, value, GROUPS[group].must);

@@ -9,6 +9,7 @@
  *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. |
  *                  bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
+ *   ..., anchors                                      anchors of its mat, times what weight holds (scene/foundation.h)
  *   ..., links     design.link_zones = 0              link_01_n_s_m.. of dashpots between floors and core
  *   ..., friction  design.link_zones = 0              friction_01_n.. of friction links between floors and core
  *   ..., tuned_mass                                   tuned_mass_kg, tuned_mass_hz, tuned_mass_damping, at the roof
@@ -40,19 +41,19 @@
 
 static const double DESIGN_OPEN_M = 10.0; /* [m] a gap as wide stands for no stop: wider than any building sways */
 
-enum { DESIGN_VARIABLES_MAX = (SIDES + 4) * FLOORS_MAX + 6 };
+enum { DESIGN_VARIABLES_MAX = (SIDES + 4) * FLOORS_MAX + 7 };
 
 typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_FRICTION, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
 
-/* x: gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), bumpers, side, links, friction links, the tuned
+/* x: gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), bumpers, side, anchors, links, friction links, the tuned
  * mass (n_mass = 3), choices of n_words devices, choice of a tuned mass or none at the roof. */
-enum { DESIGN_GROUPS = 9 };
+enum { DESIGN_GROUPS = 10 };
 
 typedef struct {
     int n_floors, n_var, n_words;
     union {
         struct {
-            int n_gaps, n_walls, n_bumpers, has_side, n_links, n_slips, n_mass, n_choices, has_roof;
+            int n_gaps, n_walls, n_bumpers, has_side, has_anchors, n_links, n_slips, n_mass, n_choices, has_roof;
         };
         int count[DESIGN_GROUPS]; /* the same as numbers of variables in the groups of x */
     };
@@ -98,6 +99,7 @@ typedef struct {
     double bumper[FLOORS_MAX];             /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
     double t_base, t_top;                  /* [m]; 0: there are none */
     double side;                           /* [m]; 0: as core.width_m says */
+    double anchors;                        /* [-]; 0: as core.foundation says */
     double link[FLOORS_MAX];               /* [N (s/m)^exponent]; 0: none */
     double friction[FLOORS_MAX];           /* [N]; 0: none */
     double mass_kg, mass_hz, mass_damping; /* of the tuned mass; 0: none */

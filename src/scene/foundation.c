@@ -27,7 +27,7 @@ static const KeyedNumber KEYS[N_KEYS] = {
     {"rotation_dashpot", 1, 1e-6, 1e30, 0},
     {"translation_dashpot", 1, 1e-6, 1e30, 0},
     {"weight", 1, 1e-6, 1e12, 0},
-    {"anchors", 1, 1, 1e12, 0},
+    {"anchors", 1, 1, INFINITY, 0},
 };
 static const double NU_OTHERWISE = 0.3, DENSITY_OTHERWISE = 2000; /* [-], [kg/m3] */
 
@@ -77,17 +77,28 @@ Status foundation_parse(const char *text, double factor, Foundation *f, Err *err
         f->translation_dashpot = sqrt(factor) * x[TRANSLATION_DASHPOT];
     f->radius_m = r;
     f->weight_n = x[WEIGHT];
-    f->anchors = x[ANCHORS];
+    f->anchors = isfinite(x[ANCHORS]) ? x[ANCHORS] : 0;
     if (f->rotation == 0 && f->translation == 0)
         return bad_data(err, "core.foundation: nothing gives way: it needs soil=A..D or g= [Pa] with "
                              "radius= [m], or rotation= [N m/rad] or translation= [N/m]; or fixed");
-    if (f->anchors > 0 && (f->radius_m == 0 || f->rotation == 0))
+    if (x[ANCHORS] > 0 && (f->radius_m == 0 || f->rotation == 0))
         return bad_data(err, "core.foundation: anchors= needs radius= of the foundation [m] and a spring against "
                              "rotation: soil=, g= or rotation=");
     if ((f->rotation == 0 && f->rotation_dashpot > 0) || (f->translation == 0 && f->translation_dashpot > 0))
         return bad_data(err, "core.foundation: a dashpot needs the spring beside it: rotation= [N m/rad], "
                              "translation= [N/m]");
     return STATUS_OK;
+}
+
+double foundation_complete(char text[OPTION_TEXT_MAX], int is_stored)
+{
+    Foundation f;
+    const size_t n = strlen(text);
+    if (foundation_parse(text, 1, &f, NULL) != STATUS_OK)
+        return 0;
+    if (!is_stored && f.radius_m > 0 && f.rotation > 0 && !strstr(text, "anchors="))
+        snprintf(text + n, OPTION_TEXT_MAX - n, " anchors=1");
+    return f.anchors;
 }
 
 double foundation_uplift_nm(const Foundation *f, double weight_n)

@@ -6,7 +6,7 @@
  *   rotation_dashpot=N m s/rad translation_dashpot=N s/m   likewise
  *   weight=N                                          that rests on the disc beside the core's, for the uplift
  *   anchors=FACTOR                                    the disc lifts from so many times M_up on (scene/uplift.h): 1,
- *                                                     where weight alone holds it; left out, it never lifts
+ *                                                     where weight alone holds it; inf or left out, it never lifts
  *
  *   K_theta = 8 G r^3 / (3 (1 - nu)),   K_x = 8 G r / (2 - nu)                            statics of the disc
  *   C_x = rho v_s pi r^2,   C_theta = rho c I b^2 / (1 + b^2),  I = pi r^4 / 4,  b = w z / c        radiation (cones)
@@ -24,7 +24,7 @@
  *          Nucl. Eng. Des. 38 (1976) 357-384; ASCE 7-16, table 20.3-1; ASCE 41-17, table 8-2 */
 #pragma once
 
-#include "base/status.h"
+#include "base/option.h"
 
 typedef struct {
     double rotation, translation;                 /* [N m/rad], [N/m]; 0: fixed */
@@ -36,6 +36,10 @@ typedef struct {
 
 /* factor: of the ground's stiffness; dashpots go with its root. */
 Status foundation_parse(const char *text, double factor, Foundation *out, Err *err);
+
+/* Writes out what a user means who says nothing of anchors where the radius is known: weight alone. The settings of a
+ * stored run keep what they say. Returns the anchors that it had. */
+double foundation_complete(char text[OPTION_TEXT_MAX], int is_stored);
 
 /* M_up [N m] under a weight [N]. */
 double foundation_uplift_nm(const Foundation *f, double weight_n);

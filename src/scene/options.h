@@ -61,6 +61,7 @@ typedef struct {
     char model[OPTION_TEXT_MAX];      /* another building in its place (scene/neighbour.h), or none */
     char foundation[OPTION_TEXT_MAX]; /* fixed, or words of scene/foundation.h */
     double foundation_factor;         /* of the ground's stiffness */
+    double anchors;                   /* of a design, in the place of those of `foundation`; 0: these */
     NumberList areas_m2, inertias_m4, shear_areas_m2, masses_kg; /* at base and top, or by storey; 0, none: no shear
                                                                   * deformation, density times area */
 } CoreOptions;
@@ -72,9 +73,9 @@ typedef struct {
     X(GAPS_EACH, "each")
 typedef enum { GAP_SIDES_LIST(CHOICE_NAME) } GapSides;
 
-/* Of a stop, the bumper in it, a link, and tonnes; any currency. */
+/* Of a stop, the bumper in it, a link, tonnes, and a MN of anchors; any currency. */
 typedef struct {
-    double gap, bumper, link, tuned_mass_t, core_t;
+    double gap, bumper, link, tuned_mass_t, core_t, anchor_mn;
 } PriceOptions;
 
 typedef struct {
@@ -87,5 +88,6 @@ typedef struct {
     NumberList step_thickness_m;                            /* plates that are sold; none: any */
     NumberList link_n_s_m, mass_kg, mass_hz, mass_damping;
     double link_exponent; /* [-] */
+    double anchors_max;   /* of core.foundation, no setting of its own */
     PriceOptions prices;
 } DesignOptions; /* the design variables and their bounds */

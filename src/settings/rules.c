@@ -35,6 +35,7 @@ static void check_structure(const Settings *s, const Rules *r)
     const double wall = d->thickness_m.at[1];
     char scalings[SCALINGS_TEXT_MAX];
     DesignSpace space;
+    Foundation f = {0};
     Err err;
     if (motion_scalings(m, scalings) > 1)
         break_rule(r, "motion: a record is scaled in one way, not in several: %s", scalings);
@@ -47,7 +48,7 @@ static void check_structure(const Settings *s, const Rules *r)
     if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
         break_rule(r, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 
-    if (foundation_parse(o->foundation, 1, &(Foundation){0}, &err) != STATUS_OK)
+    if (foundation_parse(o->foundation, 1, &f, &err) != STATUS_OK)
         break_rule(r, "%s", err.text);
     if (o->foundation_factor != 1 && is_fixed)
         break_rule(r, "core.foundation_factor: is of core.foundation, which is fixed; leave it at 1");
@@ -58,6 +59,8 @@ static void check_structure(const Settings *s, const Rules *r)
         break_rule(r, "%s", err.text);
         return;
     }
+    if (space.has_anchors && !(f.anchors > 1))
+        break_rule(r, "design.variables: anchors goes from 1 to the most of core.foundation: set its anchors= above 1");
     if (space.has_side && !is_box)
         break_rule(r, "design.variables: side is that of core.section = box");
     if (space.has_side && 2 * wall > d->width_m.at[0])

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "motion/builtin.h"
 #include "motion/suite.h"
+#include "scene/foundation.h"
 #include "settings/rules.h"
 #include "settings/table.h"
 
@@ -61,7 +62,7 @@ typedef char OptionText[OPTION_TEXT_MAX];
 /* In the order of PriceOptions, RepairOptions, UncertainOptions. */
 enum { SHARES_MAX = 7 };
 static const char REPAIR_WORDS[] = "structure|drift_sensitive|acceleration_sensitive";
-static const char PRICE_WORDS[] = "gap|bumper|link|tuned_mass_t|core_t";
+static const char PRICE_WORDS[] = "gap|bumper|link|tuned_mass_t|core_t|anchor_mn";
 static const char UNCERTAIN_WORDS[] =
     "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness|strength";
 
@@ -122,8 +123,8 @@ static const Option OPTIONS[] = {
     TEXT(core.foundation, "fixed",
          "ground under the core: fixed, or a rigid disc on soil=A..D (site class of ASCE 7) or g=PA with radius=M "
          "[nu=0.3 density=2000 weight=N], or springs rotation=N_m_rad translation=N_m with rotation_dashpot= "
-         "translation_dashpot=; anchors=FACTOR: the disc lifts from so many times the moment on that the weight holds "
-         "(docs/theory.md)"),
+         "translation_dashpot=; with radius= the disc lifts from anchors=FACTOR times the moment on that the weight "
+         "holds: 1, weight alone, where nothing is said; anchors=inf: it never lifts (docs/theory.md)"),
     REAL(core.foundation_factor, "-", "1", 1e-6, 1e6, "the stiffness of that ground times this, to bound it"),
     LIST(core.areas_m2, "m2", "1.567, 0.811", 1e-9, 1e4,
          "effective: areas, in the first and the last storey, or storey by storey from the bottom"),
@@ -229,11 +230,12 @@ static const Option OPTIONS[] = {
         "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness, of the "
         "damping ratios and of the strength (building.yield_drift); needs sim.replicates >= 2"),
 
-    TEXT(
-        design.variables, "gaps, thickness",
-        "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box), links "
-        "(dashpots between floors and core), friction (links of a constant force), tuned_mass (at the roof: mass, "
-        "frequency, damping ratio)"),
+    TEXT(design.variables, "gaps, thickness",
+         "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box), "
+         "anchors "
+         "(of its mat, from 1 to the anchors= of core.foundation), links "
+         "(dashpots between floors and core), friction (links of a constant force), tuned_mass (at the roof: mass, "
+         "frequency, damping ratio)"),
     CHOICE(
         design.gap_sides, GapSides, GAP_SIDES_LIST, "both",
         "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
@@ -265,9 +267,10 @@ static const Option OPTIONS[] = {
     BOUNDS(design.mass_kg, "kg", "1e4, 5e5", 1e-3, 1e9, "bounds of the search: tuned mass"),
     BOUNDS(design.mass_hz, "Hz", "0.1, 2", 1e-3, 1e3, "bounds of the search: frequency of the tuned mass"),
     BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
-    SHARES(design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4",
-           "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core; "
-           "the default is an example, in thousands of euros, no quotation"),
+    SHARES(
+        design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4 anchor_mn=2",
+        "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core, of a "
+        "MN by which anchors hold it down; the default is an example, in thousands of euros, no quotation"),
 
     CHOICE(problem.kind, ProblemKind, PROBLEM_KIND_LIST, "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator"),
@@ -337,7 +340,7 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = N_OF(OPTIONS) };
 
-_Static_assert(sizeof(PriceOptions) == 5 * sizeof(double), "a price for each of PRICE_WORDS");
+_Static_assert(sizeof(PriceOptions) == 6 * sizeof(double), "a price for each of PRICE_WORDS");
 _Static_assert(sizeof(RepairOptions) == 3 * sizeof(double), "a share for each of REPAIR_WORDS");
 _Static_assert(sizeof(UncertainOptions) == SHARES_MAX * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
@@ -688,7 +691,10 @@ Status settings_put(Settings *s, const char *key, const char *value, Err *err)
 {
     int i = 0;
     TRY(table_find(key, &i, err));
-    return table_assign(s, i, value, err);
+    TRY(table_assign(s, i, value, err));
+    if (field_of(s, &OPTIONS[i]) == s->core.foundation)
+        s->design.anchors_max = foundation_complete(s->core.foundation, 0);
+    return STATUS_OK;
 }
 
 Status settings_set(Settings *s, const char *assignment, Err *err)

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/csv.h"
+#include "scene/foundation.h"
 #include "settings/rules.h"
 #include "settings/table.h"
 
@@ -236,6 +237,7 @@ static Status read_text(Reading *r, char *text, size_t length, int *n_faults)
             report_fault(r, place_of(r, skip_blanks(line)), "holds a NUL byte; this is not a settings file");
         r->line += n_more;
     }
+    r->s->design.anchors_max = foundation_complete(r->s->core.foundation, r->is_stored);
     rules_check(r->s, report_broken, r);
     if (n_faults)
         *n_faults = r->n_faults;

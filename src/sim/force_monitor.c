@@ -603,8 +603,11 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
 
     /* The springs of the foundation carry the shear and the moment of the base. */
     const Foundation f = m->nc > 0 ? m->core->base : (Foundation){0};
-    const double weight = m->nc > 0 ? f.weight_n + GRAVITY * m->core->mass_kg : 0;
+    const double weight = m->nc > 0 ? core_beam_weight(m->core) : 0;
     out->base_rotation_rad = f.rotation > 0 ? out->core_overturning_nm / f.rotation : NAN;
     out->base_translation_m = f.translation > 0 ? out->core_base_shear_n / f.translation : NAN;
     out->uplift_ratio = f.radius_m > 0 ? out->core_overturning_nm / foundation_uplift_nm(&f, weight) : NAN;
+    out->anchor_force_n = f.radius_m == 0 ? NAN
+                          : f.anchors > 0 ? core_beam_anchor(m->core)
+                                          : fmax(out->uplift_ratio - 1, 0) * weight;
 }

@@ -14,6 +14,19 @@ const char *run_outcome_words(RunOutcome outcome)
     return WORDS[outcome];
 }
 
+const char *uplift_words(const SimResult *r, char text[UPLIFT_WORDS_MAX])
+{
+    const SimForces *f = &r->forces;
+    if (r->mat_rotation_rad > 0)
+        snprintf(text, UPLIFT_WORDS_MAX, "the core's mat lifts: it turns by %.3g rad", f->base_rotation_rad);
+    else
+        snprintf(text, UPLIFT_WORDS_MAX,
+                 "the core's moment is %.3g times that at which its mat begins to lift: anchors must hold it down "
+                 "by %.3g MN",
+                 f->uplift_ratio, 1e-6 * f->anchor_force_n);
+    return text;
+}
+
 /* What a part needs beside HAS_CORE, HAS_GAPS and HAS_DEVICE of the case. */
 enum { IF_FORCES = 32, IF_STRESS = 64, IF_BUCKLING = 128, IF_BUMPER = 256, IF_YIELDING = 512, IF_NEIGHBOUR = 1024 };
 

@@ -42,7 +42,8 @@ typedef struct {
     double core_base_shear_n, core_overturning_nm, core_top_m;
     double base_rotation_rad, base_translation_m; /* of the core's foundation; NAN: fixed */
     double uplift_ratio; /* overturning moment over that at which the foundation begins to lift; NAN: no radius known */
-    int stress_known;    /* the section has a shape: box or plate */
+    double anchor_force_n; /* by which anchors hold the foundation down; where it never lifts, what that takes */
+    int stress_known;      /* the section has a shape: box or plate */
     double core_storey_stress_pa[FLOORS_MAX], core_stress_pa, core_shear_stress_pa;
     int core_stress_storey;
     int buckling_known;                                                /* the section has walls: box */
@@ -160,13 +161,15 @@ static inline int beyond_contact_law(const SimResult *r)
     return r->indentation_ratio > INDENTATION_RATIO_MAX;
 }
 
-/* The foundation of the core begins to lift at its edge. From LIFTED on its weight alone does not hold the moment, M =
- * W r (scene/foundation.h). */
-#define LIFTED 3.0
+/* The foundation of the core lifts, or anchors keep it from that. */
 static inline int foundation_lifts(const SimResult *r)
 {
     return r->forces_known && r->forces.uplift_ratio > 1;
 }
+
+/* That in words: how far it turns, or what holds it. Returns text. */
+enum { UPLIFT_WORDS_MAX = 160 };
+const char *uplift_words(const SimResult *r, char text[UPLIFT_WORDS_MAX]);
 
 /* The state at one instant: modes 0..n_building-1 are the building's, the others the core's, each group padded with
  * idle ones. Energies since the start, as in SimResult; what the mode q has is (q'^2 + omega^2 q^2) / 2. */

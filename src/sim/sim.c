@@ -379,12 +379,14 @@ static Status make_core(SimWorker *w, const Design *d, Err *err)
         }
         return STATUS_OK;
     }
-    if (d->side > 0 && w->options != &w->own_options) {
+    if ((d->side > 0 || d->anchors > 0) && w->options != &w->own_options) {
         w->own_options = *w->options;
         w->options = &w->own_options;
     }
     if (d->side > 0)
         w->own_options.core.width_m = d->side;
+    if (d->anchors > 0)
+        w->own_options.core.anchors = d->anchors;
     return core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, d->t_base, d->t_top, err);
 }
 
@@ -541,6 +543,7 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
 
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
+    const PriceOptions *price = &w->scene->options.design.prices;
     const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
@@ -560,7 +563,9 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
     TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)
-        result->cost += 1e-3 * result->mcore_kg * w->options->design.prices.core_t;
+        result->cost += 1e-3 * result->mcore_kg * price->core_t;
+    if (SCENES[kind].has & HAS_CORE)
+        result->cost += 1e-6 * core_beam_anchor(&w->core) * price->anchor_mn;
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }
