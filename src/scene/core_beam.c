@@ -114,6 +114,11 @@ CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_ba
                         .shear_stress_per_n = (side * side * side - inner * inner * inner) / 8 / (inertia * 2 * t)};
 }
 
+double core_wall_factor(const CoreOptions *o)
+{
+    return o->wall_factor > 0 ? o->wall_factor : 1;
+}
+
 /* Refuses thicknesses that the section does not have, and lists of a length that the storeys do not have. */
 static Status check(const CoreOptions *o, int n, double t_base_m, double t_top_m, Err *err)
 {
@@ -195,10 +200,11 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     c->base.anchors = o->anchors > 0 ? o->anchors : base->anchors;
     for (int e = 0; e < n; e++) {
         const CoreStorey a = core_beam_storey(o, n, e, t_base_m, t_top_m);
-        beam[e] = (Beam){.EI = E * a.inertia,
-                         .kGA = shears ? G * a.shear_area : 0,
-                         .mass_per_m = a.mass_kg > 0 ? a.mass_kg / storey_m[e] : o->density_kg_m3 * a.area,
-                         .rotary_kg_m = shears ? o->density_kg_m3 * a.inertia : 0,
+        const double heavier = 1 + o->stiffeners, left = o->wall_share[e] > 0 ? o->wall_share[e] : core_wall_factor(o);
+        beam[e] = (Beam){.EI = E * a.inertia * left,
+                         .kGA = shears ? G * a.shear_area * left : 0,
+                         .mass_per_m = a.mass_kg > 0 ? a.mass_kg / storey_m[e] : o->density_kg_m3 * a.area * heavier,
+                         .rotary_kg_m = shears ? o->density_kg_m3 * a.inertia * heavier : 0,
                          .length = storey_m[e]};
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }

@@ -90,6 +90,9 @@ typedef struct {
 } CoreStorey;
 CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m);
 
+/* Share of the stiffness of the walls that a user gives; 1: all. */
+double core_wall_factor(const CoreOptions *o);
+
 /* Frequency of the first mode [Hz] by a theory that may be another than the options'. */
 Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err);

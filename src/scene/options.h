@@ -54,14 +54,21 @@ typedef enum { CORE_SECTION_LIST(CHOICE_NAME) } CoreSection;
 #define CORE_THEORY_LIST(X) X(CORE_TIMOSHENKO, "timoshenko") X(CORE_EULER_BERNOULLI, "euler_bernoulli")
 typedef enum { CORE_THEORY_LIST(CHOICE_NAME) } CoreTheory;
 
+#define CORE_WALL_LIST(X) X(WALL_FULL, "full") X(WALL_EFFECTIVE, "effective")
+typedef enum { CORE_WALL_LIST(CHOICE_NAME) } CoreWall;
+
 typedef struct {
     CoreSection section;
     CoreTheory theory;
+    CoreWall wall;
+    double wall_factor; /* a number as core.wall: share of the stiffness; 0: wall is one of the words */
+    double stiffeners;  /* [-] mass of them over that of the walls */
     double width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
     char model[OPTION_TEXT_MAX];      /* another building in its place (scene/neighbour.h), or none */
     char foundation[OPTION_TEXT_MAX]; /* fixed, or words of scene/foundation.h */
     double foundation_factor;         /* of the ground's stiffness */
     double anchors;                   /* of a design, in the place of those of `foundation`; 0: these */
+    double wall_share[FLOORS_MAX];    /* of its stiffness that a storey has as it is simulated; 0: all */
     NumberList areas_m2, inertias_m4, shear_areas_m2, masses_kg; /* at base and top, or by storey; 0, none: no shear
                                                                   * deformation, density times area */
 } CoreOptions;

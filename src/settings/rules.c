@@ -59,6 +59,8 @@ static void check_structure(const Settings *s, const Rules *r)
         break_rule(r, "%s", err.text);
         return;
     }
+    if (!is_box && (o->wall != WALL_FULL || o->wall_factor > 0 || o->stiffeners > 0))
+        break_rule(r, "core.%s: is of the walls of core.section = box", o->stiffeners > 0 ? "stiffeners" : "wall");
     if (space.has_anchors && !(f.anchors > 1))
         break_rule(r, "design.variables: anchors goes from 1 to the most of core.foundation: set its anchors= above 1");
     if (space.has_side && !is_box)

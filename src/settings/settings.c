@@ -115,6 +115,12 @@ static const Option OPTIONS[] = {
            .flags = SETTING_BASIC),
     CHOICE(core.theory, CoreTheory, CORE_THEORY_LIST, "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
+    CHOICE(core.wall, CoreWall, CORE_WALL_LIST, "full",
+           "stiffness of the box: full; effective: what the largest stress leaves of walls that buckle (EN 1993-1-5, "
+           "several simulations for one); or the share that is left",
+           .number = AT_TYPED(core.wall_factor, double), .min = 0.01, .max = 1),
+    REAL(core.stiffeners, "-", "0", 0, 2,
+         "mass of the stiffeners of the box over that of its walls: they raise its buckling stress (docs/theory.md)"),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "outer side of the box, width of the plate", .flags = SETTING_BASIC),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),

@@ -4,6 +4,7 @@
 #include "base/clones.h"
 #include "base/units.h"
 #include "scene/neighbour.h"
+#include "scene/wall.h"
 #include "sim/lanes.h"
 
 /* Eight outputs, followed together:
@@ -540,13 +541,16 @@ void force_monitor_end(ForceMonitor *m, int floor, double t, double speed)
 static void report_stresses(const ForceMonitor *m, SimForces *out)
 {
     const CoreOptions *o = &m->options.core;
-    const double nu = o->poisson, plate = 4 * M_PI * M_PI * o->youngs_modulus_pa / (12 * (1 - nu * nu));
     out->stress_known = m->nc > 0 && core_section(o) != CORE_EFFECTIVE;
     out->buckling_known = m->nc > 0 && core_section(o) == CORE_BOX;
     for (int s = 0; s < m->n && out->stress_known; s++) {
         const CoreStorey c = core_beam_storey(o, m->n, s, m->thickness[0], m->thickness[1]);
         const double moment = fmax(out->core_moment_nm[s], s + 1 < m->n ? out->core_moment_nm[s + 1] : 0);
-        const double stress = out->core_storey_stress_pa[s] = moment * 0.5 * c.depth / c.inertia;
+        const double gross = moment * 0.5 * c.depth / c.inertia, factor = core_wall_factor(o);
+        const double buckling = out->buckling_known ? wall_buckling_pa(o, c.thickness, m->z[s + 1] - m->z[s]) : 0;
+        const WallState wall =
+            o->wall == WALL_EFFECTIVE ? wall_effective(gross, buckling) : (WallState){gross / factor, factor};
+        const double stress = out->core_storey_stress_pa[s] = wall.stress;
         if (stress > out->core_stress_pa) {
             out->core_stress_pa = stress;
             out->core_stress_storey = s;
@@ -555,7 +559,10 @@ static void report_stresses(const ForceMonitor *m, SimForces *out)
         if (!out->buckling_known)
             continue;
         out->core_slenderness[s] = (o->width_m - 2 * c.thickness) / c.thickness;
-        out->core_buckling_pa[s] = plate / (out->core_slenderness[s] * out->core_slenderness[s]);
+        out->core_buckling_pa[s] = buckling;
+        out->core_wall_share[s] = wall.share;
+        out->core_wall_share_off =
+            fmax(out->core_wall_share_off, fabs(wall.share / (o->wall_share[s] > 0 ? o->wall_share[s] : factor) - 1));
         out->core_buckling_ratio = fmax(out->core_buckling_ratio, stress / out->core_buckling_pa[s]);
     }
 }

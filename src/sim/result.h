@@ -48,7 +48,9 @@ typedef struct {
     int core_stress_storey;
     int buckling_known;                                                /* the section has walls: box */
     double core_buckling_pa[FLOORS_MAX], core_slenderness[FLOORS_MAX]; /* critical stress; clear width / thickness */
-    double core_buckling_ratio; /* largest stress / critical stress of a storey */
+    double core_buckling_ratio;         /* largest stress / critical stress of a storey */
+    double core_wall_share[FLOORS_MAX]; /* share of the stiffness of its walls that the stress leaves */
+    double core_wall_share_off;         /* largest difference of these shares to those of the simulation, over these */
 
     /* with SimOptions.measures_only of the building the base alone, no velocities: NAN */
     double building_shear_n[FLOORS_MAX], building_base_shear_n, building_overturning_nm;

@@ -193,7 +193,7 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     w->building = &scene->building;
     w->run = scene->run;
     Status status = model_create(&w->model, scene->building.n, scene->building.model.n, err);
-    if (status == STATUS_OK && scene->options.sim.forces == FORCES_YES)
+    if (status == STATUS_OK && (scene->options.sim.forces == FORCES_YES || scene->options.core.wall == WALL_EFFECTIVE))
         status = force_monitor_create(&w->run.forces, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->options.sim.filtered)
         status = floor_filter_create(&w->filter, model_points(&scene->options, &scene->building),
@@ -379,7 +379,7 @@ static Status make_core(SimWorker *w, const Design *d, Err *err)
         }
         return STATUS_OK;
     }
-    if ((d->side > 0 || d->anchors > 0) && w->options != &w->own_options) {
+    if ((d->side > 0 || d->anchors > 0 || w->options->core.wall == WALL_EFFECTIVE) && w->options != &w->own_options) {
         w->own_options = *w->options;
         w->options = &w->own_options;
     }
@@ -541,14 +541,12 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
     return STATUS_OK;
 }
 
-Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+/* One simulation of the core as it is, forces included. */
+static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
-    const PriceOptions *price = &w->scene->options.design.prices;
-    const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(make_core(w, d, err));
-    w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
     TRY(w->is_joined ? run_joined(w, d, result, err) : run_design(w, kind, *d, result, err));
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
@@ -560,6 +558,36 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
         if (kind == SCENE_LINKS) /* what acts on a floor from the core */
             result->forces.contact_force_max_n = result->dashpot_n;
     }
+    return STATUS_OK;
+}
+
+/* Simulations until the walls that buckle bend as their largest stress lets them, within WALLS_OFF of each share: first
+ * whole, then by that stress, then by the mean of both logarithms, so that it settles where a stiffer core has more. */
+enum { WALLS_MAX = 16 };
+static const double WALLS_OFF = 0.01;
+
+static Status run_walls(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+{
+    double *share = w->own_options.core.wall_share;
+    memset(share, 0, sizeof w->own_options.core.wall_share);
+    for (int pass = 0; pass < WALLS_MAX; pass++) {
+        TRY(run_once(w, kind, d, result, err));
+        if (result->outcome != RUN_OK || !(result->forces.core_wall_share_off > WALLS_OFF))
+            break;
+        for (int s = 0; s < result->n_floors && pass + 1 < WALLS_MAX; s++)
+            share[s] =
+                share[s] > 0 ? sqrt(share[s] * result->forces.core_wall_share[s]) : result->forces.core_wall_share[s];
+    }
+    return STATUS_OK;
+}
+
+Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+{
+    const PriceOptions *price = &w->scene->options.design.prices;
+    const double start = clock_seconds();
+    const int has_walls = w->options->core.wall == WALL_EFFECTIVE && SCENES[kind].has & HAS_CORE;
+    w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
+    TRY(has_walls ? run_walls(w, kind, d, result, err) : run_once(w, kind, d, result, err));
     TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)
