@@ -267,6 +267,32 @@ TEST(the_cost_is_that_of_the_table_of_prices)
     assert_close(mass.cost, 11e-3 * mass.mcore_kg, 1e-12);
 }
 
+/* (A - 1) W of anchors A, as a variable and as a setting; of a mat that never lifts what would hold it. */
+TEST(anchors_of_a_design_hold_its_mat_and_cost_what_their_force_does)
+{
+    SimResult r[3];
+    for (int i = 0; i < 3; i++) {
+        static const char *const GROUND[] = {"soil=C radius=8 weight=1e6 anchors=9",
+                                             "soil=C radius=8 weight=1e6 anchors=2",
+                                             "soil=C radius=8 weight=1e6 anchors=inf"};
+        Tower t;
+        tower_set(&t, i == 0 ? "gaps, thickness, anchors" : "gaps, thickness", ENGINE_FAST, 0.006);
+        snprintf(t.settings.core.foundation, OPTION_TEXT_MAX, "%s", GROUND[i]);
+        t.settings.sim.forces = FORCES_YES;
+        t.settings.sim.duration_s = 6;
+        t.settings.design.prices = (PriceOptions){.core_t = 13, .anchor_mn = 17};
+        t.x[FLOORS + 2] = 2;
+        r[i] = tower_run(&t, SCENE_IMPACT, NONE);
+        const double weight = 1e6 + 9.81 * r[i].mcore_kg, force = i < 2 ? weight : 0;
+        assert_close(r[i].cost, 13e-3 * r[i].mcore_kg + 17e-6 * force, 1e-12);
+        assert_close(r[i].forces.anchor_force_n, i < 2 ? force : (r[i].forces.uplift_ratio - 1) * weight, 1e-12);
+    }
+    assert_same_number(r[0].j1_m, r[1].j1_m);
+    assert_same_number(r[0].forces.uplift_ratio, r[1].forces.uplift_ratio);
+    assert_less(2, r[1].forces.uplift_ratio);
+    assert_less(2 * r[2].forces.base_rotation_rad, r[1].forces.base_rotation_rad);
+}
+
 TEST(devices_are_refused_by_name)
 {
     static const struct {

@@ -32,7 +32,7 @@ static double square_tube(double rho, double whole, double again, double *to_fla
 static double effective_width(double slenderness, double psi)
 {
     const double l = slenderness;
-    return l > 0 ? fmin((l - 0.055 * (3 + psi)) / (l * l), 1) : 1;
+    return l > 0.5 + sqrt(0.085 - 0.055 * psi) ? (l - 0.055 * (3 + psi)) / (l * l) : 1;
 }
 
 WallState wall_effective(double gross, double buckling_pa)

@@ -3,7 +3,8 @@
  * Effective width of EN 1993-1-5, 4.4 (Winter's formula), at the stress s of the compressed flange in the place of the
  * yield stress, 4.4(4):
  *
- *   l = sqrt(s / s_cr),  rho = (l - 0.055 (3 + psi)) / l^2 <= 1,  psi 1: flange;  web: its edge stresses' ratio psi,
+ *   l = sqrt(s / s_cr),  rho = (l - 0.055 (3 + psi)) / l^2 above l = 0.5 + sqrt(0.085 - 0.055 psi), else 1;
+ *   psi 1: flange;  web: its edge stresses' ratio psi,
  *   s_cr times k / 4, k = 7.81 - 6.29 psi + 9.78 psi^2, of what it has under compression 0.4 rho at the flange and 0.6
  *   rho at the axis
  *
