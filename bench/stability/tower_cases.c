@@ -152,6 +152,30 @@ static void hard_and_soft_ground(Trial *t)
     }
 }
 
+/* With the dashpot of the half-space and without, at its edge and far beyond. */
+static void lifting_mat(Trial *t)
+{
+    static const char *const GROUND[] = {"soil=D radius=10 anchors=1", "soil=C radius=6 weight=1e6 anchors=1",
+                                         "rotation=1e11 radius=6 anchors=1",
+                                         "rotation=1e11 radius=6 weight=1e7 anchors=3"};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 8; i += t->size == SIZE_QUICK || t->engine == ENGINE_CVODE ? 5 : 1) {
+        Tower tower;
+        char what[80];
+        if (t->engine != ENGINE_FAST && t->engine != ENGINE_CVODE) /* the others know no mat */
+            return;
+        open_shaken(t, &tower, STRONG[i % 2]);
+        snprintf(tower.settings.core.foundation, sizeof tower.settings.core.foundation, "%s", GROUND[i / 2]);
+        snprintf(what, sizeof what, "%s, record x %g", GROUND[i / 2], STRONG[i % 2]);
+        tower.settings.sim.forces = FORCES_YES;
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
+        trial_note(t, &r, r.energy_balance_error, 1e-3, "%s: energy through lifting and landing", what);
+        trial_note(t, &r, r.forces.uplift_ratio > 1 && r.mat_rotation_rad > 0 ? 0 : 1, 0.5, "%s: lifts", what);
+        compare_with_finest(t, &tower, what);
+        bench_tower_close(&tower);
+    }
+}
+
 static void stiff_and_soft_core(Trial *t)
 {
     static const double FACTOR[] = {1e-6, 1e-3, 1e3, 1e6};
@@ -320,6 +344,9 @@ static const Case CASES[] = {
      weak_storeys},
     {"ground", "a core on ground from next to nothing to rock, under 0.3 g and 1 g, against `fast` at fine",
      hard_and_soft_ground},
+    {"uplift",
+     "a mat that lifts, with and without the ground's dashpot, under 0.3 g and 1 g: energy, and against `fast` at fine",
+     lifting_mat},
     {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
     {"zero-padded-record", "zeros before or behind the record change no objective", padded},
     {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength},

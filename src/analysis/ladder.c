@@ -18,13 +18,14 @@ static const struct {
     {"P-delta", "building.p_delta", "on", "off"},
     {"ground under the core", "core.foundation", NULL, "fixed"},
     {"core that lifts", "core.foundation", NULL, NULL},
+    {"walls that buckle", "core.wall", "effective", "full"},
     {"storeys that yield", "building.yield_drift", "0.01", "0"},
     {"flexibility at contacts", "contact.bumper_stiffness_n_m", "5e8", "0"},
     {"contacts off the centre", "contact.eccentricity", "0.05", "0"},
     {"weak end of the record", "sim.duration_s", NULL, NULL},
     {"steps, modes of the core", "sim.accuracy", "fine", NULL},
 };
-enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, YIELDING, FLEXIBILITY, OFF_CENTRE, END, STEPS, KINDS };
+enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, WALLS, YIELDING, FLEXIBILITY, OFF_CENTRE, END, STEPS, KINDS };
 
 typedef struct {
     Settings s; /* as given, but for objectives and limits */
@@ -89,6 +90,8 @@ static int is_there(const Job *job, int kind)
     case LIFT:
         return !neighbour_is_given(&s->core) && foundation_parse(s->core.foundation, 1, &f, &err) == STATUS_OK &&
                f.radius_m > 0 && f.rotation > 0;
+    case WALLS:
+        return s->core.stiffeners > 0 || s->core.wall_factor > 0 || s->core.wall != WALL_FULL;
     case END:
         return s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
     case STEPS:

@@ -14,11 +14,11 @@
  *
  * Effects: what is between the floors of a frame (building.modes), shear of the core, P-delta, the ground under the
  * core, a mat that lifts from it where its radius is given (behind the ground, whose setting it shares: it goes with
- * the ground), storeys that yield, flexibility at a contact, contacts off the centre by 5 % of the plan, the weak end
- * of the record (behind `strong_s`), and the steps: the other changes are found at sim.accuracy, this one by accuracy
- * fine, which has more steps per contact and all modes of the core. A building of core.model shears and stands as it
- * is. Under motion.record; impacts. The objectives and limits of the settings have no part in it: some need an effect
- * that is left out.
+ * the ground), walls that buckle where core.wall or core.stiffeners say something of them, storeys that yield,
+ * flexibility at a contact, contacts off the centre by 5 % of the plan, the weak end of the record (behind `strong_s`),
+ * and the steps: the other changes are found at sim.accuracy, this one by accuracy fine, which has more steps per
+ * contact and all modes of the core. A building of core.model shears and stands as it is. Under motion.record; impacts.
+ * The objectives and limits of the settings have no part in it: some need an effect that is left out.
  *
  * Storeys that yield keep the share building.hardening of their stiffness, more where the building would not stand with
  * that (scene/building.h): where P-delta softens it, so that the change by P-delta has that in it as well.
@@ -30,7 +30,7 @@
 
 #include "evaluate/tower.h"
 
-enum { LADDER_MAX = 10, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
+enum { LADDER_MAX = 11, LADDER_MEASURES = 3, LADDER_SCENES = 3 };
 static const MeasureId LADDER_MEASURE[LADDER_MEASURES] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J3};
 
 static const SceneKind LADDER_SCENE[LADDER_SCENES] = {SCENE_IMPACT, SCENE_RIGID, SCENE_NO_CORE};
