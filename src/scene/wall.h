@@ -1,4 +1,4 @@
-/* scene/wall.h -- walls of a box beyond their buckling stress: what of the section still bends, and what stiffeners add.
+/* scene/wall.h -- walls of a box beyond their buckling stress: what of the section still bends, what stiffeners add.
  *
  * Effective width of EN 1993-1-5, 4.4 (Winter's formula), at the stress s of the compressed flange in the place of the
  * yield stress, 4.4(4):
