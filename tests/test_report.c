@@ -28,7 +28,8 @@ static int set_up(void **state)
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS
            "--max-evals 60 --set motion.stretch=0.5 --set sim.duration_s=4.505 --set search.population=16 "
-           "--set search.initial=40 --set building.yield_drift=0.001 --set 'core.foundation=soil=C radius=5' --set "
+           "--set search.initial=40 --set building.yield_drift=0.001 --set 'core.foundation=soil=C radius=5 "
+           "anchors=inf' --set "
            "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --set "
            "'search.limits=core_stress_pa<=1e10' --out @/tower");
     expect(0, "",

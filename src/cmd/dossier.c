@@ -326,11 +326,12 @@ static void say_not_covered(Dossier *o)
     document_say(doc, "li",
                  "Torsion but of contacts off the centre, ground motion in two directions, the vertical motion. One "
                  "contact per floor and side, without friction.");
-    document_say(doc, "li",
-                 "The mass of the core, %.0f t, is that of its walls and of core.stiffeners. It has no diaphragms or "
-                 "connections; where a wall buckles, the mass of further stiffeners is missing here and in every "
-                 "objective.",
-                 1e-3 * o->d->result[SCENE_IMPACT].mcore_kg);
+    document_say(
+        doc, "li",
+        "The mass of the core, %.0f t, is that of its %s. It has no %sdiaphragms or connections; where the wall "
+        "buckles, the mass of stiffeners against that is missing here and in every objective.",
+        1e-3 * o->d->result[SCENE_IMPACT].mcore_kg, s->core.stiffeners > 0 ? "walls and core.stiffeners" : "bare walls",
+        s->core.stiffeners > 0 ? "" : "stiffeners, ");
     document_say(doc, "li",
                  "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
                  "collectors that yield, floors as diaphragms, local stresses and fatigue are not designed.");
