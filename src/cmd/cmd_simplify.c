@@ -56,7 +56,7 @@ static Status take_options(const Args *args, Improve *m, Err *err)
     return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
 }
 
-/* The path with its cost, which is returned; then name and number of every variable at its end, gaps and plates in mm. */
+/* The path with its cost, which is returned; then every variable at its end, gaps and plates in mm. */
 static json_t *say_path(Document *d, const Improve *m)
 {
     static const char *const WORDS[] = {"as it is", "idle ones gone", "alike in zones",

@@ -228,7 +228,7 @@ static void say_limits(Dossier *o)
 static void say_demand(Dossier *o)
 {
     int borne[MEASURES_LISTED];
-    char most[64], first[220], never[4 * FLOORS_MAX] = "";
+    char most[64], first[220], never[5 * FLOORS_MAX + 16] = "";
     document_say(&o->doc, "h2", "Forces and stresses, with their limits");
     json_t *table = document_table(&o->doc);
     snprintf(most, sizeof most, "largest of %zu records", o->n_records);
@@ -248,7 +248,7 @@ static void say_demand(Dossier *o)
         while (i < o->n_records && o->by_record[i].closings[j] == 0)
             i++;
         if (i == o->n_records && o->d->gap_m[j] < INFINITY)
-            snprintf(never + strlen(never), 8, "%s%d", *never ? ", " : "", j + 1);
+            snprintf(never + strlen(never), 16, "%s%d", *never ? ", " : "", j + 1);
     }
     document_say(&o->doc, "p", "Stops that never close%s, on floors: %s.",
                  o->n_records > 1 ? " under any of these records" : "", *never ? never : "none");

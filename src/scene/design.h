@@ -45,8 +45,8 @@ enum { DESIGN_VARIABLES_MAX = (SIDES + 4) * FLOORS_MAX + 7 };
 
 typedef enum { FLOOR_GAP, FLOOR_BUMPER, FLOOR_LINK, FLOOR_FRICTION, FLOOR_NONE, N_FLOOR_DEVICES } FloorDevice;
 
-/* x: gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), bumpers, side, anchors, links,
- * friction links, the tuned mass (n_mass = 3), choices of n_words devices, choice of a tuned mass or none at the roof. */
+/* x: gaps of all sides, t_base and t_top (n_walls = 2) or neither (0), bumpers, side, anchors, links, friction links,
+ * the tuned mass (n_mass = 3), choices of n_words devices, choice of a tuned mass or none at the roof. */
 enum { DESIGN_GROUPS = 10 };
 
 typedef struct {
