@@ -141,6 +141,8 @@ static void say_limits(Verdict *v, const Settings *s)
     enum { EXTENSIVE = 2 }; /* DamagePart.median */
     const struct DamagePart *part = DAMAGE_PARTS;
     const int is_clamped = strcmp(s->core.foundation, "fixed") == 0;
+    Foundation f = {0};
+    foundation_parse(s->core.foundation, 1, &f, NULL); /* of settings that were checked */
     const double held_nm = v->e->run[v->first].result->mcore_kg * GRAVITY * s->core.width_m / 2;
     struct {
         const char *what;
@@ -148,7 +150,7 @@ static void say_limits(Verdict *v, const Settings *s)
         double limit, factor;
     } all[] = {{"stress of the core (S235)", MEASURE_CORE_STRESS, S235_PA, 0},
                {"buckling of the bare wall", MEASURE_CORE_BUCKLING, 1, 0},
-               {"uplift of the core", MEASURE_UPLIFT, 1, 0},
+               {"uplift of the core", MEASURE_UPLIFT, fmax(f.anchors, 1), 0},
                {"overturning of the clamped core over what its weight holds", MEASURE_CORE_OVERTURNING,
                 is_clamped ? held_nm : INFINITY, 0},
                {"indentation (contact law)", MEASURE_INDENTATION, INDENTATION_RATIO_MAX, 0},
