@@ -32,10 +32,10 @@ typedef struct {
     SurrogateUse surrogate;
     Fidelity fidelity;
     long ahead; /* designs that may be under way when the next ones are chosen; -1: by their number (common_ahead) */
-    double replicate_share;    /* noisy: share of max_evals for further replicates */
-    size_t replicates_max;     /* ... of each design */
-    double max_seconds;        /* of the client's clock; 0: no limit */
-    size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
+    double replicate_share; /* noisy: share of max_evals for further replicates */
+    size_t replicates_max;  /* ... of each design */
+    double max_seconds;     /* of the client's clock; 0: no limit */
+    size_t stop_after;      /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
 } SearchConfig;
 
 /* Evaluations that the search was planned for. */

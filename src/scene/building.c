@@ -109,6 +109,39 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
     return STATUS_OK;
 }
 
+/* ---- modes by shape ------------------------------------------------------------------------------------------- */
+
+void building_alike(int n, const double phi[], const double M[], const BuildingModel *of, int like[])
+{
+    double M_psi[2][FLOORS_MAX] = {{0}}; /* of motion and rotation */
+    const int m = of->n, n_turns = of->turns_at > 0 ? 2 : 1;
+    for (int k = 0; k < m; k++) {
+        double most = 0, sum = 0;
+        like[k] = -1;
+        for (int turn = 0; turn < n_turns; turn++)
+            for (int a = 0; a < n; a++) {
+                M_psi[turn][a] = 0;
+                for (int b = 0; b < n; b++)
+                    M_psi[turn][a] += M[a * n + b] * of->phi[(turn * of->turns_at + b) * m + k];
+            }
+        for (int i = 0; i < n; i++) {
+            double moves = 0, turns = 0;
+            for (int a = 0; a < n; a++) {
+                moves += phi[a * n + i] * M_psi[0][a];
+                turns += phi[a * n + i] * M_psi[1][a];
+            }
+            const double share = moves * moves + turns * turns;
+            sum += share;
+            if (share > most) {
+                most = share;
+                like[k] = i;
+            }
+        }
+        if (sum < 0.5)
+            like[k] = -1;
+    }
+}
+
 /* ---- modes ---------------------------------------------------------------------------------------------------- */
 
 void building_model_layout(void *model, Carve *c)
@@ -154,7 +187,7 @@ static Status find_modes(const Building *b, BuildingModel *m, const double *r, c
         return bad_data(err, "%s: buckles under its own weight (building.p_delta)", o->model);
     TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
     linalg_participation(m->n, m->M, r, m->phi, m->gamma);
-    reduction_alike(b->n, b->phi, b->M, m, m->like);
+    building_alike(b->n, b->phi, b->M, m, m->like);
     return STATUS_OK;
 }
 

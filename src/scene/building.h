@@ -94,6 +94,11 @@ double building_floor_mass(const Building *b, int floor);
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);
 
+/* By shape: like[k] is the mode i of the condensed model, shapes phi (n, n) and mass M (n, n), that mode k of a fuller
+ * one, whose floors come first, resembles most: the largest (phi_i' M psi_k)^2, the share of mode k's kinetic energy in
+ * that shape, of floors that turn in motion and rotation. -1: the floors have less than half of it (vertical modes). */
+void building_alike(int n, const double phi[], const double M[], const BuildingModel *of, int like[]);
+
 /* Room for a BuildingModel of model->n degrees of freedom (base/carve.h). */
 void building_model_layout(void *model, Carve *c);
 

@@ -115,36 +115,3 @@ Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, 
         frame_full_free(out);
     return status;
 }
-
-/* ---- modes by shape ------------------------------------------------------------------------------------------- */
-
-void reduction_alike(int n, const double phi[], const double M[], const BuildingModel *of, int like[])
-{
-    double M_psi[2][FLOORS_MAX] = {{0}}; /* of motion and rotation */
-    const int m = of->n;
-    for (int k = 0; k < m; k++) {
-        double most = 0, sum = 0;
-        like[k] = -1;
-        for (int turn = 0; turn <= (of->turns_at > 0); turn++)
-            for (int a = 0; a < n; a++) {
-                M_psi[turn][a] = 0;
-                for (int b = 0; b < n; b++)
-                    M_psi[turn][a] += M[a * n + b] * of->phi[(turn * of->turns_at + b) * m + k];
-            }
-        for (int i = 0; i < n; i++) {
-            double moves = 0, turns = 0;
-            for (int a = 0; a < n; a++) {
-                moves += phi[a * n + i] * M_psi[0][a];
-                turns += phi[a * n + i] * M_psi[1][a];
-            }
-            const double share = moves * moves + turns * turns;
-            sum += share;
-            if (share > most) {
-                most = share;
-                like[k] = i;
-            }
-        }
-        if (sum < 0.5)
-            like[k] = -1;
-    }
-}

@@ -12,13 +12,7 @@
  * Threads  no state */
 #pragma once
 
-#include "scene/building.h"
 #include "scene/frame.h"
 
 /* Allocates out; frame_full_free releases it. modes: fixed-interface modes that are kept, where there are so many. */
 Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, FrameFull *out, Err *err);
-
-/* By shape: like[k] is the mode i of the condensed model, shapes phi (n, n) and mass M (n, n), that mode k of a fuller
- * one, whose floors come first, resembles most: the largest (phi_i' M psi_k)^2, the share of mode k's kinetic energy in
- * that shape, of floors that turn in motion and rotation. -1: the floors have less than half of it (vertical modes). */
-void reduction_alike(int n, const double phi[], const double M[], const BuildingModel *of, int like[]);

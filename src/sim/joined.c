@@ -1,7 +1,6 @@
 #include "sim/joined.h"
 
 #include "base/linalg.h"
-#include "scene/reduction.h"
 #include "sim/energy_balance.h"
 
 static void layout(void *joined, Carve *c)
@@ -42,7 +41,7 @@ Status joined_make(Joined *j, const Building *b, const CoreBeam *core, Err *err)
     TRY(linalg_modes(j->m, both->K, both->M, both->omega, both->phi, err));
     project(j, 0, j->m, b->model.phi, b->model.M, b->model.gamma);
     project(j, j->m, j->n, core->phi, core->M, core->gamma);
-    reduction_alike(b->n, b->phi, b->M, both, both->like);
+    building_alike(b->n, b->phi, b->M, both, both->like);
     j->shares = both->turns_at && j->m < FLOORS_MAX ? j->m : b->n;
     for (int k = 0; k < j->m; k++) {
         double nodes[FLOORS_MAX];
