@@ -199,13 +199,10 @@ TEST(columns_stand_below_their_names_however_long_these_are)
 
 /* ---- the end of a study ------------------------------------------------------------------------------------------- */
 
-TEST(the_end_of_a_study_names_gaps_that_never_close)
+TEST(the_status_of_a_study_names_gaps_that_never_close)
 {
     write_in_place("tower.ini", TOWER);
-    char *said = output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005");
-    assert_non_null(strstr(said, "never_closing            1 2 3 4 5 6\n"));
-    assert_non_null(strstr(said, "beyond_contact_law       0\n"));
-    free(said);
+    free(output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005"));
     json_t *o = json_of("status @/calm --json"), *review = json_object_get(o, "front_review");
     assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);
     assert_int_equal(json_array_size(json_object_get(review, "gaps_on_smallest")), FLOORS);

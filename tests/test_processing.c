@@ -337,7 +337,7 @@ TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
     for (int i = 0; i < 1000000; i++)
         fprintf(f, "%.6f\n", sin(i));
     assert_int_equal(fclose(f), 0);
-    expect(0, "", "spectrum @/long.csv --json --history @/long_history.csv >/dev/null");
+    expect(0, "", "spectrum @/long.csv --history @/long_history.csv >/dev/null");
     assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
     assert_at_most((double)used.ru_maxrss, 100e3); /* kB */
     free(path);

@@ -216,11 +216,10 @@ static Status read_bounds(const char *key, const char *list, size_t n, double bo
     return STATUS_OK;
 }
 
-/* All of a problem that was allocated: the command, the box, the processes. */
-static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
+/* The words of a command, split at blanks, without their quotes. */
+static Status split_command(External *e, const char *command, Err *err)
 {
-    /* 1. The words of the command, split at blanks, without their quotes. */
-    const char *from = o->command + strspn(o->command, " \t");
+    const char *from = command + strspn(command, " \t");
     size_t n_words = 0;
     TRY_ROOM(e->text, strlen(from) + 2, "bytes of the command", err);
     for (char *to = e->text; *from; from += strspn(from, " \t"), *to++ = 0) {
@@ -237,10 +236,15 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
         if (quote)
             return bad_data(err, "problem.command: a quote is left open");
     }
-    if (n_words == 0)
-        return bad_data(err, "problem.command: is empty; what is to be run?");
+    return n_words > 0 ? STATUS_OK : bad_data(err, "problem.command: is empty; what is to be run?");
+}
 
-    /* 2. The box; a choice has bounds of its own. */
+/* All of a problem that was allocated: the command, the box, the processes. */
+static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
+{
+    TRY(split_command(e, o->command, err));
+
+    /* 1. The box; a choice has bounds of its own. */
     TRY_ROOM(e->lower, 2 * e->n_var, "bounds of variables", err);
     e->upper = e->lower + e->n_var;
     TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
@@ -255,7 +259,7 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
             return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
                             e->upper[j], j + 1);
 
-    /* 3. The processes. */
+    /* 2. The processes. */
     const Protocol protocol = {.name = "problem.command",
                                .work = {.words = e->words},
                                .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,
