@@ -142,7 +142,11 @@ static void look_for_answer(void *self, Worker *w)
             blank_words(line);
         json_t *o = json_loadb(line, length, 0, &error);
         w->n_answered++;
-        if (!o && json_error_code(&error) == json_error_numeric_overflow)
+        if (!o && (!error.text[0] || json_error_code(&error) == json_error_out_of_memory)) {
+            /* Our memory, which says nothing of the design; jansson has no words where an object has no room. */
+            fail_memory(&w->why, length, "bytes of an answer");
+            w->n = w->n_done;
+        } else if (!o && json_error_code(&error) == json_error_numeric_overflow)
             pool_settle(w, OUTCOME_NOT_FINITE, w->n > 1, "f is not %zu finite numbers: one is too large for a double",
                         e->n_obj);
         else if (json_is_array(o) && w->n > 1)
