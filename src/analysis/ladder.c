@@ -6,7 +6,6 @@
 #include "settings/settings.h"
 
 enum { REPLICATES = 8 };
-static const double GAP_SD_M = 1e-3;
 
 /* Values of a setting with an effect, where it is not set, and without it. NULL: set_values
  * has it. */
@@ -150,6 +149,19 @@ Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings 
     return status;
 }
 
+Status ladder_judge(Settings *s, Err *err)
+{
+    TRY(settings_put(s, "search.objectives", "j1_m, drift_ratio, j3_g", err));
+    return settings_put(s, "search.limits", "none", err);
+}
+
+void ladder_as_built(SimOptions *o, long replicates)
+{
+    static const double GAP_SD_M = 1e-3;
+    o->replicates = replicates;
+    o->gap_tolerance_m = o->gap_tolerance_m > 0 ? o->gap_tolerance_m : GAP_SD_M;
+}
+
 /* -- what each changes --------------------------------------------------------------------------------------------- */
 
 /* Of two orders of the same sums. */
@@ -221,8 +233,7 @@ static Status leave_out_each(Job *job, Err *err)
     size_t n = 0;
     Settings s = job->all;
     Problem p;
-    s.sim.replicates = REPLICATES;
-    s.sim.gap_tolerance_m = s.sim.gap_tolerance_m > 0 ? s.sim.gap_tolerance_m : GAP_SD_M;
+    ladder_as_built(&s.sim, REPLICATES);
     for (size_t i = 0; i < l->n; i++)
         snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", l->effect[i].key,
                  job->kind[i] == STEPS ? l->effect[i].with : l->effect[i].without);
@@ -312,8 +323,7 @@ Status ladder_find(const Settings *s, const double x[], double strong_s, int is_
 {
     Job job = {.s = *s, .x = x, .strong_s = strong_s, .is_brief = is_brief, .out = out};
     *out = (Ladder){0};
-    TRY(settings_put(&job.s, "search.objectives", "j1_m, drift_ratio, j3_g", err));
-    TRY(settings_put(&job.s, "search.limits", "none", err));
+    TRY(ladder_judge(&job.s, err));
     TRY(list_effects(&job, err));
     TRY(leave_out_each(&job, err));
     return shorten(&job, err);

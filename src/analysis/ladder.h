@@ -85,6 +85,8 @@ json_t *ladder_json(const Ladder *l);
 /* The effects that there are but for the steps, where the strong part ends at strong_s; is_set: the settings give it.
  * all: with those that they do not. */
 Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings *all, Err *err);
+Status ladder_judge(Settings *s, Err *err);           /* judged by LADDER_MEASURE alone */
+void ladder_as_built(SimOptions *o, long replicates); /* gaps as the tolerance above has them */
 double ladder_change(const Measured *to, const Measured *from, int k);
 double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene); /* as `most` */
 LadderEffect *ladder_largest_left_out(Ladder *l);                                                   /* NULL: none is */

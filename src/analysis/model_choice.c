@@ -4,7 +4,7 @@
 #include "settings/settings.h"
 
 enum { DESIGNS = 3, COPIES = 3, SIMULATIONS_MIN = 60 };
-static const double SHARE = 0.03, GAP_SD_M = 1e-3;
+static const double SHARE = 0.03;
 
 /* What adds up over time: it hangs on the weak end of a record, where peaks do not. */
 static const MeasureSet ADDED_UP = (MeasureSet)1 << MEASURE_ED1 | (MeasureSet)1 << MEASURE_ED5_10 |
@@ -119,8 +119,7 @@ static Status begin(Choosing **out, const Settings *s, const Observer *stop, Lad
     c->s = *s;
     c->l = l;
     c->stop = stop;
-    TRY(settings_put(&c->s, "search.objectives", "j1_m, drift_ratio, j3_g", err));
-    return settings_put(&c->s, "search.limits", "none", err);
+    return ladder_judge(&c->s, err);
 }
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */
@@ -286,8 +285,7 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     Problem p;
     size_t n = 0;
     *k = (Case){.record = record, .x = x};
-    s.sim.replicates = COPIES;
-    s.sim.gap_tolerance_m = s.sim.gap_tolerance_m > 0 ? s.sim.gap_tolerance_m : GAP_SD_M;
+    ladder_as_built(&s.sim, COPIES);
     task[n++] = (SimTask){.x = x, .n_parts = COPIES, .parts = k->all.copy, .summary = &as_built};
     task[n++] = (SimTask){.kind = SCENE_RIGID, .x = x, .parts = &k->all.scene[1]};
     if (!c->has_bare[record])

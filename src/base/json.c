@@ -29,6 +29,12 @@ json_t *json_words(const char *text)
     return string;
 }
 
+const char *json_text(const json_t *o, const char *key)
+{
+    const char *text = json_string_value(json_object_get(o, key));
+    return text ? text : "";
+}
+
 json_t *json_put(json_t *o, const char *members, ...)
 {
     char key[64];

@@ -21,4 +21,6 @@ json_t *json_words(const char *text);
 __attribute__((format(printf, 2, 3))) json_t *json_put(json_t *o, const char *members, ...);
 #define json_of(...) json_put(json_object(), __VA_ARGS__)
 
+const char *json_text(const json_t *o, const char *key); /* a member's; empty: it has none */
+
 json_t *json_pair(size_t n, const double one[], const double other[]); /* [[...], [...]] */

@@ -6,12 +6,6 @@
 
 #include "base/text.h"
 
-static const char *word(const json_t *o, const char *key)
-{
-    const char *text = json_string_value(json_object_get(o, key));
-    return text ? text : "";
-}
-
 static double number(const json_t *o, const char *key)
 {
     return json_number_value(json_object_get(o, key));
@@ -34,14 +28,14 @@ void document_model(Document *d, const json_t *model)
     json_t *table = document_table(d);
     json_array_foreach(json_object_get(model, "effects"), i, e)
     {
-        const char *value = word(settings, word(e, "setting"));
-        const int is_set = strcmp(word(e, "is_set"), "yes") == 0, is_on = strcmp(value, word(e, "with")) == 0;
+        const char *value = json_text(settings, json_text(e, "setting"));
+        const int is_set = strcmp(json_text(e, "is_set"), "yes") == 0, is_on = strcmp(value, json_text(e, "with")) == 0;
         json_t *row = json_put(figures_row(table), "=%s", is_set ? "set" : is_on ? "on" : "off");
-        json_put(row, " without=%s", word(e, "without"));
+        json_put(row, " without=%s", json_text(e, "without"));
         figures_put(row, "J1 %", is_set ? NAN : number(e, "j1_m_pct"), NAN, NAN);
         figures_put(row, "drift %", is_set ? NAN : number(e, "drift_ratio_pct"), NAN, NAN);
         figures_put(row, "J3 %", is_set ? NAN : number(e, "j3_g_pct"), NAN, NAN);
-        json_put(row, "matters in=%s", !is_set && number(e, "in_tolerances") > 1 ? word(e, "most_in") : "");
+        json_put(row, "matters in=%s", !is_set && number(e, "in_tolerances") > 1 ? json_text(e, "most_in") : "");
         json_put(row, " value=%s", value);
     }
 }

@@ -73,6 +73,16 @@ unsigned measures_need(MeasureSet set)
     return needs;
 }
 
+void measures_ask(MeasureSet set, SimOptions *o)
+{
+    const unsigned needs = measures_need(o->forces == FORCES_YES ? ~(MeasureSet)0 : set);
+    o->filtered = (needs & NEEDS_FILTER) != 0;
+    if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
+        o->forces = FORCES_YES;
+    if (needs & NEEDS_FORCES)
+        o->measures_only = 0;
+}
+
 Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err)
 {
     static const struct {

@@ -175,6 +175,9 @@ _Static_assert(N_MEASURES <= 64, "a set of measures has 64 bits");
 
 unsigned measures_need(MeasureSet set);
 
+/* Options that compute what the set needs and no more; all where they ask for forces. */
+void measures_ask(MeasureSet set, SimOptions *o);
+
 /* Does a scene have what every measure of the set needs? STATUS_BAD_DATA: which lacks what, and what to set. */
 Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b, Err *err);
 

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "base/stat.h"
+#include "motion/suite.h"
 
 enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that the settings allow */
 
@@ -39,6 +40,13 @@ ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records)
                            .rule = o->quantile > 0 ? ROBUST_QUANTILE : o->robust,
                            .quantile = o->quantile > 0 ? o->quantile : 1 - o->tail,
                            .spread = spread_word(o->gap_tolerance_m, &o->uncertain)};
+}
+
+double replicate_rate(const ReplicatePlan *plan, const char *record)
+{
+    Source source;
+    const int is_summed = plan->n_records == 1 || plan->rule == ROBUST_MEAN;
+    return is_summed && source_read(record, &source, NULL) == STATUS_OK ? source.rate * (double)plan->n_records : 0;
 }
 
 const char *spread_word(double tolerance_m, const UncertainOptions *u)

@@ -73,12 +73,7 @@ static Status read_scene(const Tower *t, size_t place, Settings **out, Err *err)
     memcpy(s->motion.record, recipe_record(recipe, c->record), sizeof s->motion.record);
     for (size_t level = place / recipe->n_scenes; level > 0; level--)
         estimate_options(&s->sim, &s->sim);
-    const unsigned needs = measures_need(s->sim.forces == FORCES_YES ? ~(MeasureSet)0 : t->judged);
-    s->sim.filtered = (needs & NEEDS_FILTER) != 0;
-    if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
-        s->sim.forces = FORCES_YES;
-    if (needs & NEEDS_FORCES)
-        s->sim.measures_only = 0;
+    measures_ask(t->judged, &s->sim);
     if (c->setting[0])
         TRY(settings_set(s, c->setting, err));
 
@@ -352,11 +347,8 @@ static Status prepare(Tower *t, Err *err)
     TRY_ROOM(t->record, r->n_records, "records", err);
     TRY_ROOM(t->place, t->n_places, "scenes", err);
     for (size_t i = 0; i < r->n_records; i++) {
-        Source source;
         pthread_mutex_init(&t->record[i].lock, NULL);
-        if ((t->plan.n_records == 1 || t->plan.rule == ROBUST_MEAN) &&
-            source_read(recipe_record(r, i), &source, NULL) == STATUS_OK)
-            t->record[i].rate_per_year = source.rate * (double)t->plan.n_records;
+        t->record[i].rate_per_year = replicate_rate(&t->plan, recipe_record(r, i));
     }
     for (size_t i = 0; i < t->n_places; i++)
         pthread_mutex_init(&t->place[i].lock, NULL);

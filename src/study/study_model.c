@@ -54,12 +54,6 @@ Status study_model(Settings *s, const Run *run, const Observer *stop, json_t **m
 
 /* -- at the end ---------------------------------------------------------------------------------------------------- */
 
-static const char *word(const json_t *o, const char *key)
-{
-    const char *text = json_string_value(json_object_get(o, key));
-    return text ? text : "";
-}
-
 /* The ladder of the choice, as far as it is asked again; words are those of `model`. */
 static void read_ladder(const json_t *model, Ladder *l)
 {
@@ -71,11 +65,11 @@ static void read_ladder(const json_t *model, Ladder *l)
         const json_t *most = json_object_get(row, "in_tolerances");
         if (l->n == LADDER_MAX)
             break;
-        *e = (LadderEffect){.words = word(row, "without"), .key = word(row, "setting")};
-        snprintf(e->with, sizeof e->with, "%s", word(row, "with"));
-        snprintf(e->without, sizeof e->without, "%s", word(row, "otherwise"));
-        e->is_set = strcmp(word(row, "is_set"), "yes") == 0;
-        e->is_kept = strcmp(word(json_object_get(model, "settings"), e->key), e->with) == 0;
+        *e = (LadderEffect){.words = json_text(row, "without"), .key = json_text(row, "setting")};
+        snprintf(e->with, sizeof e->with, "%s", json_text(row, "with"));
+        snprintf(e->without, sizeof e->without, "%s", json_text(row, "otherwise"));
+        e->is_set = strcmp(json_text(row, "is_set"), "yes") == 0;
+        e->is_kept = strcmp(json_text(json_object_get(model, "settings"), e->key), e->with) == 0;
         e->most = json_is_number(most) ? json_number_value(most) : INFINITY;
         l->n++;
     }

@@ -23,6 +23,7 @@ typedef struct {
     Portable portable;
     MeasureOrder order;
     Scenario scenario;
+    size_t record;     /* of that ground */
     SimWorker *worker; /* NULL: no ground was chosen */
     double x[DESIGN_VARIABLES_MAX];
     Design design;
@@ -159,7 +160,6 @@ int engine_ground(Page *p, size_t record, double pga_g, double stretch, double r
 {
     Err err = {0};
     Settings s = p->portable.settings;
-    const unsigned needs = measures_need(p->order.judged);
     if (record >= p->portable.n_records)
         return 0;
     memcpy(s.motion.record, p->portable.source[record], sizeof s.motion.record);
@@ -170,9 +170,8 @@ int engine_ground(Page *p, size_t record, double pga_g, double stretch, double r
     s.motion.stretch = stretch > 0 ? stretch : s.motion.stretch;
     s.contact.restitution = restitution > 0 ? restitution : s.contact.restitution;
     s.sim.engine = ENGINE_FAST;
-    s.sim.filtered = (needs & NEEDS_FILTER) != 0;
-    if (needs & (NEEDS_FORCES | NEEDS_FEW_FORCES))
-        s.sim.forces = FORCES_YES;
+    measures_ask(p->order.judged, &s.sim);
+    p->record = record;
     sim_worker_free(p->worker);
     scenario_close(&p->scenario);
     p->worker = NULL;
@@ -182,8 +181,8 @@ int engine_ground(Page *p, size_t record, double pga_g, double stretch, double r
     return status == STATUS_OK ? 1 : refuse(&err);
 }
 
-/* Replicate k of the design, as evaluate/tower.c does it: its gaps, and what it is built like. */
-static Status run(Page *p, SceneKind kind, size_t k, Err *err)
+/* Replicate k of the design, as evaluate/tower.c does it: its gaps, what it is built like, and what it is judged by. */
+static Status run(Page *p, SceneKind kind, const ReplicatePlan *plan, size_t k, Err *err)
 {
     const Settings *s = &p->portable.settings;
     const DesignSpace *space = scene_design(p->scenario.scene);
@@ -193,6 +192,7 @@ static Status run(Page *p, SceneKind kind, size_t k, Err *err)
     const AsBuilt as = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
     TRY(sim_worker_as_built(p->worker, k > 0 && is_uncertain(&s->sim.uncertain) ? &as : NULL, err));
     TRY(sim_run_built(p->worker, kind, &built, &p->result, err));
+    p->result.rate_per_year = replicate_rate(plan, p->portable.source[p->record]);
     measures_chances(&p->order, &p->result);
     if (kind == SCENE_IMPACT)
         measures_settle(&p->result, p->order.judged);
@@ -203,7 +203,8 @@ int engine_run(Page *p, int kind)
 {
     Err err = {0};
     double objectives[N_MEASURES];
-    if (run(p, (SceneKind)kind, 0, &err) != STATUS_OK)
+    const ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, 1);
+    if (run(p, (SceneKind)kind, &plan, 0, &err) != STATUS_OK)
         return refuse(&err);
     for (int k = 0; k < p->order.n_obj; k++)
         objectives[k] = measure_value(&p->result, p->order.of[k]);
@@ -227,7 +228,7 @@ int engine_whole(Page *p, double pga_g, double stretch, double restitution)
             return 0;
         }
         for (size_t k = plan.n_replicates; k-- > 0 && status == STATUS_OK;) {
-            status = run(p, SCENE_IMPACT, k, &err);
+            status = run(p, SCENE_IMPACT, &plan, k, &err);
             part[k * plan.n_records + r] = measured(&p->result);
         }
     }

@@ -29,19 +29,18 @@ function engineThread() {
   }
 
   function answer({ x, record = 0, pga_g = 0, stretch = 0, restitution = 0, whole, kind = 0 }) {
-    const wanted = [record, pga_g, stretch, restitution], choose = () => must(engine.engine_ground(page, ...wanted));
+    const wanted = [record, pga_g, stretch, restitution];
     if (ground !== wanted.join()) {
       ground = undefined;
-      choose();
+      must(engine.engine_ground(page, ...wanted));
       noCore = simulate(1, x);
       ground = wanted.join();
     }
     if (!whole) return { ...simulate(kind, x), no_core: noCore };
     new Float64Array(memory.buffer, engine.engine_design(page), x.length).set(x);
     must(engine.engine_whole(page, ...wanted.slice(1)));
-    const all = JSON.parse(said());
-    choose();
-    return { ...all, no_core: noCore };
+    if (record) ground = undefined; // it ended with the first record
+    return { ...JSON.parse(said()), no_core: noCore };
   }
 
   let opened;
