@@ -22,6 +22,18 @@ static inline SimResult simulate(const SceneOptions *o, SceneKind kind, const Mo
     return r;
 }
 
+/* A building of one folder beside that of another on its right, both undamped. The paths are taken over. */
+static inline void stand_beside(SceneOptions *o, char *building, char *neighbour)
+{
+    snprintf(o->building.model, sizeof o->building.model, "%s", building);
+    snprintf(o->core.model, sizeof o->core.model, "%s", neighbour);
+    free(building);
+    free(neighbour);
+    o->building.damping = LIST_OF(0);
+    o->core.damping = 0;
+    o->design.gap_sides = GAPS_RIGHT;
+}
+
 /* The tower of 20 floors under the record of its settings. */
 typedef struct {
     Settings settings;

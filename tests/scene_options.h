@@ -45,6 +45,39 @@ static inline Status load_model(Building *b, const char *model, Err *why)
     return building_load(b, &s.building, why);
 }
 
+#define KOBE "../shared/records/kobe_jma_ns.csv"
+
+/* A design of configs/engineer.ini that an independent integrator has simulated under Kobe, on ground of its own. */
+static const double KNOWN_DESIGN[] __attribute__((unused)) = {
+    0.062620906, 0.49638428,  0.0075756700, 0.49967802,   0.053314538, 0.45756536, 0.0010002436, 0.18170539,
+    0.40825994,  0.45607738,  0.37509996,   0.0083128154, 0.20994399,  0.35243200, 0.39644089,   0.49323430,
+    0.40733242,  0.027483092, 0.0066243711, 0.060373916,  0.018777814, 0.010004510};
+
+static inline Status known_settings(Settings *s, const char *anchors, Err *why)
+{
+    settings_defaults(s);
+    TRY(settings_read(s, "configs/engineer.ini", NULL, NULL, why));
+    snprintf(s->motion.record, sizeof s->motion.record, "%s", KOBE);
+    snprintf(s->core.foundation, sizeof s->core.foundation, "soil=C radius=11.3 weight=2.4e7%s", anchors);
+    return STATUS_OK;
+}
+
+/* One simulation under a record; device NULL: none. */
+static inline Status run_under(const SceneOptions *o, const MotionOptions *record, SceneKind kind, const double x[],
+                               const LinearDevice *device, SimResult *r, Err *why)
+{
+    Scenario w = {0};
+    SimWorker *worker = NULL;
+    TRY(scenario_of(&w, o, record, why));
+    Status status = sim_worker_create(&worker, w.scene, why);
+    if (status == STATUS_OK && device)
+        sim_worker_device(worker, device);
+    THEN(status, sim_run(worker, kind, x, r, why));
+    sim_worker_free(worker);
+    scenario_close(&w);
+    return status;
+}
+
 #define LIST_OF(...) ((NumberList){.n = sizeof((double[]){__VA_ARGS__}) / sizeof(double), .at = {__VA_ARGS__}})
 
 /* The core of n storeys of the options' heights. */

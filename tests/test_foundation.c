@@ -13,7 +13,6 @@
 #include "sim/sim.h"
 
 enum { N = 20 };
-static const char KOBE[] = "../shared/records/kobe_jma_ns.csv";
 
 static Foundation parsed(const char *text)
 {
@@ -222,8 +221,6 @@ TEST(dashpots_by_modes_are_near_the_complex_modes_of_the_whole_beam)
 
 static SimResult simulated(const SceneOptions *o, const char *record, double gap, double duration_s, SceneKind kind)
 {
-    Scenario w = {0};
-    SimWorker *worker;
     SimResult r;
     Settings s;
     SceneOptions options = *o;
@@ -239,12 +236,8 @@ static SimResult simulated(const SceneOptions *o, const char *record, double gap
     s.motion.stretch = n == N ? 3 : 1;
     options.sim.duration_s = duration_s;
     options.sim.forces = FORCES_YES;
-    CHECK_OK(scenario_of(&w, &options, &s.motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, w.scene, &err), &err);
-    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
+    CHECK_OK(run_under(&options, &s.motion, kind, x, NULL, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
-    scenario_close(&w);
     return r;
 }
 
@@ -520,29 +513,16 @@ TEST(anchors_that_hold_everything_leave_the_springs)
 /* A design of configs/engineer.ini under Kobe (0.3 g, stretch 3.1), on ground of its own, as another engine has it. */
 static SimResult known_design(const char *anchors, double wall, Engine engine, SceneKind kind, double duration_s)
 {
-    static const double X[] = {0.062620906,  0.49638428,  0.0075756700, 0.49967802, 0.053314538, 0.45756536,
-                               0.0010002436, 0.18170539,  0.40825994,   0.45607738, 0.37509996,  0.0083128154,
-                               0.20994399,   0.35243200,  0.39644089,   0.49323430, 0.40733242,  0.027483092,
-                               0.0066243711, 0.060373916, 0.018777814,  0.010004510};
-    Scenario w = {0};
-    SimWorker *worker;
     SimResult r;
     Settings s;
-    settings_defaults(&s);
-    CHECK_OK(settings_read(&s, "configs/engineer.ini", NULL, NULL, &err), &err);
-    snprintf(s.motion.record, sizeof s.motion.record, "%s", KOBE);
-    snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=11.3 weight=2.4e7%s", anchors);
+    CHECK_OK(known_settings(&s, anchors, &err), &err);
     s.core.wall_factor = wall;
     s.sim.engine = engine;
     s.sim.duration_s = duration_s;
     const SceneOptions options = settings_scene(&s);
-    CHECK_OK(scenario_of(&w, &options, &s.motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, w.scene, &err), &err);
-    sim_worker_device(worker, &(LinearDevice){.link_ns_m = 0.9e6});
-    CHECK_OK(sim_run(worker, kind, X, &r, &err), &err);
+    const LinearDevice links = {.link_ns_m = 0.9e6};
+    CHECK_OK(run_under(&options, &s.motion, kind, KNOWN_DESIGN, &links, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
-    scenario_close(&w);
     return r;
 }
 

@@ -23,14 +23,7 @@ static void write_building(const char *name, const char *rows)
 static SceneOptions pair_of(const char *building, const char *neighbour, Engine engine)
 {
     SceneOptions o = scene_defaults();
-    char *a = in_place(building), *b = in_place(neighbour);
-    snprintf(o.building.model, sizeof o.building.model, "%s", a);
-    snprintf(o.core.model, sizeof o.core.model, "%s", b);
-    free(a);
-    free(b);
-    o.building.damping = LIST_OF(0);
-    o.core.damping = 0;
-    o.design.gap_sides = GAPS_RIGHT;
+    stand_beside(&o, in_place(building), in_place(neighbour));
     o.sim.engine = engine;
     o.sim.accuracy = ACCURACY_FINE;
     o.sim.forces = FORCES_YES;

@@ -69,14 +69,7 @@ TEST(an_impact_off_the_centre_has_the_effective_mass_of_a_free_body)
     write_building("other", "4,3e5,1e6\n");
     for (Engine engine = 0; engine < ENGINE_COUNT; engine++) {
         SceneOptions o = three_floors("three", 1, share);
-        char *one = in_place("one"), *other = in_place("other");
-        snprintf(o.building.model, sizeof o.building.model, "%s", one);
-        snprintf(o.core.model, sizeof o.core.model, "%s", other);
-        free(one);
-        free(other);
-        o.building.damping = LIST_OF(0);
-        o.core.damping = 0;
-        o.design.gap_sides = GAPS_RIGHT;
+        stand_beside(&o, in_place("one"), in_place("other"));
         o.contact.law = LAW_EXACT;
         o.contact.restitution = rebound;
         o.sim.engine = engine;
@@ -171,42 +164,27 @@ TEST(both_engines_agree_on_floors_that_turn)
     motion_free(&motion);
 }
 
-#define KOBE "../shared/records/kobe_jma_ns.csv"
-
 /* A design of configs/engineer.ini whose building stays linear, 5 % of 30.48 m off the centre, at the corner 18.29 m
  * away, as an independent integrator has it. */
 TEST(the_tower_has_its_known_response_at_the_corner)
 {
-    static const double DESIGN[] = {0.062620906,  0.49638428,  0.0075756700, 0.49967802, 0.053314538, 0.45756536,
-                                    0.0010002436, 0.18170539,  0.40825994,   0.45607738, 0.37509996,  0.0083128154,
-                                    0.20994399,   0.35243200,  0.39644089,   0.49323430, 0.40733242,  0.027483092,
-                                    0.0066243711, 0.060373916, 0.018777814,  0.010004510};
-    Scenario w = {0};
-    SimWorker *worker;
     SimResult r;
     Settings s;
     if (access(KOBE, R_OK) != 0) {
         print_message("skipped: there are no records in ../shared/records\n");
         return;
     }
-    settings_defaults(&s);
-    CHECK_OK(settings_read(&s, "configs/engineer.ini", NULL, NULL, &err), &err);
-    snprintf(s.motion.record, sizeof s.motion.record, "%s", KOBE);
-    snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=11.3 weight=2.4e7 anchors=1e9");
+    CHECK_OK(known_settings(&s, " anchors=1e9", &err), &err);
     s.building.yield_drift = 0;
     s.contact.eccentricity = LIST_OF(SHARE);
     s.sim.duration_s = 80;
     s.sim.filtered = 1;
     const SceneOptions options = settings_scene(&s);
-    CHECK_OK(scenario_of(&w, &options, &s.motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, w.scene, &err), &err);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, DESIGN, &r, &err), &err);
+    CHECK_OK(run_under(&options, &s.motion, SCENE_IMPACT, KNOWN_DESIGN, NULL, &r, &err), &err);
     assert_close(r.j1_m, 1.08, 1e-2);
     assert_close(r.drift_ratio_max, 0.024, 1e-2);
     assert_close(r.j3_g, 1.7, 3e-2);
     assert_close(r.j3_filtered_g, 1.7, 3e-2);
-    sim_worker_free(worker);
-    scenario_close(&w);
 }
 
 TEST(contacts_at_the_centre_and_a_building_alone_do_not_turn)
