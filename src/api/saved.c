@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -86,11 +85,11 @@ static void walk(Pack *p, imtet_search *s, Err *err)
 /* -- writing ------------------------------------------------------------------------------------------------------- */
 
 /* The file that there is becomes PATH.prev, and the new one takes its place when it is whole on the disk: whenever the
- * program ends, PATH is one of the two. The folder is locked meanwhile, for other processes that save there; a file
- * system without locks or links does without. */
+ * program ends, PATH is one of the two, and what was PATH.prev is there until the other takes its place. The folder is
+ * locked meanwhile, for other processes that save there; a file system without locks or links does without. */
 static Status put_in_place(const Pack *p, const char *path, Err *err)
 {
-    char folder[PATH_MAX], before[PATH_MAX + 8];
+    char folder[PATH_MAX], before[PATH_MAX + 8], beside[PATH_MAX + 16];
     Output o;
     folder_of(path, folder);
     const int lock = open(folder, O_RDONLY | O_CLOEXEC);
@@ -99,8 +98,12 @@ static Status put_in_place(const Pack *p, const char *path, Err *err)
     if (status == STATUS_OK) {
         fwrite(p->bytes, 1, p->n, o.stream);
         snprintf(before, sizeof before, "%s.prev", path);
-        if (access(path, F_OK) == 0 && (unlink(before) == 0 || errno == ENOENT))
-            (void)!link(path, before);
+        snprintf(beside, sizeof beside, "%s.tmp", before);
+        unlink(beside); /* of a process that was killed here */
+        if (link(path, beside) == 0) {
+            (void)!rename(beside, before);
+            unlink(beside); /* where it could not be renamed, or both were names of one file already */
+        }
         status = output_close(&o, err);
     }
     close(lock);
