@@ -67,8 +67,8 @@ typedef struct {
 /* Of a study whose simulations have these options. */
 ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records);
 
-/* SimResult.rate_per_year [1/year] under a record (motion/suite.h): its own, times the records of which a mean is taken;
- * 0: not known. */
+/* SimResult.rate_per_year [1/year] under a record (motion/suite.h): its own, times the records of which a mean
+ * is taken; 0: not known. */
 double replicate_rate(const ReplicatePlan *plan, const char *record);
 
 enum { BOOTSTRAP = 200 };

@@ -1,7 +1,7 @@
 /* moga/constants.h -- every tuned constant of the search, one a line.
  *
- * docs/measured/constants.csv has their sources and what turning each off costs. What follows from a definition or guards
- * against overflow stands where it is used. */
+ * docs/measured/constants.csv has their sources and what turning each off costs. What follows from a definition or
+ * guards against overflow stands where it is used. */
 #pragma once
 
 /* -- generation.c: initial sample ---------------------------------------------------------------------------------- */
