@@ -83,7 +83,6 @@ valgrind: $(PROGRAM) ## the same under valgrind
 # docs/measured has the tables of measurements; scripts/tables puts the short ones into their pages.
 stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 600": also those of 1e6 and 1e7 steps
 	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
-	@scripts/tables stability
 
 stranger: $(PROGRAM) ## how many files a new objective, contact law and baseline touch, each built and tried (tests/stranger)
 	@scripts/stranger

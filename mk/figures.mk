@@ -15,11 +15,9 @@ promise: $(BENCH) $(PROGRAM) ## how often every accuracy holds what it promises
 	@for s in 1 2 3; do ./$(PROGRAM) optimize configs/kobe.ini --record $(BENCH_RECORD) --max-evals 1000 --set search.seed=$$s --out build/promise/$$s; \
 	  ./$(PROGRAM) export build/promise/$$s --select 60 --csv - | cut -d, -f2-23 | sed "$$([ $$s = 1 ] || echo 1d)" >> build/promise.csv; done
 	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(SCENES),--scenes $(SCENES)) --front build/promise.csv --out docs/measured/promise.csv
-	@scripts/tables promise
 
 chart: $(BENCH) ## speed against accuracy of every engine
 	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv
-	@scripts/tables chart
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
 paper: $(PROGRAM) $(BENCH) setup-figures ## docs/paper.md: the numbers and pictures of the paper item by item, with its records where they are at hand; ARGS="--evals N"

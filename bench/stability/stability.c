@@ -188,7 +188,7 @@ static Status write_csv(const char *path, const Board *b, Err *err)
 Status stability(const StabilityPlan *plan, Err *err)
 {
     if (plan->engine && bench_engine_named(plan->engine) == BENCH_ENGINES)
-        return fail(err, STATUS_USAGE, "unknown engine '%.60s'; docs/chart.md lists them", plan->engine);
+        return fail(err, STATUS_USAGE, "unknown engine '%.60s'; docs/measured/stability.csv lists them", plan->engine);
     Board *board = calloc(1, sizeof *board);
     if (!board)
         return fail(err, STATUS_NO_MEMORY, "stability: out of memory");
