@@ -9,14 +9,6 @@ size_t batch_size(const Common *c)
     return o->ahead < 0 ? size : MIN_OF(size, (size_t)o->ahead + 1);
 }
 
-static int is_there(const Batch *b, size_t n_var, const double x[])
-{
-    for (size_t i = 0; i < b->n; i++)
-        if (memcmp(b->q[i].x, x, n_var * sizeof *x) == 0)
-            return 1;
-    return 0;
-}
-
 static void append(Batch *b, size_t n_var, const double x[], Question q)
 {
     q.x = memcpy(b->X + b->n * n_var, x, n_var * sizeof *x);
@@ -26,8 +18,11 @@ static void append(Batch *b, size_t n_var, const double x[], Question q)
 void batch_add(Batch *b, const Common *c, const double x[], EvaluationKind kind, InfillKind criterion)
 {
     const size_t n_var = c->problem->n_var;
-    if (b->n < b->size_max && b->n < b->room && !is_there(b, n_var, x) &&
-        pareto_archive_find(&c->archive, x) == c->archive.n && !pending_has(&c->pending, x))
+    int is_new = b->n < b->size_max && b->n < b->room && pareto_archive_find(&c->archive, x) == c->archive.n &&
+                 !pending_has(&c->pending, x);
+    for (size_t i = 0; i < b->n; i++)
+        is_new = is_new && memcmp(b->q[i].x, x, n_var * sizeof *x) != 0;
+    if (is_new)
         append(b, n_var, x, (Question){.kind = kind, .criterion = (unsigned char)criterion});
 }
 

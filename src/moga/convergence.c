@@ -12,59 +12,45 @@ static double value(const GrowingFront *d, size_t i, size_t k)
     return (d->sense ? d->sense[k] * f : f) + (d->error ? d->error[i * d->n_obj + k] : 0.0);
 }
 
-static void range_of(const GrowingFront *d, const unsigned char chosen[], size_t k, double *min, double *max)
+Status convergence_shares(const GrowingFront *d, size_t n_cuts, const size_t cut[], double h[], Err *err)
 {
-    *min = INFINITY;
-    *max = -INFINITY;
-    for (size_t i = 0; i < d->n; i++)
-        if (chosen[i]) {
-            *min = fmin(*min, value(d, i, k));
-            *max = fmax(*max, value(d, i, k));
-        }
-}
+    const size_t m = d->n_obj;
+    double *lower = calloc(3 * m, sizeof *lower);
+    if (!lower)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a box of %zu objectives", m);
+    double *reference = lower + m, *f = reference + m;
+    Hypervolume *v = NULL;
+    Status status = STATUS_OK;
+    int has_front = 1;
 
-/* 0: nothing is on the front. */
-static int find_box(const GrowingFront *d, double lower[], double reference[])
-{
-    double min, max, least, most;
-    for (size_t k = 0; k < d->n_obj; k++) {
-        range_of(d, d->on_front, k, &min, &max);
-        range_of(d, d->counts, k, &least, &most);
-        if (!(min <= max))
-            return 0;
+    /* 1. The box, of the ranges of the front and of all designs. */
+    for (size_t k = 0; k < m; k++) {
+        double min = INFINITY, max = -INFINITY, least = INFINITY, most = -INFINITY;
+        for (size_t i = 0; i < d->n; i++) {
+            const double y = value(d, i, k);
+            min = d->on_front[i] ? fmin(min, y) : min;
+            max = d->on_front[i] ? fmax(max, y) : max;
+            least = d->counts[i] ? fmin(least, y) : least;
+            most = d->counts[i] ? fmax(most, y) : most;
+        }
         const double width = fmax(max - min, WIDTH_MIN * (most - least));
+        has_front = has_front && min <= max;
         lower[k] = min;
         reference[k] = min + REFERENCE * (width > 0.0 ? width : 1.0);
     }
-    return 1;
-}
 
-static void follow(const GrowingFront *d, Hypervolume *v, double f[], size_t n_cuts, const size_t cut[], double h[])
-{
-    for (size_t c = 0, i = 0; c < n_cuts; h[c++] = hypervolume_share(v))
-        for (; i < cut[c]; i++) {
-            for (size_t k = 0; k < d->n_obj; k++)
+    /* 2. The designs, one after the other. */
+    if (has_front)
+        status = hypervolume_create(&v, m, lower, reference, 1, err);
+    for (size_t c = 0, i = 0; c < n_cuts; h[c++] = v ? hypervolume_share(v) : NAN)
+        for (; v && i < cut[c]; i++) {
+            for (size_t k = 0; k < m; k++)
                 f[k] = value(d, i, k);
             if (d->counts[i])
                 hypervolume_add(v, f);
         }
-}
-
-Status convergence_shares(const GrowingFront *d, size_t n_cuts, const size_t cut[], double h[], Err *err)
-{
-    Hypervolume *v = NULL;
-    Status status = STATUS_OK;
-    double *box = calloc(3 * d->n_obj, sizeof *box);
-    for (size_t c = 0; c < n_cuts; c++)
-        h[c] = NAN;
-    if (!box)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a box of %zu objectives", d->n_obj);
-    if (find_box(d, box, box + d->n_obj))
-        status = hypervolume_create(&v, d->n_obj, box, box + d->n_obj, 1, err);
-    if (v)
-        follow(d, v, box + 2 * d->n_obj, n_cuts, cut, h);
     hypervolume_free(v);
-    free(box);
+    free(lower);
     return status;
 }
 

@@ -80,66 +80,50 @@ Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner
     return fail_memory(err, n, "reference directions");
 }
 
-/* Candidate j of the spread: the axes, then uniform on the positive part of the sphere. */
-static void candidate(size_t n_obj, size_t j, double w[])
-{
-    Random random = random_stream(0, RANDOM_DIRECTIONS, 0, (uint32_t)j);
-    double square = 0.0;
-    for (size_t k = 0; k < n_obj; k++) {
-        w[k] = j < n_obj ? j == k : fabs(random_normal(&random));
-        square += w[k] * w[k];
-    }
-    for (size_t k = 0; k < n_obj; k++)
-        w[k] /= sqrt(square);
-}
-
-static double square_apart(size_t n_obj, const double a[], const double b[])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < n_obj; k++)
-        sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sum;
-}
-
-/* Of all candidates the one that is farthest from those chosen, again and again; the axes come first. */
-static void choose_spread(size_t n, size_t n_obj, size_t n_candidates, const double C[], double nearest[], double *W)
-{
-    for (size_t j = 0; j < n_candidates; j++)
-        nearest[j] = INFINITY;
-    for (size_t i = 0; i < n; i++) {
-        size_t far = 0;
-        for (size_t j = 1; j < n_candidates; j++)
-            far = nearest[j] > nearest[far] ? j : far;
-        const size_t chosen = i < n_obj ? i : far;
-        memcpy(W + i * n_obj, C + chosen * n_obj, n_obj * sizeof *W);
-        for (size_t j = 0; j < n_candidates; j++)
-            nearest[j] = fmin(nearest[j], square_apart(n_obj, C + j * n_obj, C + chosen * n_obj));
-    }
-    for (size_t i = 0; i < n; i++) {
-        double sum = 0.0;
-        for (size_t k = 0; k < n_obj; k++)
-            sum += W[i * n_obj + k];
-        for (size_t k = 0; k < n_obj; k++)
-            W[i * n_obj + k] /= sum;
-    }
-}
-
+/* Candidates are the axes, then points of the positive part of the sphere. Of all the one that is farthest from those
+ * chosen is chosen, again and again; the axes come first. */
 Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err)
 {
     const size_t n_candidates = n_obj + 20 * n;
     *d = (Directions){.n = n, .n_obj = n_obj};
     d->W = calloc(n * n_obj, sizeof *d->W);
     double *C = calloc(n_candidates * (n_obj + 1), sizeof *C);
-    if (d->W && C) {
-        for (size_t j = 0; j < n_candidates; j++)
-            candidate(n_obj, j, C + j * n_obj);
-        choose_spread(n, n_obj, n_candidates, C, C + n_candidates * n_obj, d->W);
+    if (!d->W || !C) {
+        free(C);
+        directions_free(d);
+        return fail_memory(err, n, "directions");
+    }
+    double *nearest = C + n_candidates * n_obj;
+    for (size_t j = 0; j < n_candidates; j++) {
+        Random random = random_stream(0, RANDOM_DIRECTIONS, 0, (uint32_t)j);
+        double *c = C + j * n_obj, square = 0.0;
+        for (size_t k = 0; k < n_obj; k++) {
+            c[k] = j < n_obj ? j == k : fabs(random_normal(&random));
+            square += c[k] * c[k];
+        }
+        for (size_t k = 0; k < n_obj; k++)
+            c[k] /= sqrt(square);
+        nearest[j] = INFINITY;
+    }
+    for (size_t i = 0; i < n; i++) {
+        size_t chosen = i < n_obj ? i : 0;
+        double *w = d->W + i * n_obj, sum = 0.0;
+        for (size_t j = 1; j < n_candidates && i >= n_obj; j++)
+            chosen = nearest[j] > nearest[chosen] ? j : chosen;
+        memcpy(w, C + chosen * n_obj, n_obj * sizeof *w);
+        for (size_t j = 0; j < n_candidates; j++) {
+            double square = 0.0;
+            for (size_t k = 0; k < n_obj; k++)
+                square += (C[j * n_obj + k] - w[k]) * (C[j * n_obj + k] - w[k]);
+            nearest[j] = fmin(nearest[j], square);
+        }
+        for (size_t k = 0; k < n_obj; k++)
+            sum += w[k];
+        for (size_t k = 0; k < n_obj; k++)
+            w[k] /= sum;
     }
     free(C);
-    if (d->W && C)
-        return STATUS_OK;
-    directions_free(d);
-    return fail_memory(err, n, "directions");
+    return STATUS_OK;
 }
 
 void directions_across(const Directions *d, double across[])

@@ -224,15 +224,6 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     }
 }
 
-static double gain_left(const Infill *q, size_t i)
-{
-    double gain = 0.0;
-    for (size_t r = 0; r < q->n_dir; r++)
-        if (q->value[i * q->n_dir + r] < q->best_value[r])
-            gain += q->best_value[r] - q->value[i * q->n_dir + r];
-    return gain * (q->chance ? q->chance[i] : 1.0);
-}
-
 /* Feasible before infeasible where there is no chance to weigh gains with, then gain, violation, uncertainty. */
 static int is_better(const Infill *q, size_t a, size_t b)
 {
@@ -252,7 +243,11 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i] || (best != SIZE_MAX && !is_better(q, i, best)))
             continue;
-        q->gain[i] = gain_left(q, i);
+        double gain = 0.0;
+        for (size_t r = 0; r < q->n_dir; r++)
+            if (q->value[i * q->n_dir + r] < q->best_value[r])
+                gain += q->best_value[r] - q->value[i * q->n_dir + r];
+        q->gain[i] = gain * (q->chance ? q->chance[i] : 1.0);
         if (best == SIZE_MAX || is_better(q, i, best))
             best = i;
     }

@@ -53,21 +53,6 @@ static double on_line(const Line *line, double cheap)
     return line->to + line->slope * (cheap - line->from);
 }
 
-static Status fit_rest(Levels *q, const double *const x[], const double cheap[], const double whole[], Err *err)
-{
-    int is_finite = 1;
-    for (size_t i = 0; i < q->n * q->n_out; i++) {
-        q->D[i] = whole[i] - on_line(&q->line[i % q->n_out], cheap[i]);
-        is_finite = is_finite && isfinite(q->D[i]);
-    }
-    if (!is_finite || q->n_dim > RBF_DIM_MAX)
-        return STATUS_OK;
-    for (size_t i = 0; i < q->n; i++)
-        surrogate_coordinates(q->problem, x[i], q->U + i * q->n_dim);
-    TRY(rbf_create(&q->rest, q->n, q->n_dim, q->n_out, err));
-    return rbf_tune(q->rest, q->n, q->U, q->D, NULL, err);
-}
-
 Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_t n_out, const double *const x[],
                   const double cheap[], const double whole[], Err *err)
 {
@@ -76,10 +61,21 @@ Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_
     *q = (Levels){.problem = p, .n = n, .n_out = n_out, .n_dim = surrogate_dimension(p)};
     q->store = carve_all(layout, q);
     Status status = q->store ? STATUS_OK : fail_memory(err, n, "pairs of levels");
+    int has_rest = status == STATUS_OK && is_biased && q->n_dim <= RBF_DIM_MAX;
     for (size_t k = 0; status == STATUS_OK && k < n_out; k++)
         q->line[k] = fit_line(q, k, cheap, whole);
-    if (status == STATUS_OK && is_biased)
-        status = fit_rest(q, x, cheap, whole, err);
+
+    /* What the lines leave. */
+    for (size_t i = 0; has_rest && i < n * n_out; i++) {
+        q->D[i] = whole[i] - on_line(&q->line[i % n_out], cheap[i]);
+        has_rest = isfinite(q->D[i]);
+    }
+    for (size_t i = 0; has_rest && i < n; i++)
+        surrogate_coordinates(p, x[i], q->U + i * q->n_dim);
+    if (has_rest) {
+        status = rbf_create(&q->rest, n, q->n_dim, n_out, err);
+        THEN(status, rbf_tune(q->rest, n, q->U, q->D, NULL, err));
+    }
     if (status != STATUS_OK) {
         levels_free(q);
         *out = NULL;

@@ -24,35 +24,29 @@ void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], co
  * than this is none: its intercepts are rounding. */
 static const double OFF_AXIS = 1e6;
 
-/* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis. */
-static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const size_t list[], const double F[])
-{
-    const size_t m = q->n_obj;
-    double min = INFINITY;
-    size_t found = list[0];
-    for (size_t i = 0; i < n; i++) {
-        double worst = 0.0;
-        for (size_t j = 0; j < m && worst < min; j++) {
-            const double z = normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : OFF_AXIS);
-            worst = MAX_OF(z, worst);
-        }
-        if (worst < min) {
-            min = worst;
-            found = list[i];
-        }
-    }
-    return found;
-}
-
 void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const double F[])
 {
     const size_t m = q->n_obj;
     double *b = q->plane + m * m;
     normalisation_fit_range(q, n, list, F);
+
+    /* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis. */
     for (size_t k = 0; k < m; k++) {
-        const size_t i = extreme_point(q, k, n, list, F);
+        double min = INFINITY;
+        size_t extreme = list[0];
+        for (size_t i = 0; i < n; i++) {
+            double worst = 0.0;
+            for (size_t j = 0; j < m && worst < min; j++) {
+                const double z = normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : OFF_AXIS);
+                worst = MAX_OF(z, worst);
+            }
+            if (worst < min) {
+                min = worst;
+                extreme = list[i];
+            }
+        }
         for (size_t j = 0; j < m; j++)
-            q->plane[j * m + k] = normalised(q, j, F[i * m + j]);
+            q->plane[j * m + k] = normalised(q, j, F[extreme * m + j]);
         b[k] = 1.0;
     }
     if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, (int)m, 1, q->plane, (int)m, q->pivot, b, (int)m) != 0)

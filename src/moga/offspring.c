@@ -28,89 +28,48 @@ static const double *tournament(const Population *p, Random *random)
     return p->X + (b_wins ? b : a) * p->n_var;
 }
 
-/* To the scale on which variables are varied, and back. */
+/* To the scale on which variables are varied. */
 static void to_scale(const Problem *p, const double x[], double y[])
 {
     for (size_t d = 0; d < p->n_var; d++)
         y[d] = problem_kind(p, d) == VARIABLE_LOG ? log(x[d]) : x[d];
 }
 
-static void from_scale(const Problem *p, double x[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        if (problem_kind(p, d) == VARIABLE_LOG)
-            x[d] = fmin(fmax(exp(x[d]), p->lower[d]), p->upper[d]);
-}
-
-/* Two children of mother and father, pair j. */
-static void breed_pair(const Offspring *o, const Problem *p, size_t j, Random *r, const double mother[],
-                       const double father[])
-{
-    const size_t n = p->n_var;
-    const double *lower = o->scaled, *upper = lower + n;
-    double *child = o->children + 2 * j * n, *parent = o->scaled + (2 + 3 * j) * n, *before = parent + 2 * n;
-    to_scale(p, mother, parent);
-    to_scale(p, father, parent + n);
-    crossover_sbx(r, n, lower, upper, SBX_ETA, parent, parent + n, child, child + n);
-    cross_choices(r, p, mother, father, child, child + n);
-    for (int i = 0; i < 2; i++, child += n) {
-        memcpy(before, child, n * sizeof *child);
-        mutate_polynomial(r, n, lower, upper, 1.0 / (double)n, MUTATION_ETA, child);
-        mutate_discrete(r, p, before, child);
-        from_scale(p, child);
-    }
-}
-
-/* Appends a population of children of the present members. Pair j of step has its own streams. */
+/* Appends a population of children of the present members. Pair j of step has its own streams; what is varied on the
+ * scale of its logarithm is between its bounds again afterwards. */
 static void breed(Offspring *o, const Common *c, Population *population, uint32_t step)
 {
     const Problem *p = c->problem;
     const Population parents = *population;
-    const size_t n = c->config->population;
+    const size_t n_var = p->n_var, n = c->config->population;
+    const double *lower = o->scaled, *upper = lower + n_var;
     to_scale(p, p->lower, o->scaled);
-    to_scale(p, p->upper, o->scaled + p->n_var);
+    to_scale(p, p->upper, o->scaled + n_var);
 #pragma omp parallel for schedule(static)
     for (size_t j = 0; j < (n + 1) / 2; j++) {
         const uint32_t name = step * (uint32_t)n + (uint32_t)j;
         Random choice = stream(c, RANDOM_PARENTS, name), change = stream(c, RANDOM_VARIATION, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
-        breed_pair(o, p, j, &change, mother, father);
+        double *child = o->children + 2 * j * n_var, *parent = o->scaled + (2 + 3 * j) * n_var;
+        double *before = parent + 2 * n_var;
+        to_scale(p, mother, parent);
+        to_scale(p, father, parent + n_var);
+        crossover_sbx(&change, n_var, lower, upper, SBX_ETA, parent, parent + n_var, child, child + n_var);
+        cross_choices(&change, p, mother, father, child, child + n_var);
+        for (int i = 0; i < 2; i++, child += n_var) {
+            memcpy(before, child, n_var * sizeof *child);
+            mutate_polynomial(&change, n_var, lower, upper, 1.0 / (double)n_var, MUTATION_ETA, child);
+            mutate_discrete(&change, p, before, child);
+            for (size_t d = 0; d < n_var; d++)
+                if (problem_kind(p, d) == VARIABLE_LOG)
+                    child[d] = fmin(fmax(exp(child[d]), p->lower[d]), p->upper[d]);
+        }
     }
     for (size_t i = 0; i < n; i++) {
-        double *x = o->children + i * p->n_var;
+        double *x = o->children + i * n_var;
         problem_repair(p, x);
         population_add(population, x);
     }
-}
-
-static void append_predicted(Offspring *o)
-{
-    for (size_t i = 0; i < o->pool.n; i++)
-        if (o->pool.row[i] == PREDICTED)
-            population_append(&o->members, &o->pool, i);
-}
-
-static void add_variation(Offspring *o, const Breeding *w)
-{
-    population_copy(&o->pool, w->population);
-    breed(o, w->common, &o->pool, 0);
-    append_predicted(o);
-    o->n_unpicked = o->members.n;
-}
-
-/* -- on the surrogate ---------------------------------------------------------------------------------------------- */
-
-/* What survives some generations of variation and selection on the surrogate and is not evaluated. */
-static void add_evolved(Offspring *o, const Breeding *w)
-{
-    population_copy(&o->pool, w->population);
-    for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
-        const size_t n_parents = o->pool.n;
-        breed(o, w->common, &o->pool, step);
-        surrogate_predict(w->surrogate, &o->pool, n_parents, 0);
-        offspring_survive(o, w, &o->pool, 1 + step);
-    }
-    append_predicted(o);
 }
 
 /* Beside the end of a descent, which moves no choice and whole numbers as if they were real: designs with one of those
@@ -130,23 +89,6 @@ static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[
     }
 }
 
-/* The next n reference vectors: all of them in turn, each time in another order, so that those of designs under way
- * are not dealt once more. */
-static void deal_vectors(Offspring *o, const Common *c, size_t n_vectors, size_t n)
-{
-    size_t *deck = o->descent_vector + n_vectors;
-    for (size_t i = 0; n_vectors > 0 && i < n; i++, o->n_dealt++) {
-        const size_t at = o->n_dealt % n_vectors;
-        if (i == 0 || at == 0) {
-            Random random = random_stream(c->config->seed, RANDOM_DESCENT, (uint32_t)(o->n_dealt / n_vectors), 1);
-            for (size_t r = 0; r < n_vectors; r++)
-                deck[r] = r;
-            random_shuffle(&random, n_vectors, deck);
-        }
-        o->descent_vector[i] = deck[at];
-    }
-}
-
 /* Of a group, all but one design or that one. */
 static double part_of_hypervolume(const Breeding *w)
 {
@@ -163,10 +105,24 @@ static void add_descended(Offspring *o, const Breeding *w)
     const size_t n_vectors = w->criteria->vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(c),
                  wanted = MIN_OF(two_each, c->config->population), n = MIN_OF(wanted, n_vectors),
                  first = (size_t)(part_of_hypervolume(w) * (double)n);
-    size_t *vector = o->descent_vector;
+    size_t *vector = o->descent_vector, *deck = vector + n_vectors;
     double *X = o->descent_X;
     Random random = stream(c, RANDOM_DESCENT, 0);
-    deal_vectors(o, c, n_vectors, n);
+
+    /* 1. The next vectors: all of them in turn, each time in another order, so that those of designs under way are not
+     * dealt once more. */
+    for (size_t i = 0; i < n; i++, o->n_dealt++) {
+        const size_t at = o->n_dealt % n_vectors;
+        if (i == 0 || at == 0) {
+            Random order = random_stream(c->config->seed, RANDOM_DESCENT, (uint32_t)(o->n_dealt / n_vectors), 1);
+            for (size_t r = 0; r < n_vectors; r++)
+                deck[r] = r;
+            random_shuffle(&order, n_vectors, deck);
+        }
+        vector[i] = deck[at];
+    }
+
+    /* 2. The ends of the descents. */
     surrogate_descend(w->surrogate, &c->archive, w->criteria->select, first, n, vector, X);
     for (size_t i = 0; i < n; i++) {
         problem_repair(p, X + i * p->n_var);
@@ -196,72 +152,69 @@ static void add_probes(Offspring *o, const Breeding *w)
     }
 }
 
-/* Designs that are asked for already, predicted. */
-static void add_pending(Offspring *o, const Common *c)
-{
-    o->n_pending = MIN_OF(c->pending.n, o->pending_max);
-    for (size_t i = 0; i < o->n_pending; i++)
-        population_add(&o->members, pending_x(&c->pending, i));
-}
-
 void offspring_make(Offspring *o, const Breeding *w)
 {
+    const Common *c = w->common;
     o->members.n = o->n_unpicked = o->n_pending = 0;
+
+    /* 1. Children of the population; on the surrogate what survives some generations of variation and selection. */
+    population_copy(&o->pool, w->population);
+    for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
+        const size_t n_parents = o->pool.n;
+        breed(o, c, &o->pool, step);
+        if (!w->with_surrogate)
+            break;
+        surrogate_predict(w->surrogate, &o->pool, n_parents, 0);
+        offspring_survive(o, w, &o->pool, 1 + step);
+    }
+    for (size_t i = 0; i < o->pool.n; i++)
+        if (o->pool.row[i] == PREDICTED)
+            population_append(&o->members, &o->pool, i);
     if (!w->with_surrogate) {
-        add_variation(o, w);
+        o->n_unpicked = o->members.n;
         return;
     }
-    add_evolved(o, w);
+
+    /* 2. Descents, probes, and designs that are asked for already, predicted. */
     if (w->has_front)
         add_descended(o, w);
     add_probes(o, w);
-    add_pending(o, w->common);
+    o->n_pending = MIN_OF(c->pending.n, o->pending_max);
+    for (size_t i = 0; i < o->n_pending; i++)
+        population_add(&o->members, pending_x(&c->pending, i));
     surrogate_predict(w->surrogate, &o->members, 0, 1);
 }
 
 /* -- which of them are evaluated ----------------------------------------------------------------------------------- */
 
 /* Candidates are offered to both criteria with lower confidence bounds of their objectives, by which pending designs
- * lower the values to beat: by their mean their neighbours would still gain an error. */
-static void offer(Offspring *o, const Breeding *w)
-{
-    const Population *p = &o->members;
-    const size_t first_pending = p->n - o->n_pending;
-    for (size_t i = 0; i < p->n * p->n_obj; i++)
-        o->bound[i] = p->F[i] - OPTIMISM * p->error[i];
-    for (int kind = 0; kind < INFILL_KINDS; kind++) {
-        Infill *q = w->criteria->select[kind];
-        infill_offer(q, p->n, o->bound, p->violation, p->uncertainty, w->has_front ? p->chance : NULL);
-        for (size_t i = first_pending; i < p->n; i++)
-            infill_take(q, i);
-    }
-}
-
-/* Of the first `count` members those with the greatest gain beside what is picked already, by both criteria as they
- * share the group, up to `limit` in it. */
-static void pick(Offspring *o, const Breeding *w, Batch *b, size_t limit, size_t count)
-{
-    const double part = part_of_hypervolume(w), turn = (double)common_asked(w->common) + 0.5;
-    memset(o->allowed, 0, o->members.n);
-    memset(o->allowed, 1, count);
-    while (b->n < limit) {
-        const double at = turn + (double)b->n;
-        const InfillKind criterion = floor(part * (at + 1.0)) > floor(part * at) ? INFILL_HYPERVOLUME : INFILL_PBI;
-        const size_t i = infill_pick(w->criteria->select[criterion], o->allowed);
-        if (i == SIZE_MAX)
-            break;
-        infill_take(w->criteria->select[criterion == INFILL_PBI ? INFILL_HYPERVOLUME : INFILL_PBI], i);
-        batch_add(b, w->common, o->members.X + i * o->members.n_var, KIND_INFILL, criterion);
-    }
-}
-
+ * lower the values to beat: by their mean their neighbours would still gain an error. Of the others but probes those
+ * with the greatest gain beside what is picked already are taken, by both criteria as they share the group; then
+ * probes. */
 void offspring_select(Offspring *o, const Breeding *w, Batch *b)
 {
-    const size_t size = batch_size(w->common), end = o->members.n - o->n_pending, first = end - o->n_unpicked;
-    if (w->with_surrogate) {
-        offer(o, w);
-        pick(o, w, b, size > o->n_unpicked ? size - o->n_unpicked : 0, first);
+    const Population *p = &o->members;
+    Infill *const *select = w->criteria->select;
+    const size_t size = batch_size(w->common), end = p->n - o->n_pending, first = end - o->n_unpicked;
+    const double part = part_of_hypervolume(w), turn = (double)common_asked(w->common) + 0.5;
+    for (size_t k = 0; k < p->n * p->n_obj; k++)
+        o->bound[k] = p->F[k] - OPTIMISM * p->error[k];
+    for (int kind = 0; kind < INFILL_KINDS && w->with_surrogate; kind++) {
+        infill_offer(select[kind], p->n, o->bound, p->violation, p->uncertainty, w->has_front ? p->chance : NULL);
+        for (size_t k = end; k < p->n; k++)
+            infill_take(select[kind], k);
+    }
+    memset(o->allowed, 0, p->n);
+    memset(o->allowed, 1, first);
+    while (w->with_surrogate && b->n + o->n_unpicked < size) {
+        const double at = turn + (double)b->n;
+        const InfillKind criterion = floor(part * (at + 1.0)) > floor(part * at) ? INFILL_HYPERVOLUME : INFILL_PBI;
+        const size_t i = infill_pick(select[criterion], o->allowed);
+        if (i == SIZE_MAX)
+            break;
+        infill_take(select[criterion == INFILL_PBI ? INFILL_HYPERVOLUME : INFILL_PBI], i);
+        batch_add(b, w->common, p->X + i * p->n_var, KIND_INFILL, criterion);
     }
     for (size_t i = first; i < end && b->n < size; i++)
-        batch_add(b, w->common, o->members.X + i * o->members.n_var, KIND_OFFSPRING, INFILL_KINDS);
+        batch_add(b, w->common, p->X + i * p->n_var, KIND_OFFSPRING, INFILL_KINDS);
 }

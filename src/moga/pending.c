@@ -35,30 +35,25 @@ void pending_free(Pending *p)
     free(p->number);
 }
 
-/* At the end: what is there moves to the front where half of the room is free, else there will be twice as much. */
-static Status make_room(Pending *p, Err *err)
-{
-    if (p->head + p->n < p->n_max)
-        return STATUS_OK;
-    if (p->head <= p->n_max / 2) {
-        const size_t n_max = p->n_max > 0 ? 2 * p->n_max : 64;
-        Place *place = realloc(p->place, n_max * sizeof *place);
-        p->place = place ? place : p->place;
-        double *number = realloc(p->number, n_max * width(p) * sizeof *number);
-        p->number = number ? number : p->number;
-        if (!place || !number)
-            return fail_memory(err, n_max, "designs under way");
-        p->n_max = n_max;
-    }
-    memmove(p->place, p->place + p->head, p->n * sizeof *p->place);
-    memmove(p->number, p->number + p->head * width(p), p->n * width(p) * sizeof *p->number);
-    p->head = 0;
-    return STATUS_OK;
-}
-
 Status pending_add(Pending *p, const Question *q, Err *err)
 {
-    TRY(make_room(p, err));
+    /* Room behind the last one: what is there moves to the front where half is free, else there will be twice as
+     * much. */
+    if (p->head + p->n == p->n_max) {
+        if (p->head <= p->n_max / 2) {
+            const size_t n_max = p->n_max > 0 ? 2 * p->n_max : 64;
+            Place *place = realloc(p->place, n_max * sizeof *place);
+            p->place = place ? place : p->place;
+            double *number = realloc(p->number, n_max * width(p) * sizeof *number);
+            p->number = number ? number : p->number;
+            if (!place || !number)
+                return fail_memory(err, n_max, "designs under way");
+            p->n_max = n_max;
+        }
+        memmove(p->place, p->place + p->head, p->n * sizeof *p->place);
+        memmove(p->number, p->number + p->head * width(p), p->n * width(p) * sizeof *p->number);
+        p->head = 0;
+    }
     p->place[p->head + p->n] = (Place){.q = *q};
     memcpy(numbers(p, p->n), q->x, p->n_var * sizeof *q->x);
     p->n++;

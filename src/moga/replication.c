@@ -1,39 +1,27 @@
 #include "moga/replication.h"
 
-static void range_of_front(const Archive *a, size_t k, double *min, double *max)
-{
-    *min = INFINITY;
-    *max = -INFINITY;
-    for (size_t i = 0; i < a->n_front; i++) {
-        *min = fmin(*min, a->F[a->front[i] * a->n_obj + k]);
-        *max = fmax(*max, a->F[a->front[i] * a->n_obj + k]);
-    }
-}
-
-/* The standard deviation of one replicate exceeds `part` of the front's range, in any objective. */
-static int noise_exceeds(const Archive *a, double part)
-{
-    double min, max;
-    for (size_t k = 0; k < a->n_obj; k++) {
-        range_of_front(a, k, &min, &max);
-        for (size_t i = 0; i < a->n_front; i++)
-            if (a->sd[a->front[i] * a->n_obj + k] > part * (max - min))
-                return 1;
-    }
-    return 0;
-}
-
 /* -- how many ------------------------------------------------------------------------------------------------------ */
 
 /* Replicates that are due where n evaluations are asked for: replicate_share of those beyond the first REPLICATE_AFTER
- * for each variable, before which new designs are worth more. */
+ * for each variable, before which new designs are worth more; none where the standard deviation of one is negligible
+ * beside the front's range, in every objective. */
 static size_t replicates_due(const Common *c, size_t n)
 {
     const Archive *a = &c->archive;
     const double late = (double)n - (double)(REPLICATE_AFTER * c->problem->n_var),
                  due = floor(c->config->replicate_share * fmax(late, 0.0));
     const size_t made = a->n_replicates + c->pending.n_of_kind[KIND_REPEAT];
-    const int is_noticeable = a->n_replicates < NOISE_SAMPLE || noise_exceeds(a, NOISE_NEGLIGIBLE);
+    int is_noticeable = a->n_replicates < NOISE_SAMPLE;
+    for (size_t k = 0; k < a->n_obj && !is_noticeable; k++) {
+        double min = INFINITY, max = -INFINITY, sd = 0.0;
+        for (size_t i = 0; i < a->n_front; i++) {
+            const size_t at = a->front[i] * a->n_obj + k;
+            min = fmin(min, a->F[at]);
+            max = fmax(max, a->F[at]);
+            sd = fmax(sd, a->sd[at]);
+        }
+        is_noticeable = sd > NOISE_NEGLIGIBLE * (max - min);
+    }
     if (!c->problem->is_noisy || c->config->replicates_max < 2 || due <= made || !is_noticeable)
         return 0;
     return (size_t)due - made;
@@ -47,10 +35,15 @@ static size_t importance_of_extremes(const Criteria *q)
     return INFILL_KINDS * q->vectors.n + 1;
 }
 
-static void add_extremes(const Archive *a, const Criteria *q, size_t importance[])
+/* In how many reference vectors a design is the best one, by both criteria; and the extremes. */
+static void weigh_designs(const Archive *a, const Criteria *q, size_t importance[])
 {
     size_t knee = a->front[0];
     double nearest = INFINITY;
+    memset(importance, 0, a->n * sizeof *importance);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        for (size_t r = 0; r < q->vectors.n; r++)
+            importance[infill_best(q->select[kind], r)]++;
     for (size_t k = 0; k < a->n_obj; k++) {
         size_t best = a->front[0];
         for (size_t i = 1; i < a->n_front; i++)
@@ -66,16 +59,6 @@ static void add_extremes(const Archive *a, const Criteria *q, size_t importance[
         }
     }
     importance[knee] += importance_of_extremes(q);
-}
-
-/* In how many reference vectors a design is the best one, by both criteria. */
-static void weigh_designs(const Archive *a, const Criteria *q, size_t importance[])
-{
-    memset(importance, 0, a->n * sizeof *importance);
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        for (size_t r = 0; r < q->vectors.n; r++)
-            importance[infill_best(q->select[kind], r)]++;
-    add_extremes(a, q, importance);
 }
 
 /* Of the front's designs with any importance the one with the fewest replicates, of these the most important one;

@@ -16,6 +16,7 @@
 #include "moga/screening.h"
 
 #include "base/hypervolume.h"
+#include "base/stat.h"
 #include "moga/normalisation.h"
 
 void screening_begin(Screening *q, const Common *c)
@@ -67,17 +68,14 @@ size_t screening_evaluations(const Screening *q, const Common *c)
     return spent(q, c) / q->cost.whole;
 }
 
-/* What is under way, and was asked for as the levels were then. */
-static size_t under_way(const Screening *q, const Common *c)
-{
-    const size_t *n = c->pending.n_of_kind;
-    return n[KIND_SCREENED] * q->cost.cheap + n[KIND_FINISHED] * q->cost.rest +
-           (c->pending.n - n[KIND_SCREENED] - n[KIND_FINISHED]) * q->cost.whole;
-}
-
+/* What is left beside what is under way, and was asked for as the levels were then. */
 static size_t left(const Screening *q, const Common *c)
 {
-    const size_t all = common_end(c) * q->cost.whole, now = spent(q, c) + under_way(q, c);
+    const LevelCosts cost = q->cost;
+    const size_t *n = c->pending.n_of_kind, n_parts = n[KIND_SCREENED] + n[KIND_FINISHED];
+    const size_t all = common_end(c) * cost.whole, now = spent(q, c) + n[KIND_SCREENED] * cost.cheap +
+                                                         n[KIND_FINISHED] * cost.rest +
+                                                         (c->pending.n - n_parts) * cost.whole;
     return all > now ? all - now : 0;
 }
 
@@ -113,21 +111,6 @@ size_t screening_room(const Screening *q, const Common *c, size_t n_max)
 
 /* -- results ------------------------------------------------------------------------------------------------------- */
 
-static Status grow(Screening *q, Err *err)
-{
-    if (q->n < q->n_max)
-        return STATUS_OK;
-    const size_t n_max = q->n_max > 0 ? 2 * q->n_max : 128;
-    Screened *design = realloc(q->design, n_max * sizeof *design);
-    q->design = design ? design : q->design;
-    double *y = realloc(q->y, n_max * q->n_out * sizeof *y);
-    q->y = y ? y : q->y;
-    if (!design || !y)
-        return fail_memory(err, n_max, "screened designs");
-    q->n_max = n_max;
-    return STATUS_OK;
-}
-
 /* Screened design x, or n. */
 static size_t find(const Screening *q, const Common *c, const double x[])
 {
@@ -143,33 +126,42 @@ static size_t find(const Screening *q, const Common *c, const double x[])
     return low < q->n && q->design[low].row == row ? low : q->n;
 }
 
-static Status keep(Screening *q, const Common *c, const Answer *done, Err *err)
+Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err)
 {
     const Problem *p = c->problem;
     const size_t size = p->n_cheap * p->part_size;
-    TRY(grow(q, err));
-    Screened *d = &q->design[q->n];
-    *d = (Screened){c->archive.n, SIZE_MAX, done->parts ? malloc(size) : NULL};
-    if (d->parts)
-        memcpy(d->parts, done->parts, size);
-    memcpy(q->y + q->n * q->n_out, done->f, p->n_obj * sizeof *q->y);
-    if (p->n_con > 0)
-        memcpy(q->y + q->n * q->n_out + p->n_obj, done->g, p->n_con * sizeof *q->y);
-    q->n++;
-    return STATUS_OK;
-}
 
-Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err)
-{
-    if (answer->kind == KIND_SCREENED)
-        return keep(q, c, answer, err);
-    const size_t i = find(q, c, answer->x);
-    if (i == q->n)
+    /* 1. The whole evaluation of a design that was screened; of another one there is nothing to be kept. */
+    if (answer->kind != KIND_SCREENED) {
+        const size_t i = find(q, c, answer->x);
+        if (i == q->n)
+            return STATUS_OK;
+        q->design[i].finished = c->archive.n;
+        q->n_finished++;
+        free(q->design[i].parts);
+        q->design[i].parts = NULL;
         return STATUS_OK;
-    q->design[i].finished = c->archive.n;
-    q->n_finished++;
-    free(q->design[i].parts);
-    q->design[i].parts = NULL;
+    }
+
+    /* 2. A screened design. */
+    if (q->n == q->n_max) {
+        const size_t n_max = q->n_max > 0 ? 2 * q->n_max : 128;
+        Screened *design = realloc(q->design, n_max * sizeof *design);
+        q->design = design ? design : q->design;
+        double *y = realloc(q->y, n_max * q->n_out * sizeof *y);
+        q->y = y ? y : q->y;
+        if (!design || !y)
+            return fail_memory(err, n_max, "screened designs");
+        q->n_max = n_max;
+    }
+    Screened *d = &q->design[q->n];
+    double *y = q->y + q->n++ * q->n_out;
+    *d = (Screened){c->archive.n, SIZE_MAX, answer->parts ? malloc(size) : NULL};
+    if (d->parts)
+        memcpy(d->parts, answer->parts, size);
+    memcpy(y, answer->f, p->n_obj * sizeof *y);
+    if (p->n_con > 0)
+        memcpy(y + p->n_obj, answer->g, p->n_con * sizeof *y);
     return STATUS_OK;
 }
 
@@ -191,16 +183,6 @@ const void *screening_parts(const Screening *q, const Common *c, const double x[
 
 /* -- what the cheap level says of the whole evaluation ------------------------------------------------------------- */
 
-/* Designs that have both levels, in scratch of the archive. */
-static size_t find_pairs(Screening *q, const Archive *a)
-{
-    q->n_rows = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished != SIZE_MAX && a->usable[q->design[i].finished])
-            a->scratch.row[q->n_rows++] = i;
-    return q->n_rows;
-}
-
 static int order_of(double a, double b)
 {
     return (a > b) - (a < b);
@@ -221,27 +203,6 @@ static double agreement_of(const Screening *q, const Archive *a, size_t k)
     return pairs > 0.0 ? same / pairs : NAN;
 }
 
-/* An objective that the whole evaluation does not tell apart says nothing. */
-static double mean_agreement(const Screening *q, const Archive *a)
-{
-    double sum = 0.0, n = 0.0;
-    for (size_t k = 0; k < a->n_obj; k++) {
-        const double tau = agreement_of(q, a, k);
-        sum += isnan(tau) ? 0.0 : tau;
-        n += !isnan(tau);
-    }
-    return n > 0.0 ? sum / n : 1.0;
-}
-
-/* What is predicted from the cheap level is not used any more, but for an initial sample that is to be finished. */
-static void turn_off(Screening *q, Archive *a)
-{
-    q->is_on = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished == SIZE_MAX && a->generation[q->design[i].row] > 0)
-            pareto_archive_drop(a, q->design[i].row);
-}
-
 /* -- predictions --------------------------------------------------------------------------------------------------- */
 
 /* Of the designs that have both levels, whose rows are in scratch of the archive. */
@@ -249,13 +210,9 @@ static Status fit_levels(const Screening *q, const Archive *a, Levels **out, Err
 {
     const size_t n = q->n_rows, m = q->n_out;
     const double **x;
-    double *cheap;
     TRY_ROOM(x, n, "designs of both levels", err);
-    Status status = STATUS_OK;
-    cheap = malloc(2 * n * m * sizeof *cheap);
-    if (!cheap)
-        status = fail_memory(err, n, "results of both levels");
-    for (size_t j = 0; status == STATUS_OK && j < n; j++) {
+    double *cheap = malloc(2 * n * m * sizeof *cheap);
+    for (size_t j = 0; cheap && j < n; j++) {
         const size_t i = a->scratch.row[j];
         x[j] = a->X + q->design[i].row * q->problem->n_var;
         for (size_t k = 0; k < m; k++) {
@@ -263,7 +220,8 @@ static Status fit_levels(const Screening *q, const Archive *a, Levels **out, Err
             cheap[(n + j) * m + k] = whole_value(q, a, i, k);
         }
     }
-    THEN(status, levels_fit(out, q->problem, q->is_biased, n, m, x, cheap, cheap + n * m, err));
+    const Status status = cheap ? levels_fit(out, q->problem, q->is_biased, n, m, x, cheap, cheap + n * m, err)
+                                : fail_memory(err, n, "results of both levels");
     free(x);
     free(cheap);
     return status;
@@ -283,12 +241,11 @@ static Status predict(Screening *q, Archive *a, Err *err)
             continue;
         if (levels)
             levels_predict(levels, a->X + row * q->problem->n_var, cheap, y);
-        int is_finite = 1;
-        for (size_t k = 0; k < q->n_out; k++) {
-            *output_of(a, row, k) = levels ? y[k] : cheap[k];
-            is_finite = is_finite && isfinite(*output_of(a, row, k));
-        }
-        if (is_finite)
+        else
+            memcpy(y, cheap, q->n_out * sizeof *y);
+        for (size_t k = 0; k < q->n_out; k++)
+            *output_of(a, row, k) = y[k];
+        if (all_finite(q->n_out, y))
             pareto_archive_predicted(a, row);
         else
             pareto_archive_drop(a, row);
@@ -300,21 +257,7 @@ static Status predict(Screening *q, Archive *a, Err *err)
 
 /* -- the front ----------------------------------------------------------------------------------------------------- */
 
-/* Those that are being finished. */
-static void choose_pending(const Common *c)
-{
-    const Archive *a = &c->archive;
-    memset(a->is_chosen, 0, a->n);
-    for (size_t i = 0; i < c->pending.n; i++) {
-        const size_t row = pending_at(&c->pending, i)->q.kind == KIND_FINISHED
-                               ? pareto_archive_find(a, pending_x(&c->pending, i))
-                               : a->n;
-        if (row < a->n)
-            a->is_chosen[row] = 1;
-    }
-}
-
-/* Of whole evaluations and predictions together. */
+/* Of whole evaluations and predictions together; chosen are those that are being finished. */
 static Status find_front(Screening *q, const Common *c, Err *err)
 {
     const Archive *a = &c->archive;
@@ -322,7 +265,12 @@ static Status find_front(Screening *q, const Common *c, Err *err)
     NdChange change;
     size_t n = 0;
     q->n_open = 0;
-    choose_pending(c);
+    memset(a->is_chosen, 0, a->n);
+    for (size_t i = 0; i < c->pending.n; i++) {
+        const size_t row = pareto_archive_find(a, pending_x(&c->pending, i));
+        if (row < a->n)
+            a->is_chosen[row] = pending_at(&c->pending, i)->q.kind == KIND_FINISHED;
+    }
     Status status = nd_tree_create(&tree, a->n_obj, err);
     for (size_t row = 0; status == STATUS_OK && row < a->n; row++) {
         a->expected[row] = 0;
@@ -348,10 +296,28 @@ Status screening_update(Screening *q, Common *c, Err *err)
     Archive *a = &c->archive;
     if (q->n == 0)
         return STATUS_OK;
-    if (find_pairs(q, a) >= LEVEL_PAIRS) {
-        q->agreement = mean_agreement(q, a);
-        if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
-            turn_off(q, a);
+
+    /* 1. Designs that have both levels, and how the levels agree, in the mean over the objectives; one that the whole
+     * evaluation does not tell apart says nothing. */
+    q->n_rows = 0;
+    for (size_t i = 0; i < q->n; i++)
+        if (q->design[i].finished != SIZE_MAX && a->usable[q->design[i].finished])
+            a->scratch.row[q->n_rows++] = i;
+    if (q->n_rows >= LEVEL_PAIRS) {
+        double sum = 0.0, n = 0.0;
+        for (size_t k = 0; k < a->n_obj; k++) {
+            const double tau = agreement_of(q, a, k);
+            sum += isnan(tau) ? 0.0 : tau;
+            n += !isnan(tau);
+        }
+        q->agreement = n > 0.0 ? sum / n : 1.0;
+        if (q->agreement < LEVEL_TAU_MIN)
+            q->is_on = 0;
+
+        /* 2. Where they do not, what is predicted is not used any more, but for an initial sample to be finished. */
+        for (size_t i = 0; !q->is_on && i < q->n; i++)
+            if (q->design[i].finished == SIZE_MAX && a->generation[q->design[i].row] > 0)
+                pareto_archive_drop(a, q->design[i].row);
     }
     TRY(predict(q, a, err));
     return find_front(q, c, err);
@@ -418,21 +384,18 @@ static size_t size_with(const Screening *q, const Common *c, const Batch *b, siz
     return MIN_OF(b->size_max, b->n + MIN_OF(wanted, room / q->cost.rest));
 }
 
-/* After n new ones: pairs to compare the levels by, then what is due where the cheap level is biased; the initial
- * sample where nothing is screened any more. */
-static size_t wanted_now(const Screening *q, const Common *c, size_t n)
-{
-    const size_t done = q->n_finished + c->pending.n_of_kind[KIND_FINISHED];
-    if (!q->is_on)
-        return q->n;
-    return done < LEVEL_PAIRS ? LEVEL_PAIRS - done : q->is_biased ? finish_due(q, c, n) : 0;
-}
-
+/* Pairs to compare the levels by, then what is due where the cheap level is biased; the initial sample where nothing is
+ * screened any more. */
 Status screening_finish(Screening *q, Common *c, Batch *b, Err *err)
 {
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(q, c, b, wanted_now(q, c, b->n));
+    const size_t done = q->n_finished + c->pending.n_of_kind[KIND_FINISHED], due = finish_due(q, c, b->n),
+                 wanted = !q->is_on            ? q->n
+                          : done < LEVEL_PAIRS ? LEVEL_PAIRS - done
+                          : q->is_biased       ? due
+                                               : 0,
+                 size = size_with(q, c, b, wanted);
     if (size <= b->n)
         return STATUS_OK;
     if (q->is_on)

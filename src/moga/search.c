@@ -34,21 +34,14 @@ void search_stop(Search *s, StopReason reason)
 
 /* -- convergence --------------------------------------------------------------------------------------------------- */
 
-/* Eight times in stop_after evaluations: this step has passed one of those marks. */
-static int is_due(const Search *s)
-{
-    const Archive *a = &s->common.archive;
-    const size_t wanted = s->common.config->stop_after, step = wanted / 8 + 1;
-    return wanted > 0 && s->common.convergence.end == 0 && a->n > wanted && a->n / step > s->n_before / step;
-}
-
+/* Eight times in stop_after evaluations, where this step has passed one of those marks. */
 static Status look_for_convergence(Search *s, Err *err)
 {
     const Archive *a = &s->common.archive;
+    const size_t wanted = s->common.config->stop_after, step = wanted / 8 + 1, cuts[] = {a->n - wanted, a->n};
     unsigned char *counts = a->scratch.mark;
-    const size_t cuts[] = {a->n - s->common.config->stop_after, a->n};
     double h[2];
-    if (!is_due(s))
+    if (wanted == 0 || s->common.convergence.end > 0 || a->n <= wanted || a->n / step == s->n_before / step)
         return STATUS_OK;
     for (size_t i = 0; i < a->n; i++)
         counts[i] = a->usable[i] && a->replicates[i] > 0 && a->violation[i] == 0.0;
@@ -56,16 +49,8 @@ static Status look_for_convergence(Search *s, Err *err)
     TRY(convergence_shares(&designs, 2, cuts, h, err));
     if (!(h[1] - h[0] <= hypervolume_error(h[1])))
         return STATUS_OK;
-    s->common.convergence.after = s->common.config->stop_after;
-    s->common.convergence.end = a->n + s->common.pending.n;
+    s->common.convergence = (Convergence){.after = wanted, .end = a->n + s->common.pending.n};
     return STATUS_OK;
-}
-
-/* A search that is resumed with another stop_after may not be over any more. */
-static void reconsider_convergence(Search *s)
-{
-    if (s->common.convergence.after != s->common.config->stop_after)
-        s->common.convergence = (Convergence){0};
 }
 
 /* -- what is known ------------------------------------------------------------------------------------------------- */
@@ -76,7 +61,12 @@ static void exchange(Search *s)
     screening_exchange(&s->screening, &s->common.archive);
 }
 
-static void save_state(Search *s)
+static int is_over(const Search *s)
+{
+    return s->reason != STOP_NONE && s->common.pending.n == 0;
+}
+
+SearchView search_look(Search *s)
 {
     s->state.n = 0;
     s->state.faulty = 0;
@@ -85,16 +75,6 @@ static void save_state(Search *s)
     state_pack(s, &s->state);
     if (s->is_behind_step)
         exchange(s);
-}
-
-static int is_over(const Search *s)
-{
-    return s->reason != STOP_NONE && s->common.pending.n == 0;
-}
-
-SearchView search_look(Search *s)
-{
-    save_state(s);
     return (SearchView){.all = &s->common.archive,
                         .n_evaluations = screening_evaluations(&s->screening, &s->common),
                         .n_screened = s->screening.n,
@@ -110,40 +90,37 @@ SearchView search_look(Search *s)
 
 /* -- asked and told ------------------------------------------------------------------------------------------------ */
 
-/* What is due has entered, and what follows from it is decided. */
-static Status end_step(Search *s, Err *err)
-{
-    TRY(generation_enter(s, err));
-    TRY(look_for_convergence(s, err));
-    search_stop(s, reason_to_stop(s));
-    exchange(s);
-    s->is_behind_step = 1;
-    return STATUS_OK;
-}
-
-static Status make_group(Search *s, Err *err)
-{
-    exchange(s);
-    s->is_behind_step = 0;
-    s->common.generation += s->common.archive.n > 0;
-    return generation_ask(s, err);
-}
-
 Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
 {
     Pending *p = &s->common.pending;
     *move = SEARCH_ENDS;
     if (is_over(s))
         return STATUS_OK;
-    if (s->is_behind_step)
-        TRY(make_group(s, err));
+
+    /* 1. Behind a step a group of questions is made; the next one of those that are there is asked. */
+    if (s->is_behind_step) {
+        exchange(s);
+        s->is_behind_step = 0;
+        s->common.generation += s->common.archive.n > 0;
+        TRY(generation_ask(s, err));
+    }
     if (pending_hand(p, q)) {
         *move = SEARCH_ASKS;
         q->cheap_parts = q->kind == KIND_FINISHED ? screening_parts(&s->screening, &s->common, q->x) : NULL;
         return STATUS_OK;
     }
-    *move = p->n_known + s->allowed < p->n ? SEARCH_WAITS : SEARCH_STEPS;
-    return *move == SEARCH_STEPS ? end_step(s, err) : STATUS_OK;
+
+    /* 2. What is due enters, where all of it is there, and what follows from it is decided. */
+    *move = SEARCH_WAITS;
+    if (p->n_known + s->allowed < p->n)
+        return STATUS_OK;
+    *move = SEARCH_STEPS;
+    TRY(generation_enter(s, err));
+    TRY(look_for_convergence(s, err));
+    search_stop(s, reason_to_stop(s));
+    exchange(s);
+    s->is_behind_step = 1;
+    return STATUS_OK;
 }
 
 size_t search_at_once(const SearchConfig *c)
@@ -178,7 +155,7 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
     return STATUS_OK;
 }
 
-/* One that is resumed behind a step may have other limits now. */
+/* One that is resumed behind a step may have other limits now, and with another stop_after not be over any more. */
 static Status begin(Search *s, const SearchStart *start, Err *err)
 {
     TRY(state_create(s, err));
@@ -189,7 +166,8 @@ static Status begin(Search *s, const SearchStart *start, Err *err)
     if (!s->is_behind_step || s->common.archive.n == 0)
         return STATUS_OK;
     exchange(s);
-    reconsider_convergence(s);
+    if (s->common.convergence.after != s->common.config->stop_after)
+        s->common.convergence = (Convergence){0};
     search_stop(s, reason_to_stop(s));
     return STATUS_OK;
 }
@@ -197,9 +175,9 @@ static Status begin(Search *s, const SearchStart *start, Err *err)
 Status search_create(Search **out, const Problem *problem, const SearchConfig *config, const SearchStart *start,
                      Err *err)
 {
-    Search *s;
     *out = NULL;
     TRY(check(problem, config, err));
+    Search *s;
     TRY_ROOM(s, 1, "a search", err);
     s->common = (Common){.problem = problem, .config = config};
     const Status status = begin(s, start, err);

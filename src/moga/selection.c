@@ -84,42 +84,32 @@ static size_t rows_of_layer(Selection *s, size_t n, size_t layer)
     return count;
 }
 
-/* One of the directions that still have candidates and, among those, the fewest members. */
-static size_t emptiest_direction(Selection *s, Random *random)
-{
-    size_t fewest = SIZE_MAX, n_ties = 0;
-    for (size_t r = 0; r < s->n_dir; r++)
-        if (s->candidates[r] > 0 && s->members[r] < fewest)
-            fewest = s->members[r];
-    for (size_t r = 0; r < s->n_dir; r++)
-        if (s->candidates[r] > 0 && s->members[r] == fewest)
-            s->ties[n_ties++] = r;
-    return s->ties[random_below(random, n_ties)];
-}
-
-/* For a direction without members the nearest candidate, else any of them. */
-static size_t candidate_of(Selection *s, size_t r, size_t n_list, Random *random)
-{
-    size_t n_ties = 0, nearest = SIZE_MAX;
-    for (size_t j = 0; j < n_list; j++) {
-        const size_t i = s->list[j];
-        if (s->taken[i] || s->niche[i] != r)
-            continue;
-        s->ties[n_ties++] = i;
-        if (nearest == SIZE_MAX || s->distance[i] < s->distance[nearest])
-            nearest = i;
-    }
-    return s->members[r] == 0 ? nearest : s->ties[random_below(random, n_ties)];
-}
-
+/* One of the directions that still have candidates and, among those, the fewest members, gets one more: a direction
+ * without members the nearest candidate, else any of them. */
 static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *random)
 {
     memset(s->candidates, 0, s->n_dir * sizeof *s->candidates);
     for (size_t j = 0; j < n_list; j++)
         s->candidates[s->niche[s->list[j]]]++;
     while (wanted-- > 0) {
-        const size_t r = emptiest_direction(s, random), i = candidate_of(s, r, n_list, random);
-        s->taken[i] = 1;
+        size_t fewest = SIZE_MAX, nearest = SIZE_MAX, n_ties = 0;
+        for (size_t r = 0; r < s->n_dir; r++)
+            if (s->candidates[r] > 0 && s->members[r] < fewest)
+                fewest = s->members[r];
+        for (size_t r = 0; r < s->n_dir; r++)
+            if (s->candidates[r] > 0 && s->members[r] == fewest)
+                s->ties[n_ties++] = r;
+        const size_t r = s->ties[random_below(random, n_ties)];
+        n_ties = 0;
+        for (size_t j = 0; j < n_list; j++) {
+            const size_t i = s->list[j];
+            if (s->taken[i] || s->niche[i] != r)
+                continue;
+            s->ties[n_ties++] = i;
+            if (nearest == SIZE_MAX || s->distance[i] < s->distance[nearest])
+                nearest = i;
+        }
+        s->taken[fewest == 0 ? nearest : s->ties[random_below(random, n_ties)]] = 1;
         s->members[r]++;
         s->candidates[r]--;
     }

@@ -68,14 +68,6 @@ void surrogate_coordinates(const Problem *p, const double x[], double u[])
             *u = problem_to_unit(p, d, x[d]);
 }
 
-/* The design x with what is no choice at u. */
-static void move_to(const Problem *p, const double u[], double x[])
-{
-    for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
-        if (problem_kind(p, d) != VARIABLE_CHOICE)
-            x[d] = problem_from_unit(p, d, *u);
-}
-
 static void layout(void *surrogate, Carve *c)
 {
     Surrogate *s = surrogate;
@@ -94,14 +86,6 @@ static void layout(void *surrogate, Carve *c)
     CARVE(c, s->descent, (s->predict_max + RBF_BLOCK) * descent_length(s));
 }
 
-static void hold_choices(Surrogate *s)
-{
-    const Problem *p = s->problem;
-    for (size_t d = 0, at = 0; d < p->n_var; d++)
-        for (const size_t end = at + n_coordinates(p, d); at < end; at++)
-            s->is_held[at] = problem_kind(p, d) == VARIABLE_CHOICE;
-}
-
 Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
 {
     TRY_ROOM(*out, 1, "a surrogate", err);
@@ -113,12 +97,13 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     s->predict_max = predict_max;
     s->store = carve_all(layout, s);
     Status status = s->store ? STATUS_OK : fail_memory(err, predict_max, "predictions");
-    if (status == STATUS_OK)
-        hold_choices(s);
-    if (status == STATUS_OK && s->n_dim <= RBF_DIM_MAX)
-        status = rbf_create(&s->rbf, surrogate_max, s->n_dim, s->n_out, err);
-    if (status == STATUS_OK && s->n_dim <= RBF_DIM_MAX)
-        status = rbf_create(&s->success, surrogate_max, s->n_dim, 1, err);
+    for (size_t d = 0, at = 0; status == STATUS_OK && d < problem->n_var; d++)
+        for (const size_t end = at + n_coordinates(problem, d); at < end; at++)
+            s->is_held[at] = problem_kind(problem, d) == VARIABLE_CHOICE;
+    if (s->n_dim <= RBF_DIM_MAX) {
+        THEN(status, rbf_create(&s->rbf, surrogate_max, s->n_dim, s->n_out, err));
+        THEN(status, rbf_create(&s->success, surrogate_max, s->n_dim, 1, err));
+    }
     if (status != STATUS_OK) {
         surrogate_free(s);
         *out = NULL;
@@ -180,21 +165,6 @@ static size_t select_centres(const Surrogate *s, const Archive *a, Infill *near)
     return s->n_max;
 }
 
-static void measure_ranges(Surrogate *s, const Archive *a)
-{
-    for (size_t k = 0; k < s->n_out; k++) {
-        double min = DBL_MAX, max = -DBL_MAX;
-        for (size_t i = 0; i < a->n; i++) {
-            if (!is_centre(a, i))
-                continue;
-            const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
-            min = fmin(min, v);
-            max = fmax(max, v);
-        }
-        s->range[k] = max > min ? max - min : 1.0;
-    }
-}
-
 /* Least squares on 1 and 0 (Rasmussen and Williams, 6.5) over all designs, thinned evenly beyond n_max. */
 static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
 {
@@ -232,7 +202,17 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
         for (size_t k = 0; k < s->n_out; k++)
             s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
     }
-    measure_ranges(s, a);
+    for (size_t k = 0; k < s->n_out; k++) {
+        double min = DBL_MAX, max = -DBL_MAX;
+        for (size_t i = 0; i < a->n; i++) {
+            const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
+            if (is_centre(a, i)) {
+                min = fmin(min, v);
+                max = fmax(max, v);
+            }
+        }
+        s->range[k] = max > min ? max - min : 1.0;
+    }
     const size_t share = a->n > s->n_max ? RETUNE_SHARE / 2 : RETUNE_SHARE;
     const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + share - 1) / share;
     TRY((tuning ? rbf_tune : rbf_fit)(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
@@ -280,52 +260,20 @@ double surrogate_error(const Surrogate *s)
     return worst;
 }
 
-/* Members to be predicted, and their designs in the unit cube; returns how many. */
-static size_t gather(Surrogate *s, const Population *population, size_t first)
-{
-    size_t n = 0;
-    for (size_t i = first; i < population->n; i++)
-        if (population->row[i] == PREDICTED) {
-            surrogate_coordinates(s->problem, population->X + i * population->n_var, s->u + n * s->n_dim);
-            s->member[n++] = i;
-        }
-    return n;
-}
-
-/* That constraints g (n_con) hold, normal about the predictions with standard deviation e. */
-static double chance_of(const Problem *p, const double g[], const double e[])
-{
-    double chance = 1.0;
-    for (size_t c = 0; c < p->n_con; c++)
-        chance *= e && e[c] > 0.0 ? 0.5 * erfc(g[c] / (e[c] * M_SQRT2)) : g[c] <= 0.0;
-    return chance;
-}
-
-/* A regression on 1 and 0 is drawn towards its mean: its square is the nearer one to the probability where little is
- * known. */
-static double chance_to_succeed(double prediction)
-{
-    return pow(fmin(fmax(prediction, 0.0), 1.0), SUCCESS_POWER);
-}
-
-static void fill_member(const Surrogate *s, Population *population, size_t i, const double f[], const double e[],
-                        double success)
-{
-    const Problem *p = s->problem;
-    double worst = 0.0;
-    population->chance[i] = chance_of(p, f + p->n_obj, e ? e + p->n_obj : NULL) * chance_to_succeed(success);
-    for (size_t k = 0; e && k < s->n_out; k++)
-        worst = fmax(worst, e[k] / s->range[k]);
-    memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
-    for (size_t k = 0; k < p->n_obj; k++)
-        population->error[i * p->n_obj + k] = e ? e[k] : 0.0;
-    population->violation[i] = violation_of(p->n_con, f + p->n_obj) + fmax(SUCCESS_MIN - success, 0.0);
-    population->uncertainty[i] = worst;
-}
-
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty)
 {
-    const size_t n_dim = s->n_dim, n = s->fitted ? gather(s, population, first) : 0;
+    const Problem *p = s->problem;
+    const size_t n_dim = s->n_dim;
+    size_t n = 0;
+
+    /* 1. Members to be predicted, and their designs in the unit cube. */
+    for (size_t i = first; i < population->n && s->fitted; i++)
+        if (population->row[i] == PREDICTED) {
+            surrogate_coordinates(p, population->X + i * p->n_var, s->u + n * n_dim);
+            s->member[n++] = i;
+        }
+
+        /* 2. Predictions, a block at a time. */
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK) {
         const size_t count = MIN_OF(n - i, RBF_BLOCK);
@@ -333,98 +281,92 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
         if (s->knows_failures)
             rbf_eval(s->success, count, s->u + i * n_dim, s->chance + i, NULL);
     }
-    for (size_t i = 0; i < n; i++)
-        fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
-                    s->knows_failures ? s->chance[i] : 1.0);
+
+    /* 3. Limits hold with a probability, normal about the predictions with standard deviation e. A regression of
+     * success on 1 and 0 is drawn towards its mean: its square is the nearer one to the probability where little is
+     * known. */
+    for (size_t j = 0; j < n; j++) {
+        const size_t i = s->member[j];
+        const double *f = s->f + j * s->n_out, *g = f + p->n_obj, *e = with_uncertainty ? s->e + j * s->n_out : NULL;
+        const double success = s->knows_failures ? s->chance[j] : 1.0;
+        double chance = 1.0, worst = 0.0;
+        for (size_t c = 0; c < p->n_con; c++) {
+            const double error = e ? e[p->n_obj + c] : 0.0;
+            chance *= error > 0.0 ? 0.5 * erfc(g[c] / (error * M_SQRT2)) : g[c] <= 0.0;
+        }
+        for (size_t k = 0; e && k < s->n_out; k++)
+            worst = fmax(worst, e[k] / s->range[k]);
+        memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+        for (size_t k = 0; k < p->n_obj; k++)
+            population->error[i * p->n_obj + k] = e ? e[k] : 0.0;
+        population->violation[i] = violation_of(p->n_con, g) + fmax(SUCCESS_MIN - success, 0.0);
+        population->uncertainty[i] = worst;
+        population->chance[i] = chance * pow(fmin(fmax(success, 0.0), 1.0), SUCCESS_POWER);
+    }
 }
 
-/* State of one descent; u, f and J of a block lie together, as rbf_slope takes them. */
-typedef struct {
-    double *best, *g, *g_last, *step; /* (n_dim) */
-    double *slope;                    /* (n_obj) */
-    double min, violation;            /* of the best point */
-} Descent;
-
+/* Of a descent: u, f, J, success and its derivatives, which lie together for a block of them, as rbf_slope takes them;
+ * best point, gradient, the one before, steps, derivatives by the objectives. */
 static size_t descent_length(const Surrogate *s)
 {
     const size_t d = s->n_dim;
     return d + s->n_out + s->n_out * d + 1 + d + 4 * d + s->problem->n_obj;
 }
 
-static Descent descent_on(const Surrogate *s, double *store)
+/* n <= RBF_BLOCK descents side by side, starting at U, by resilient back-propagation; the best point of each goes
+ * there. */
+static void descend(const Surrogate *s, size_t n, const Infill *const near[], const size_t vectors[], double *U)
 {
-    const size_t d = s->n_dim;
-    return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY, INFINITY};
-}
-
-/* What a limit or a predicted failure adds at a point, and to the gradient of its descent. */
-static double penalise(const Surrogate *s, Descent *w, const double f[], const double J[], double success,
-                       const double J_success[])
-{
-    const Problem *p = s->problem;
-    double violation = fmax(SUCCESS_MIN - success, 0.0);
-    for (size_t d = 0; violation > 0.0 && d < s->n_dim; d++)
-        w->g[d] -= PENALTY * J_success[d];
-    for (size_t c = p->n_obj; c < s->n_out; c++) {
-        if (!(f[c] > 0.0))
-            continue;
-        violation += f[c] / s->range[c];
-        for (size_t d = 0; d < s->n_dim; d++)
-            w->g[d] += PENALTY * J[c * s->n_dim + d] / s->range[c];
-    }
-    return violation;
-}
-
-/* One step of resilient back-propagation at u, where the surrogate is f with the derivatives J. */
-static void descent_step(const Surrogate *s, const Infill *near, size_t vector, Descent *w, double u[],
-                         const double f[], const double J[], double success, const double J_success[])
-{
-    const size_t n_dim = s->n_dim;
-    const double value = infill_slope(near, vector, f, w->slope);
-    for (size_t d = 0; d < n_dim; d++) {
-        w->g[d] = 0.0;
-        for (size_t k = 0; k < s->problem->n_obj; k++)
-            w->g[d] += w->slope[k] * J[k * n_dim + d];
-    }
-    const double violation = penalise(s, w, f, J, success, J_success), longest = 10.0 * DESCENT_STEP_FIRST;
-    if (violation < w->violation || (violation == w->violation && value < w->min)) {
-        w->violation = violation;
-        w->min = value;
-        memcpy(w->best, u, n_dim * sizeof *u);
-    }
-    for (size_t d = 0; d < n_dim; d++) {
-        if (s->is_held[d])
-            continue;
-        const double move = rprop_move(w->g[d], &w->g_last[d], &w->step[d]);
-        u[d] = fmin(fmax(u[d] + fmin(fmax(move, -longest), longest), 0.0), 1.0);
-    }
-}
-
-/* n <= RBF_BLOCK descents side by side, starting at U; the best point of each goes there. */
-static void descend(const Surrogate *s, size_t n, const Infill *const near[], const size_t vectors[], double *store)
-{
-    const size_t n_dim = s->n_dim, own = 4 * n_dim + s->problem->n_obj;
-    double *U = store, *F = U + RBF_BLOCK * n_dim, *J = F + RBF_BLOCK * s->n_out,
-           *success = J + RBF_BLOCK * s->n_out * n_dim, *J_success = success + RBF_BLOCK,
-           *rest = J_success + RBF_BLOCK * n_dim;
-    Descent w[RBF_BLOCK];
-    for (size_t p = 0; p < n; p++) {
-        w[p] = descent_on(s, rest + p * own);
-        for (size_t d = 0; d < n_dim; d++) {
-            w[p].step[d] = DESCENT_STEP_FIRST;
-            w[p].g_last[d] = 0.0;
-        }
-    }
+    const size_t n_dim = s->n_dim, n_obj = s->problem->n_obj, n_out = s->n_out;
+    const double longest = 10.0 * DESCENT_STEP_FIRST;
+    double *F = U + RBF_BLOCK * n_dim, *J = F + RBF_BLOCK * n_out, *success = J + RBF_BLOCK * n_out * n_dim,
+           *J_success = success + RBF_BLOCK, *rest = J_success + RBF_BLOCK * n_dim;
+    double least[RBF_BLOCK], least_violation[RBF_BLOCK];
     for (int step = 0; step < DESCENT_STEPS; step++) {
         rbf_slope(s->rbf, n, U, F, J);
         if (s->knows_failures)
             rbf_slope(s->success, n, U, success, J_success);
-        for (size_t p = 0; p < n; p++)
-            descent_step(s, near[p], vectors[p], &w[p], U + p * n_dim, F + p * s->n_out, J + p * s->n_out * n_dim,
-                         s->knows_failures ? success[p] : 1.0, J_success + p * n_dim);
+        for (size_t p = 0; p < n; p++) {
+            const double *f = F + p * n_out, *slopes = J + p * n_out * n_dim;
+            double *u = U + p * n_dim, *best = rest + p * (4 * n_dim + n_obj), *g = best + n_dim, *last = g + n_dim,
+                   *size = last + n_dim, *slope = size + n_dim;
+
+            /* 1. The criterion's gradient, and what a limit or a predicted failure adds. */
+            const double value = infill_slope(near[p], vectors[p], f, slope);
+            double violation = s->knows_failures ? fmax(SUCCESS_MIN - success[p], 0.0) : 0.0;
+            for (size_t d = 0; d < n_dim; d++) {
+                g[d] = 0.0;
+                for (size_t k = 0; k < n_obj; k++)
+                    g[d] += slope[k] * slopes[k * n_dim + d];
+                if (violation > 0.0)
+                    g[d] -= PENALTY * J_success[p * n_dim + d];
+            }
+            for (size_t c = n_obj; c < n_out; c++) {
+                if (!(f[c] > 0.0))
+                    continue;
+                violation += f[c] / s->range[c];
+                for (size_t d = 0; d < n_dim; d++)
+                    g[d] += PENALTY * slopes[c * n_dim + d] / s->range[c];
+            }
+
+            /* 2. The best point so far, and the next one. */
+            if (step == 0 || violation < least_violation[p] || (violation == least_violation[p] && value < least[p])) {
+                least_violation[p] = violation;
+                least[p] = value;
+                memcpy(best, u, n_dim * sizeof *u);
+            }
+            for (size_t d = 0; d < n_dim; d++) {
+                if (step == 0) {
+                    size[d] = DESCENT_STEP_FIRST;
+                    last[d] = 0.0;
+                }
+                const double move = s->is_held[d] ? 0.0 : rprop_move(g[d], &last[d], &size[d]);
+                u[d] = fmin(fmax(u[d] + fmin(fmax(move, -longest), longest), 0.0), 1.0);
+            }
+        }
     }
     for (size_t p = 0; p < n; p++)
-        memcpy(U + p * n_dim, w[p].best, n_dim * sizeof *U);
+        memcpy(U + p * n_dim, rest + p * (4 * n_dim + n_obj), n_dim * sizeof *U);
 }
 
 void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], size_t n_first, size_t n,
@@ -443,8 +385,12 @@ void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], s
             surrogate_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
         }
         descend(s, count, near, vectors + i, U);
-        for (size_t j = 0; j < count; j++)
-            move_to(p, U + j * s->n_dim, x + j * p->n_var);
+        for (size_t j = 0; j < count; j++) { /* choices stay */
+            const double *u = U + j * s->n_dim;
+            for (size_t d = 0; d < p->n_var; u += n_coordinates(p, d), d++)
+                if (problem_kind(p, d) != VARIABLE_CHOICE)
+                    x[j * p->n_var + d] = problem_from_unit(p, d, *u);
+        }
     }
 }
 

@@ -80,37 +80,27 @@ void cross_choices(Random *r, const Problem *p, const double mother[], const dou
     }
 }
 
-static double other_word(Random *r, double upper, double word)
-{
-    const double other = (double)random_below(r, (size_t)upper);
-    return other < word ? other : other + 1.0;
-}
-
-static double other_number(double lower, double upper, double before, double x)
-{
-    const double step = fmax(round(fabs(x - before)), 1.0), to = round(before) + (x < before ? -step : step);
-    return to < lower || to > upper ? round(before) + (x < before ? 1.0 : -1.0) : to;
-}
-
-static double other_step(const Steps *s, double before, double x)
-{
-    const size_t was = steps_nearest(s, before), to = steps_nearest(s, x);
-    if (to != was || s->n == 1)
-        return steps_at(s, to);
-    return steps_at(s, was == 0 || (x > before && was + 1 < s->n) ? was + 1 : was - 1);
-}
-
 void mutate_discrete(Random *r, const Problem *p, const double before[], double x[])
 {
-    for (size_t d = 0; d < p->n_var; d++)
-        if (!problem_is_discrete(p, d) || x[d] == before[d])
+    for (size_t d = 0; d < p->n_var; d++) {
+        const double was = before[d];
+        if (!problem_is_discrete(p, d) || x[d] == was)
             continue;
-        else if (problem_kind(p, d) == VARIABLE_CHOICE)
-            x[d] = other_word(r, p->upper[d], before[d]);
-        else if (problem_kind(p, d) == VARIABLE_STEPPED)
-            x[d] = other_step(&p->steps[d], before[d], x[d]);
-        else
-            x[d] = other_number(p->lower[d], p->upper[d], before[d], x[d]);
+        if (problem_kind(p, d) == VARIABLE_CHOICE) {
+            const double other = (double)random_below(r, (size_t)p->upper[d]);
+            x[d] = other < was ? other : other + 1.0;
+        } else if (problem_kind(p, d) == VARIABLE_STEPPED) {
+            const Steps *s = &p->steps[d];
+            const size_t from = steps_nearest(s, was), to = steps_nearest(s, x[d]);
+            if (to != from || s->n == 1)
+                x[d] = steps_at(s, to);
+            else
+                x[d] = steps_at(s, from == 0 || (x[d] > was && from + 1 < s->n) ? from + 1 : from - 1);
+        } else {
+            const double step = fmax(round(fabs(x[d] - was)), 1.0), to = round(was) + (x[d] < was ? -step : step);
+            x[d] = to < p->lower[d] || to > p->upper[d] ? round(was) + (x[d] < was ? 1.0 : -1.0) : to;
+        }
+    }
 }
 
 void step_discrete(Random *r, const Problem *p, size_t d, const double from[], double x[])
