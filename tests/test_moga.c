@@ -390,20 +390,7 @@ static void insert_by_definition(size_t m, const double F[], size_t row, unsigne
         in[j] = in[j] && !dominates(m, F + row * m, F + j * m);
 }
 
-/* A tree of those that are in. */
-static NdTree *filled_tree(size_t m, const double F[], size_t n, const unsigned char in[])
-{
-    size_t rows[400], n_in = 0;
-    NdTree *t;
-    for (size_t i = 0; i < n; i++)
-        if (in[i])
-            rows[n_in++] = i;
-    CHECK_OK(nd_tree_create(&t, m, &err), &err);
-    CHECK_OK(nd_tree_fill(t, F, n_in, rows, &err), &err);
-    return t;
-}
-
-TEST(the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time)
+TEST(the_tree_of_the_front_equals_brute_force_on_200_streams)
 {
     enum { N = 400, M_MAX = 10 };
     static double F[N * M_MAX];
@@ -415,10 +402,6 @@ TEST(the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time)
         make_stream(seed, N, m, F);
         CHECK_OK(nd_tree_create(&t, m, &err), &err);
         for (size_t i = 0; i < N; i++) {
-            if (i == 2 * seed) {
-                nd_tree_free(t);
-                t = filled_tree(m, F, i, in);
-            }
             CHECK_OK(nd_tree_insert(t, F, i, &change, &err), &err);
             in[i] = change.is_in != 0;
             for (size_t j = 0; j < change.n_removed; j++) {
@@ -448,7 +431,7 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
         }
         F[20 * M] = NAN; /* counts as failed */
         for (size_t i = 0; i < N; i++) {
-            CHECK_OK(pareto_archive_insert(&a, 1, X + i, F + i * M, G + i, ok + i, 0, i, &err), &err);
+            CHECK_OK(pareto_archive_insert(&a, X + i, F + i * M, G + i, ok[i], KIND_SAMPLED, i, &err), &err);
             size_t n_front = 0;
             for (size_t j = 0; j <= i; j++) {
                 int wanted = ok[j] && G[j] <= 0.0 && j != 20;
@@ -463,43 +446,6 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
         assert_int_equal(pareto_archive_find(&a, X + 33), 33);
         assert_int_equal(pareto_archive_find(&a, (const double[]){0.5}), N);
         pareto_archive_free(&a);
-    }
-}
-
-/* Some designs fail, some are infeasible; the first half of the rows restored, the rest inserted. */
-TEST(an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was)
-{
-    enum { N = 400, M = 4 };
-    static double F[N * M], X[N], G[N];
-    unsigned char ok[N];
-    for (uint32_t seed = 0; seed < 20; seed++) {
-        Archive whole, again;
-        Random r = random_stream(seed, RANDOM_TEST, 9, 0);
-        make_stream(seed, N, M, F);
-        for (size_t i = 0; i < N; i++) {
-            X[i] = (double)i;
-            ok[i] = random_below(&r, 10) > 0;
-            G[i] = random_below(&r, 10) > 0 ? -1.0 : 1.0;
-        }
-        CHECK_OK(pareto_archive_init(&whole, 1, 1, M, 1, &err), &err);
-        CHECK_OK(pareto_archive_init(&again, 1, 1, M, 1, &err), &err);
-        CHECK_OK(pareto_archive_insert(&whole, N / 2, X, F, G, ok, 0, 0, &err), &err);
-        for (size_t i = 0; i < N / 2; i++)
-            CHECK_OK(pareto_archive_restore(&again, X + i, F + i * M, G + i, ok[i], 0, 0, whole.on_front[i], &err),
-                     &err);
-        for (size_t i = N / 2; i < N; i++) {
-            CHECK_OK(pareto_archive_insert(&whole, 1, X + i, F + i * M, G + i, ok + i, 0, 0, &err), &err);
-            CHECK_OK(pareto_archive_insert(&again, 1, X + i, F + i * M, G + i, ok + i, 0, 0, &err), &err);
-            assert_int_equal(again.n_front, whole.n_front);
-            assert_memory_equal(again.on_front, whole.on_front, i + 1);
-        }
-        pareto_archive_list_front(&whole);
-        pareto_archive_list_front(&again);
-        assert_memory_equal(again.front, whole.front, whole.n_front * sizeof *whole.front);
-        assert_int_equal(again.n_failed, whole.n_failed);
-        assert_int_equal(again.n_usable, whole.n_usable);
-        pareto_archive_free(&whole);
-        pareto_archive_free(&again);
     }
 }
 

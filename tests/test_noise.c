@@ -113,7 +113,7 @@ static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
         double f[M];
         for (size_t k = 0; k < M; k++)
             f[k] = fmod(x * (double)(7 + 4 * k), 10.0) + 1.0 + 0.5 * random_normal(&r);
-        CHECK_OK(pareto_archive_insert(a, 1, &x, f, &g, &(unsigned char){1}, 0, i, &err), &err);
+        CHECK_OK(pareto_archive_insert(a, &x, f, &g, 1, KIND_SAMPLED, i, &err), &err);
         if (settle_often)
             pareto_archive_update_noise(a);
     }
@@ -177,9 +177,10 @@ TEST(a_design_that_was_lucky_once_falls_out)
     Archive a;
     const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
-    CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
-    assert_int_equal(a.n_front, 2);
-    CHECK_OK(pareto_archive_insert(&a, 3, X + 2, F + 4, NULL, (const unsigned char[]){1, 1, 1}, 0, 1, &err), &err);
+    for (size_t i = 0; i < 5; i++) {
+        CHECK_OK(pareto_archive_insert(&a, X + i, F + 2 * i, NULL, 1, KIND_SAMPLED, 0, &err), &err);
+        assert_true(i != 1 || a.n_front == 2);
+    }
     pareto_archive_update_noise(&a);
     assert_true(a.n_front == 1 && a.front[0] == 1 && !a.on_front[0]);
     pareto_archive_free(&a);
@@ -190,8 +191,8 @@ TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
     Archive a;
     const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
-    CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
-    CHECK_OK(pareto_archive_insert(&a, 1, X, F, NULL, (const unsigned char[]){0}, 0, 1, &err), &err);
+    for (size_t i = 0; i < 3; i++)
+        CHECK_OK(pareto_archive_insert(&a, X + i % 2, F + 2 * (i % 2), NULL, i < 2, KIND_SAMPLED, 0, &err), &err);
     pareto_archive_update_noise(&a);
     assert_true(!a.usable[0] && a.n_usable == 1 && a.n_failed == 1);
     assert_true(a.n_front == 1 && a.front[0] == 1);
@@ -393,8 +394,7 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
     for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
         EvaluationTable before = evaluations_of(&w.problem, 1, seen.moments.rows[k], seen.X, seen.Y, NULL, seen.ok,
                                                 seen.kind, seen.generation);
-        const SearchStart start = {before.n, 0,    before.row, seen.moments.state[k], seen.moments.n_state[k],
-                                   NULL,     NULL, NULL};
+        const SearchStart start = {before.n, 0, before.row, seen.moments.state[k], seen.moments.n_state[k], NULL, NULL};
         run(&w, &c, &start, &again);
         assert_int_equal(again.n, seen.n);
         assert_memory_equal(again.X, seen.X, seen.n * VAR * sizeof *seen.X);

@@ -125,7 +125,7 @@ static SearchStart moment(const Seen *s, size_t k)
     const size_t n = s->moments.rows[k];
     evaluation_table_free(&before);
     before = evaluations_of(&here.problem, 1, n, s->X, s->F, s->G, s->ok, s->kind, s->generation);
-    return (SearchStart){n, 0, before.row, s->moments.state[k], s->moments.n_state[k], NULL, NULL, NULL};
+    return (SearchStart){n, 0, before.row, s->moments.state[k], s->moments.n_state[k], NULL, NULL};
 }
 
 /* From every `step`-th moment but the last. */

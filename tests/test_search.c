@@ -514,8 +514,7 @@ static void fill_archive(Archive *a, Random *r)
         double x[8];
         draw_design(r, x);
         const double f[2] = {x[0], 1.0 - x[0] + x[2]}, g = limit_there(x);
-        const unsigned char ok = (unsigned char)succeeds_there(x);
-        CHECK_OK(pareto_archive_insert(a, 1, x, f, &g, &ok, KIND_SAMPLED, 0, &err), &err);
+        CHECK_OK(pareto_archive_insert(a, x, f, &g, succeeds_there(x), KIND_SAMPLED, 0, &err), &err);
     }
 }
 

@@ -425,11 +425,10 @@ static Status fill_archive(const imtet_search *s, Archive *archive, Err *err)
     TRY(pareto_archive_init(archive, s->n_told + 1, s->schema.n_var, s->schema.n_obj, s->schema.n_extra, err));
     for (size_t i = 0; i < s->table.n; i++) {
         const Evaluation *e = &s->table.row[i];
-        const unsigned char ok = e->outcome == OUTCOME_OK;
         if (s->design[i].place != DESIGN_TOLD)
             continue;
         judge(e, f, g, s);
-        TRY(pareto_archive_insert(archive, 1, e->x, f, s->schema.n_extra > 0 ? g : NULL, &ok, KIND_SAMPLED, 0, err));
+        TRY(pareto_archive_insert(archive, e->x, f, g, e->outcome == OUTCOME_OK, KIND_SAMPLED, 0, err));
     }
     return STATUS_OK;
 }

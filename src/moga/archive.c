@@ -9,34 +9,24 @@
 /* Grows by doubling up to so many. */
 enum { MANY_ROWS = 100000 };
 
-/* Whether a new design is on the front. */
-typedef enum { TO_BE_FOUND, ON_FRONT, OFF_FRONT } Place;
-
-/* What differs from the rows themselves once there are replicates. */
-static void layout_means(Archive *a, Carve *c)
-{
-    const size_t n = a->n, n_max = a->n_max, m = a->n_obj, k = a->n_con, known = a->S ? n * m : 0;
-    if (!a->has_means) {
-        a->F = a->Y;
-        a->G = a->H;
-        return;
-    }
-    CARVE_WIDER(c, a->F, n * m, n_max * m);
-    CARVE_WIDER(c, a->G, n * k, n_max * k);
-    CARVE_WIDER(c, a->S, known, n_max * m);
-    CARVE_WIDER(c, a->sd, known, n_max * m);
-    CARVE_WIDER(c, a->error, known, n_max * m);
-}
-
-/* The first n rows stay as they are. */
+/* The first n rows stay as they are. Means are the rows themselves while there are no replicates. */
 static void layout(void *archive, Carve *c)
 {
     Archive *a = archive;
-    const size_t n = a->n, n_max = a->n_max, v = a->n_var, m = a->n_obj, k = a->n_con;
+    const size_t n = a->n, n_max = a->n_max, v = a->n_var, m = a->n_obj, k = a->n_con, known = a->S ? n * m : 0;
     CARVE_WIDER(c, a->X, n * v, n_max * v);
     CARVE_WIDER(c, a->Y, n * m, n_max * m);
     CARVE_WIDER(c, a->H, n * k, n_max * k);
-    layout_means(a, c);
+    if (a->has_means) {
+        CARVE_WIDER(c, a->F, n * m, n_max * m);
+        CARVE_WIDER(c, a->G, n * k, n_max * k);
+        CARVE_WIDER(c, a->S, known, n_max * m);
+        CARVE_WIDER(c, a->sd, known, n_max * m);
+        CARVE_WIDER(c, a->error, known, n_max * m);
+    } else {
+        a->F = a->Y;
+        a->G = a->H;
+    }
     CARVE_WIDER(c, a->violation, n, n_max);
     CARVE_WIDER(c, a->generation, n, n_max);
     CARVE_WIDER(c, a->front, a->n_listed, n_max);
@@ -54,21 +44,16 @@ static void layout(void *archive, Carve *c)
     CARVE(c, a->is_chosen, n_max);
 }
 
-/* FNV-1a of whole words. */
-static uint64_t hash(size_t n_var, const double x[])
+/* Where x is, or where it would go: slots hold a row plus one, 0 is free; at most half of them are taken. By FNV-1a of
+ * whole words. */
+static size_t slot_of(const Archive *a, const double x[])
 {
     uint64_t h = HASH_SEED, word;
-    for (size_t j = 0; j < n_var; j++) {
+    for (size_t j = 0; j < a->n_var; j++) {
         memcpy(&word, &x[j], sizeof word);
         h = (h ^ word ^ word >> 32) * HASH_PRIME;
     }
-    return h ^ h >> 32;
-}
-
-/* Where x is, or where it would go: slots hold a row plus one, 0 is free; at most half of them are taken. */
-static size_t slot_of(const Archive *a, const double x[])
-{
-    size_t i = hash(a->n_var, x) & (a->n_slots - 1);
+    size_t i = (h ^ h >> 32) & (a->n_slots - 1);
     while (a->slot[i] && memcmp(a->X + (a->slot[i] - 1) * a->n_var, x, a->n_var * sizeof *x) != 0)
         i = (i + 1) & (a->n_slots - 1);
     return i;
@@ -159,33 +144,6 @@ static void compare_with_front(Archive *a, size_t row)
     a->n_front = a->n_listed = kept + 1;
 }
 
-/* The same by the tree: without replicates the standard errors are 0. */
-static Status follow_tree(Archive *a, size_t row, Err *err)
-{
-    NdChange change;
-    if (a->has_restored)
-        TRY(nd_tree_fill(a->tree, a->F, a->n_front, a->front, err));
-    a->has_restored = 0;
-    TRY(nd_tree_insert(a->tree, a->F, row, &change, err));
-    if (!change.is_in)
-        return STATUS_OK;
-    for (size_t i = 0; i < change.n_removed; i++)
-        a->on_front[change.removed[i]] = 0;
-    a->n_front += 1 - change.n_removed;
-    a->on_front[row] = 1;
-    a->front[a->n_listed++] = row;
-    return STATUS_OK;
-}
-
-/* A row that is known to stay; the tree is filled when the next one comes that is not. */
-static void join_front(Archive *a, size_t row)
-{
-    a->on_front[row] = 1;
-    a->front[a->n_listed++] = row;
-    a->n_front++;
-    a->has_restored = 1;
-}
-
 static void set_errors(Archive *a, size_t row)
 {
     for (size_t k = 0; k < a->n_obj; k++) {
@@ -195,30 +153,37 @@ static void set_errors(Archive *a, size_t row)
     }
 }
 
-static void take_as_means(Archive *a, size_t row)
+/* A design joins; whether it is on the front says the tree, which knows of no standard errors: there are none without
+ * replicates. */
+static Status add_design(Archive *a, size_t row, Err *err)
 {
-    memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
-    if (a->n_con > 0)
-        memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
-    memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
-    set_errors(a, row);
-}
-
-static Status add_design(Archive *a, size_t row, Place place, Err *err)
-{
+    const size_t m = a->n_obj, k = a->n_con;
+    NdChange change;
     a->replicates[row] = 1;
     a->usable[row] = a->ok[row];
-    a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->H + row * a->n_con) : INFINITY;
-    if (a->has_means)
-        take_as_means(a, row);
-    if (!a->usable[row] || a->violation[row] > 0.0 || place == OFF_FRONT || a->kind[row] == KIND_SCREENED)
+    a->violation[row] = a->ok[row] ? violation_of(k, a->H + row * k) : INFINITY;
+    if (a->has_means) {
+        memcpy(a->F + row * m, a->Y + row * m, m * sizeof *a->F);
+        if (k > 0)
+            memcpy(a->G + row * k, a->H + row * k, k * sizeof *a->G);
+        memset(a->S + row * m, 0, m * sizeof *a->S);
+        set_errors(a, row);
+    }
+    if (!a->usable[row] || a->violation[row] > 0.0 || a->kind[row] == KIND_SCREENED)
         return STATUS_OK;
-    if (place == ON_FRONT)
-        join_front(a, row);
-    else if (a->n_replicates == 0)
-        return follow_tree(a, row, err);
-    else
+    if (a->n_replicates > 0) {
         compare_with_front(a, row);
+        return STATUS_OK;
+    }
+    TRY(nd_tree_insert(a->tree, a->F, row, &change, err));
+    for (size_t i = 0; i < change.n_removed; i++)
+        a->on_front[change.removed[i]] = 0;
+    a->n_front -= change.n_removed;
+    if (change.is_in) {
+        a->n_front++;
+        a->on_front[row] = 1;
+        a->front[a->n_listed++] = row;
+    }
     return STATUS_OK;
 }
 
@@ -248,73 +213,47 @@ static Status add_replicate(Archive *a, size_t row, size_t design, Err *err)
     return STATUS_OK;
 }
 
-/* The row of a screened design that is evaluated in full now. */
-static size_t replace_screened(Archive *a, size_t design, size_t row)
+Status pareto_archive_insert(Archive *a, const double x[], const double f[], const double g[], int ok,
+                             EvaluationKind kind, size_t generation, Err *err)
 {
-    pareto_archive_drop(a, design);
-    a->replicates[design] = 0;
-    a->violation[design] = INFINITY;
-    a->slot[slot_of(a, a->X + row * a->n_var)] = (uint32_t)(row + 1);
-    return row;
-}
-
-static Status add_row(Archive *a, size_t row, Place place, Err *err)
-{
-    size_t design = design_of(a, row);
-    if (design != row && a->kind[design] == KIND_SCREENED)
-        design = replace_screened(a, design, row);
-    const size_t was_usable = a->usable[design];
-    a->on_front[row] = 0;
-    a->n_failed += !a->ok[row];
-    if (design == row)
-        TRY(add_design(a, row, place, err));
-    else
-        TRY(add_replicate(a, row, design, err));
-    a->n_usable += a->usable[design];
-    a->n_usable -= design == row ? 0 : was_usable;
-    return STATUS_OK;
-}
-
-static Status make_room(Archive *a, size_t n, Err *err)
-{
+    /* 1. Room. */
     const size_t wider = a->n_max + (a->n_max < MANY_ROWS ? a->n_max : a->n_max / 4);
-    return a->n + n <= a->n_max ? STATUS_OK : resize(a, a->n + n > wider ? a->n + n : wider, a->has_means, err);
-}
+    if (a->n == a->n_max)
+        TRY(resize(a, wider, a->has_means, err));
 
-static Status append(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
-                     unsigned char kind, size_t generation, Place place, Err *err)
-{
+    /* 2. The row as it is. */
     const size_t row = a->n++;
     memcpy(a->X + row * a->n_var, x, a->n_var * sizeof *x);
     memcpy(a->Y + row * a->n_obj, f, a->n_obj * sizeof *f);
     if (a->n_con > 0)
         memcpy(a->H + row * a->n_con, g, a->n_con * sizeof *g);
     a->ok[row] = ok && all_finite(a->n_obj, f) && (a->n_con == 0 || all_finite(a->n_con, g));
-    a->kind[row] = kind;
+    a->n_failed += !a->ok[row];
+    a->kind[row] = (unsigned char)kind;
     a->generation[row] = generation;
-    return add_row(a, row, place, err);
-}
+    a->on_front[row] = 0;
 
-Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
-                             const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
-{
-    TRY(make_room(a, n, err));
-    for (size_t i = 0; i < n; i++)
-        TRY(append(a, X + i * a->n_var, F + i * a->n_obj, a->n_con > 0 ? G + i * a->n_con : NULL, ok[i], kind,
-                   generation, TO_BE_FOUND, err));
+    /* 3. A design that is evaluated in full now takes the place of its screened row. */
+    size_t design = design_of(a, row);
+    if (design != row && a->kind[design] == KIND_SCREENED) {
+        pareto_archive_drop(a, design);
+        a->replicates[design] = 0;
+        a->violation[design] = INFINITY;
+        a->slot[slot_of(a, x)] = (uint32_t)(row + 1);
+        design = row;
+    }
+
+    /* 4. A new design, or a further replicate. */
+    const size_t was_usable = design == row ? 0 : a->usable[design];
+    TRY(design == row ? add_design(a, row, err) : add_replicate(a, row, design, err));
+    a->n_usable += a->usable[design];
+    a->n_usable -= was_usable;
     return STATUS_OK;
 }
 
 Status pareto_archive_reserve(Archive *a, size_t n, Err *err)
 {
     return n <= a->n_max ? STATUS_OK : resize(a, n, a->has_means, err);
-}
-
-Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
-                              unsigned char kind, size_t generation, int on_front, Err *err)
-{
-    TRY(make_room(a, 1, err));
-    return append(a, x, f, g, ok, kind, generation, on_front ? ON_FRONT : OFF_FRONT, err);
 }
 
 void pareto_archive_predicted(Archive *a, size_t row)

@@ -20,7 +20,7 @@
  * Threads     one writer */
 #pragma once
 
-#include "base/status.h"
+#include "evaluate/evaluation.h"
 #include "moga/nd_tree.h"
 #include "moga/noise.h"
 
@@ -50,10 +50,9 @@ typedef struct {
     size_t *expected;         /* rows of the front of results and predictions (moga/screening.h) */
     unsigned char *is_chosen; /* (n) screened designs that are finished in this generation */
 
-    size_t *front;    /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
-    size_t n_listed;  /* rows of `front` until then: those that have left are among them */
-    NdTree *tree;     /* of the front, while there are no replicates; of a restored one when it is asked */
-    int has_restored; /* it is still to be filled */
+    size_t *front;   /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
+    size_t n_listed; /* rows of `front` until then: those that have left are among them */
+    NdTree *tree;    /* of the front, while there are no replicates */
     size_t n_slots;
     uint32_t *slot;    /* (n_slots) hash table of the designs */
     NoiseModel *noise; /* (n_obj) */
@@ -64,17 +63,12 @@ typedef struct {
 Status pareto_archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err);
 void pareto_archive_free(Archive *a);
 
-/* Adds n rows; G may be NULL when n_con is 0. */
-Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
-                             const unsigned char ok[], unsigned char kind, size_t generation, Err *err);
+/* Adds a row; g is not read where n_con is 0. */
+Status pareto_archive_insert(Archive *a, const double x[], const double f[], const double g[], int ok,
+                             EvaluationKind kind, size_t generation, Err *err);
 
 /* Room for n rows in all, for what is known to come. */
 Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
-
-/* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end;
- * before any other. */
-Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
-                              unsigned char kind, size_t generation, int on_front, Err *err);
 
 /* Y and H of a design that is screened are now what is expected of the whole evaluation. */
 void pareto_archive_predicted(Archive *a, size_t row);

@@ -51,7 +51,6 @@ typedef struct {
     const Evaluation *row; /* (n + n_later); with `each` the last n_later alone */
     const void *state;     /* NULL: n is 0, none was saved */
     size_t n_state;
-    const unsigned char *on_front; /* (n) on the front then, of a problem without noise; NULL: not known */
     Status (*each)(EvaluationFn take, void *search, void *user,
                    Err *err); /* passes the first n; NULL: they are in `row` */
     void *user;               /* of `each` */

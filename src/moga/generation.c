@@ -3,95 +3,21 @@
 #include "moga/replication.h"
 #include "moga/variation.h"
 
-/* Designs that the search was planned for: where they are screened, more than evaluations. */
-static size_t planned(const Search *s)
-{
-    const Screening *q = &s->screening;
-    const size_t evals = config_budget(s->common.config), n = SCREENED_PER_FINISHED;
-    return q->cost.whole == 1 ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
-}
-
-/* Enough for a first surrogate of this many variables, and no more than half of the budget. */
-static size_t initial_size(const Search *s)
-{
-    const size_t wanted = INITIAL_PER_VARIABLE * s->common.problem->n_var + INITIAL_OFFSET, half = (planned(s) + 1) / 2;
-    if (s->common.config->initial > 0)
-        return s->common.config->initial;
-    return wanted < half ? wanted : half > 4 ? half : 4;
-}
-
-/* What the given designs leave of the initial sample, half of it at least. */
+/* What the given designs leave of the initial sample, half of it at least. The sample is enough for a first surrogate
+ * of this many variables, and no more than half of the designs that the search was planned for: where they are
+ * screened, more than evaluations. */
 size_t generation_samples(const Search *s)
 {
-    const size_t initial = initial_size(s), given = s->common.config->n_given;
+    const SearchConfig *c = s->common.config;
+    const LevelCosts cost = s->screening.cost;
+    const size_t n = SCREENED_PER_FINISHED, evals = config_budget(c), given = c->n_given;
+    const size_t planned = cost.whole == 1 ? evals : evals * n * cost.whole / (n * cost.cheap + cost.rest);
+    const size_t wanted = INITIAL_PER_VARIABLE * s->common.problem->n_var + INITIAL_OFFSET,
+                 half = MAX_OF((planned + 1) / 2, 4), initial = c->initial > 0 ? c->initial : MIN_OF(wanted, half);
     return given < initial / 2 ? initial - given : initial - initial / 2;
 }
 
 /* -- step 5: evaluation: what is asked, and the answers, the only way into the archive ----------------------------- */
-
-/* How many may be under way when the next group is made: one less than now at most; none of the initial sample, which
- * the first surrogate wants whole, and none where nothing is left to be asked. */
-static size_t allowed_now(const Search *s)
-{
-    const Common *c = &s->common;
-    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
-    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0;
-    return waits_for_all ? 0 : MIN_OF(ahead, most);
-}
-
-/* The batch is asked for. */
-static Status ask(Search *s, Err *err)
-{
-    Common *c = &s->common;
-    for (size_t i = 0; i < s->batch.n; i++) {
-        Question q = s->batch.q[i];
-        q.generation = c->generation;
-        if (s->screening.is_on && q.kind != KIND_FINISHED) {
-            q.n_parts = c->problem->n_cheap;
-            q.kind = KIND_SCREENED;
-        }
-        TRY(pending_add(&c->pending, &q, err));
-    }
-    s->allowed = allowed_now(s);
-    return STATUS_OK;
-}
-
-/* What a result gained, for the criterion that had picked it. */
-static void credit(const Search *s, const Place *place, const double f[], CreditResults *results)
-{
-    const size_t n_obj = s->common.problem->n_obj, by = place->q.criterion;
-    if (by == INFILL_KINDS)
-        return;
-    results->designs[by] += 1.0;
-    for (int k = 0; k < INFILL_KINDS && place->ok && violation_of(s->common.problem->n_con, f + n_obj) == 0.0; k++)
-        results->gain[k][by] += infill_gain(s->criteria.select[k], f);
-}
-
-static Status enter_first(Search *s, CreditResults *results, Err *err)
-{
-    Common *c = &s->common;
-    const Place *place = pending_at(&c->pending, 0);
-    const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + c->problem->n_obj;
-    credit(s, place, f, results);
-    TRY(screening_take(&s->screening, c, &(Answer){x, f, g, place->q.kind, place->parts}, err));
-    TRY(pareto_archive_insert(&c->archive, 1, x, f, c->problem->n_con > 0 ? g : NULL, &place->ok,
-                              (unsigned char)place->q.kind, place->q.generation, err));
-    pending_enter(&c->pending);
-    return STATUS_OK;
-}
-
-/* Evaluated designs of the rows first.. join; failed ones and further replicates do not. */
-static void join(Population *p, const Archive *a, size_t first)
-{
-    for (size_t row = first; row < a->n; row++) {
-        if (!a->usable[row])
-            continue;
-        const size_t i = population_add(p, a->X + row * a->n_var);
-        memcpy(p->F + i * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
-        p->violation[i] = a->violation[row];
-        p->row[i] = row;
-    }
-}
 
 /* -- step 6: environmental selection ------------------------------------------------------------------------------- */
 
@@ -107,26 +33,28 @@ static Breeding breeding(const Search *s)
                       c->archive.n_front > 0 || s->screening.n_front > 0};
 }
 
-/* As the archive has the member now: a replicate may have changed it, or have failed. */
-static void append_evaluated(const Archive *a, Population *to, const Population *from, size_t i)
-{
-    const size_t row = from->row[i];
-    if (!a->usable[row])
-        return;
-    population_append(to, from, i);
-    memcpy(to->F + (to->n - 1) * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
-    to->violation[to->n - 1] = a->violation[row];
-}
-
-/* Next population: from the members of the present one and the results. */
+/* Next population: from the members of the present one, as the archive has them now (a replicate may have changed one,
+ * or have failed), and the results; failed ones and further replicates do not join. */
 static void renew_population(Search *s, size_t first_new)
 {
     const Breeding w = breeding(s);
+    const Archive *a = &s->common.archive;
     Population *population = &s->population, *pool = &s->offspring.pool;
+    const size_t n_members = population->n;
     pool->n = 0;
-    for (size_t i = 0; i < population->n; i++)
-        append_evaluated(&s->common.archive, pool, population, i);
-    join(pool, &s->common.archive, first_new);
+    for (size_t i = 0; i < n_members + a->n - first_new; i++) {
+        const size_t row = i < n_members ? population->row[i] : first_new + i - n_members;
+        if (!a->usable[row])
+            continue;
+        if (i < n_members)
+            population_append(pool, population, i);
+        else
+            population_add(pool, a->X + row * a->n_var);
+        const size_t last = pool->n - 1;
+        memcpy(pool->F + last * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
+        pool->violation[last] = a->violation[row];
+        pool->row[last] = row;
+    }
     offspring_survive(&s->offspring, &w, pool, 0);
     population_copy(population, pool);
 }
@@ -142,18 +70,6 @@ static void add_samples(Search *s, size_t n)
         double *x = X + i * p->n_var;
         for (size_t d = 0; d < p->n_var; d++)
             x[d] = problem_spread(p, d, x[d]);
-        problem_repair(p, x);
-        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
-    }
-}
-
-static void add_given(Search *s)
-{
-    const Problem *p = s->common.problem;
-    double *x = s->scratch.given;
-    for (size_t i = 0; i < s->common.config->n_given; i++) {
-        for (size_t d = 0; d < p->n_var; d++)
-            x[d] = fmin(fmax(s->common.config->given[i * p->n_var + d], p->lower[d]), p->upper[d]);
         problem_repair(p, x);
         batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
     }
@@ -182,34 +98,13 @@ static void measure_front(Search *s)
     pareto_archive_list_front(a);
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
+    const size_t *rows = s->screening.n_front > 0 ? a->expected : a->n_front > 0 ? a->front : s->scratch.members;
+    const size_t n = s->screening.n_front > 0 ? s->screening.n_front : a->n_front > 0 ? a->n_front : p->n;
     for (int k = 0; k < INFILL_KINDS; k++)
-        if (s->screening.n_front > 0)
-            infill_measure(s->criteria.select[k], s->screening.n_front, a->expected, a->F);
-        else if (a->n_front > 0)
-            infill_measure(s->criteria.select[k], a->n_front, a->front, a->F);
-        else
-            infill_measure(s->criteria.select[k], p->n, s->scratch.members, p->F);
-}
-
-static Status fit_surrogate(Search *s, Err *err)
-{
-    if (s->common.config->surrogate == SURROGATE_ON)
-        return surrogate_fit(s->surrogate, &s->common.archive, s->criteria.select[INFILL_PBI], err);
-    surrogate_drop(s->surrogate);
-    return STATUS_OK;
+        infill_measure(s->criteria.select[k], n, rows, rows == s->scratch.members ? p->F : a->F);
 }
 
 /* -- a generation: the steps of search.h --------------------------------------------------------------------------- */
-
-/* Steps 3 and 4: a batch of offspring; where the surrogate proposes no new design, of children of variation. */
-static void choose_batch(Search *s)
-{
-    Breeding w = breeding(s);
-    do {
-        offspring_make(&s->offspring, &w);
-        offspring_select(&s->offspring, &w, &s->batch);
-    } while (s->batch.n == 0 && w.with_surrogate--);
-}
 
 /* Where no evaluation is left, designs that were screened may still be finished. */
 static Status choose(Search *s, Err *err)
@@ -218,12 +113,19 @@ static Status choose(Search *s, Err *err)
     Batch *b = &s->batch;
     measure_front(s);
     TRY(screening_last(&s->screening, c, b, err));
-    if (b->n > 0 || b->room == 0) {
+    if (b->n > 0 || b->room == 0 || c->config->surrogate == SURROGATE_OFF)
         surrogate_drop(s->surrogate);
+    else
+        TRY(surrogate_fit(s->surrogate, &c->archive, s->criteria.select[INFILL_PBI], err)); /* 2 */
+    if (b->n > 0 || b->room == 0)
         return STATUS_OK;
-    }
-    TRY(fit_surrogate(s, err)); /* 2 */
-    choose_batch(s);            /* 3, 4 */
+
+    /* 3, 4: a batch of offspring; where the surrogate proposes no new design, of children of variation. */
+    Breeding w = breeding(s);
+    do {
+        offspring_make(&s->offspring, &w);
+        offspring_select(&s->offspring, &w, b);
+    } while (b->n == 0 && w.with_surrogate--);
     if (b->n == 0)
         sample_again(s);
     replication_add(c, &s->criteria, b);
@@ -232,28 +134,66 @@ static Status choose(Search *s, Err *err)
 
 Status generation_ask(Search *s, Err *err)
 {
+    Common *c = &s->common;
+    const Problem *p = c->problem;
+    double *x = s->scratch.given;
     s->batch.n = 0;
-    s->batch.room = screening_room(&s->screening, &s->common, s->batch.size_max);
-    if (s->reason == STOP_NONE && s->common.generation == 0) {
-        add_given(s);
-        add_samples(s, generation_samples(s));
-    } else if (s->reason == STOP_NONE && s->population.n < 2) {
-        sample_again(s);
-    } else if (s->reason == STOP_NONE) {
-        TRY(choose(s, err));
+    s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
+
+    /* 1. The given designs, moved into the box, and the initial sample; later a batch. */
+    for (size_t i = 0; s->reason == STOP_NONE && c->generation == 0 && i < c->config->n_given; i++) {
+        for (size_t d = 0; d < p->n_var; d++)
+            x[d] = fmin(fmax(c->config->given[i * p->n_var + d], p->lower[d]), p->upper[d]);
+        problem_repair(p, x);
+        batch_add(&s->batch, c, x, KIND_SAMPLED, INFILL_KINDS);
     }
-    return ask(s, err); /* 5 */
+    if (s->reason == STOP_NONE && c->generation == 0)
+        add_samples(s, generation_samples(s));
+    else if (s->reason == STOP_NONE && s->population.n < 2)
+        sample_again(s);
+    else if (s->reason == STOP_NONE)
+        TRY(choose(s, err));
+
+    /* 2. They are asked for. */
+    for (size_t i = 0; i < s->batch.n; i++) {
+        Question q = s->batch.q[i];
+        q.generation = c->generation;
+        if (s->screening.is_on && q.kind != KIND_FINISHED) {
+            q.n_parts = p->n_cheap;
+            q.kind = KIND_SCREENED;
+        }
+        TRY(pending_add(&c->pending, &q, err));
+    }
+
+    /* 3. How many may be under way when the next group is made: one less than now at most; none of the initial sample,
+     * which the first surrogate wants whole, and none where nothing is left to be asked. */
+    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
+    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0;
+    s->allowed = waits_for_all ? 0 : MIN_OF(ahead, most);
+    return STATUS_OK;
 }
 
+/* Answers enter the archive, here alone; what one gained is credited to the criterion that had picked its design. */
 Status generation_enter(Search *s, Err *err)
 {
     Common *c = &s->common;
-    const size_t first = s->n_before = c->archive.n;
+    const size_t first = s->n_before = c->archive.n, n_obj = c->problem->n_obj, n_con = c->problem->n_con;
     CreditResults results = {0};
     if (c->config->surrogate == SURROGATE_ON && c->generation > 0 && s->population.n > 0)
         measure_front(s);
-    while (c->pending.n > s->allowed)
-        TRY(enter_first(s, &results, err));
+    while (c->pending.n > s->allowed) {
+        const Place *place = pending_at(&c->pending, 0);
+        const Question *q = &place->q;
+        const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + n_obj;
+        const int by = q->criterion, is_good = by < INFILL_KINDS && place->ok && violation_of(n_con, g) == 0.0;
+        if (by < INFILL_KINDS)
+            results.designs[by] += 1.0;
+        for (int k = 0; k < INFILL_KINDS && is_good; k++)
+            results.gain[k][by] += infill_gain(s->criteria.select[k], f);
+        TRY(screening_take(&s->screening, c, &(Answer){x, f, g, q->kind, place->parts}, err));
+        TRY(pareto_archive_insert(&c->archive, x, f, g, place->ok, q->kind, q->generation, err));
+        pending_enter(&c->pending);
+    }
     credit_learn(&s->criteria.credit, &results);
     pareto_archive_update_noise(&c->archive);
     TRY(screening_update(&s->screening, c, err));

@@ -120,38 +120,10 @@ static void remove_all(NdTree *t, Node *q)
         remove_all(t, q->child[c]);
 }
 
-static void remove_points(NdTree *t, Node *q, const double f[])
-{
-    uint32_t kept = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (is_dominating(t->n_obj, f, point(t, q, i)))
-            note_removed(t, q->row[i]);
-        else
-            q->row[kept++] = q->row[i];
-    q->n = kept;
-}
-
-static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double f[]);
-
-static void remove_from_children(NdTree *t, Node *q, const double f[])
-{
-    const size_t m = t->n_obj, had_children = q->n_child;
-    q->n_child = 0;
-    for (size_t c = 0; c < had_children; c++) {
-        double *bounds = q->bounds + 2 * c * m;
-        Node *child = remove_dominated(t, q->child[c], bounds, f);
-        if (!child)
-            continue;
-        if (q->n_child < c)
-            memcpy(q->bounds + 2 * q->n_child * m, bounds, 2 * m * sizeof *bounds);
-        q->child[q->n_child++] = child;
-    }
-}
-
-/* Points that f dominates; the node without them, or NULL: none is left. */
+/* Points that f dominates leave; the node without them, or NULL: none is left. */
 static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double f[])
 {
-    const size_t m = t->n_obj;
+    const size_t m = t->n_obj, had_points = q->n, had_children = q->n_child;
     if (!is_no_worse(m, f, bounds + m))
         return q;
     if (is_dominating(m, f, bounds)) {
@@ -159,8 +131,21 @@ static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double 
         node_free(q);
         return NULL;
     }
-    remove_points(t, q, f);
-    remove_from_children(t, q, f);
+    q->n = 0;
+    q->n_child = 0;
+    for (size_t i = 0; i < had_points; i++)
+        if (is_dominating(m, f, point(t, q, i)))
+            note_removed(t, q->row[i]);
+        else
+            q->row[q->n++] = q->row[i];
+    for (size_t c = 0; c < had_children; c++) {
+        double *own = q->bounds + 2 * c * m;
+        Node *child = remove_dominated(t, q->child[c], own, f);
+        if (!child)
+            continue;
+        memmove(q->bounds + 2 * q->n_child * m, own, 2 * m * sizeof *own);
+        q->child[q->n_child++] = child;
+    }
     if (q->n > 0 || q->n_child > 1)
         return q;
     Node *only = q->n_child == 1 ? q->child[0] : NULL;
@@ -173,30 +158,18 @@ static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double 
 
 /* -- insertion ----------------------------------------------------------------------------------------------------- */
 
-/* Returns whether they were wider than before. */
-static int extend(size_t m, double bounds[], const double f[])
+static void extend(size_t m, double bounds[], const double f[])
 {
-    int wider = 0;
     for (size_t k = 0; k < m; k++) {
-        wider |= f[k] < bounds[k] || f[k] > bounds[m + k];
         bounds[k] = MIN_OF(f[k], bounds[k]);
         bounds[m + k] = MAX_OF(f[k], bounds[m + k]);
     }
-    return wider;
 }
 
 static void bound_one(size_t m, double bounds[], const double f[])
 {
     memcpy(bounds, f, m * sizeof *f);
     memcpy(bounds + m, f, m * sizeof *f);
-}
-
-static void weigh(NdTree *t)
-{
-    for (size_t k = 0; k < t->n_obj; k++) {
-        const double width = t->bounds[t->n_obj + k] - t->bounds[k];
-        t->weight[k] = width > 0.0 ? 1.0 / width : 0.0;
-    }
 }
 
 /* Square of the distance in widths of all points. */
@@ -210,23 +183,19 @@ static double square_between(const NdTree *t, const double a[], const double b[]
     return square;
 }
 
-/* ... from the middle of a node's bounds. */
-static double square_from_middle(const NdTree *t, const double bounds[], const double f[])
-{
-    double square = 0.0;
-    for (size_t k = 0; k < t->n_obj; k++) {
-        const double off = (f[k] - 0.5 * (bounds[k] + bounds[t->n_obj + k])) * t->weight[k];
-        square += off * off;
-    }
-    return square;
-}
-
+/* The child of a node whose bounds have the middle that is nearest to f. */
 static size_t nearest_child(const NdTree *t, const Node *q, const double f[])
 {
+    const size_t m = t->n_obj;
     size_t nearest = 0;
     double min = INFINITY;
     for (size_t c = 0; c < q->n_child; c++) {
-        const double square = square_from_middle(t, q->bounds + 2 * c * t->n_obj, f);
+        const double *bounds = q->bounds + 2 * c * m;
+        double square = 0.0;
+        for (size_t k = 0; k < m; k++) {
+            const double off = (f[k] - 0.5 * (bounds[k] + bounds[m + k])) * t->weight[k];
+            square += off * off;
+        }
         if (square < min) {
             min = square;
             nearest = c;
@@ -273,26 +242,8 @@ static int leaf_add(Node *q, size_t row)
     return 1;
 }
 
-/* Point i of the leaf to the child of the nearest seed. */
-static int hand_down(const NdTree *t, const Node *q, size_t i, size_t n, const size_t seeds[], Node *child[],
-                     double bounds[])
-{
-    const size_t m = t->n_obj;
-    const double *f = point(t, q, i);
-    size_t nearest = 0;
-    double min = INFINITY;
-    for (size_t s = 0; s < n; s++) {
-        const double square = square_between(t, f, point(t, q, seeds[s]));
-        if (square < min) {
-            min = square;
-            nearest = s;
-        }
-    }
-    extend(m, bounds + 2 * nearest * m, f);
-    return leaf_add(child[nearest], q->row[i]);
-}
-
-/* Leaves about the seeds take the points. Without memory, or where all points are equal, the leaf stays as it is. */
+/* Each point goes to a leaf about the nearest seed. Without memory, or where all points are equal, the leaf stays as it
+ * is. */
 static void split(NdTree *t, Node *q)
 {
     const size_t m = t->n_obj;
@@ -306,9 +257,12 @@ static void split(NdTree *t, Node *q)
         bound_one(m, made.bounds + 2 * s * m, point(t, q, seeds[s]));
     }
     for (size_t i = 0; is_whole && i < q->n; i++)
-        is_whole = hand_down(t, q, i, n, seeds, made.child, made.bounds);
-    for (size_t s = 0; is_whole && s < n; s++)
+        is_whole = leaf_add(made.child[nearest_child(t, &made, point(t, q, i))], q->row[i]);
+    for (size_t s = 0; is_whole && s < n; s++) {
         is_whole = made.child[s]->n > 0; /* none is, where numbers are so large that distances are not known */
+        for (size_t i = 0; i < made.child[s]->n; i++)
+            extend(m, made.bounds + 2 * s * m, point(t, made.child[s], i));
+    }
     Node *gone = is_whole ? q : &made, kept = is_whole ? made : *q;
     for (size_t s = 0; made.child && !is_whole && s < n; s++)
         node_free(made.child[s]);
@@ -318,18 +272,21 @@ static void split(NdTree *t, Node *q)
     *q = kept;
 }
 
+/* Point f goes to the leaf whose bounds have the nearest middle; 0: there is no memory. */
 static int insert(NdTree *t, const double f[], size_t row)
 {
     const size_t m = t->n_obj;
-    int is_wider = 1;
-    if (t->root)
-        is_wider = extend(m, t->bounds, f);
-    else if ((t->root = calloc(1, sizeof *t->root)))
+    if (!t->root) {
+        t->root = calloc(1, sizeof *t->root);
         bound_one(m, t->bounds, f);
-    else
+    }
+    if (!t->root)
         return 0;
-    if (is_wider)
-        weigh(t);
+    extend(m, t->bounds, f);
+    for (size_t k = 0; k < m; k++) { /* distances are in widths of all points */
+        const double width = t->bounds[m + k] - t->bounds[k];
+        t->weight[k] = width > 0.0 ? 1.0 / width : 0.0;
+    }
     Node *q = t->root;
     while (q->n_child > 0) {
         const size_t c = nearest_child(t, q, f);
@@ -355,34 +312,5 @@ Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change,
         return fail(err, STATUS_NO_MEMORY, "no memory for the front");
     change->n_removed = t->n_removed;
     change->removed = t->removed;
-    return STATUS_OK;
-}
-
-/* What stays larger has points that are all equal. */
-static void split_deeply(NdTree *t, Node *q)
-{
-    if (q->n > LEAF_MAX)
-        split(t, q);
-    for (size_t c = 0; c < q->n_child; c++)
-        split_deeply(t, q->child[c]);
-}
-
-Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err)
-{
-    const size_t m = t->n_obj;
-    t->F = F;
-    int is_whole = n == 0 || (t->root = calloc(1, sizeof *t->root)) != NULL;
-    for (size_t i = 0; is_whole && i < n; i++) {
-        const double *f = F + rows[i] * m;
-        if (i == 0)
-            bound_one(m, t->bounds, f);
-        extend(m, t->bounds, f);
-        is_whole = leaf_add(t->root, rows[i]);
-    }
-    if (!is_whole)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the front");
-    weigh(t);
-    if (t->root)
-        split_deeply(t, t->root);
     return STATUS_OK;
 }

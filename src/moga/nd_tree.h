@@ -5,7 +5,7 @@
  * Bounds are not drawn in when points leave. Which points are nondominated does not depend on how they lie in the tree.
  *
  * Dominance  base/dominance.h; equal points do not dominate each other, all of them stay
- * Life cycle nd_tree_create -> (nd_tree_fill) -> nd_tree_insert ... -> nd_tree_free
+ * Life cycle nd_tree_create -> nd_tree_insert ... -> nd_tree_free
  * Memory     grows with the points that are in, some 40 bytes each; the points themselves stay in F
  * Threads    one at a time
  * Errors     STATUS_NO_MEMORY
@@ -28,6 +28,3 @@ typedef struct {
     const size_t *removed;
 } NdChange;
 Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change, Err *err);
-
-/* An empty tree gets n points of which it is known that none dominates another: several times as fast as one by one. */
-Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err);

@@ -4,13 +4,6 @@
 
 /* -- memory -------------------------------------------------------------------------------------------------------- */
 
-/* Reference vectors of infill. */
-static size_t n_vectors(const Common *c)
-{
-    const size_t population = c->config->population;
-    return c->problem->n_obj < 2 ? 1 : population < VECTORS ? VECTORS : population;
-}
-
 static void layout(void *search, Carve *c)
 {
     Search *s = search;
@@ -37,25 +30,6 @@ static void layout(void *search, Carve *c)
     CARVE(c, w->g, p->n_con);
 }
 
-static Status create_criteria(Search *s, size_t n_pool, Err *err)
-{
-    Criteria *q = &s->criteria;
-    q->credit = (Credit){0.5, 0.5};
-    TRY(directions_spread(&q->vectors, s->common.problem->n_obj, n_vectors(&s->common), err));
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, s->common.problem->aspire, err));
-    return STATUS_OK;
-}
-
-static Status create_selection(Search *s, size_t n_pool, Err *err)
-{
-    const size_t n_obj = s->common.problem->n_obj;
-    size_t outer, inner;
-    directions_choose(n_obj, s->common.config->population, &outer, &inner);
-    TRY(directions_create(&s->directions, n_obj, outer, inner, err));
-    return selection_create(&s->selection, n_pool, &s->directions, s->common.problem->aspire, err);
-}
-
 /* Rows of the archive that there is room for from the beginning, where so many are to come: what is not used yet is no
  * memory of the system's, and growing would need room for what was there as well. */
 enum { ROWS_AT_ONCE = 1 << 20 };
@@ -71,10 +45,18 @@ Status state_create(Search *s, Err *err)
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
     const size_t centres = MIN_OF(c->surrogate_max, evals), known = MIN_OF(evals, ROWS_AT_ONCE);
+    const size_t n_vectors = p->n_obj < 2 ? 1 : MAX_OF(population, VECTORS); /* reference vectors of infill */
+    Criteria *q = &s->criteria;
+    size_t outer, inner;
     s->batch.size_max = MAX_OF(initial, population);
     s->offspring.pending_max = pending;
-    TRY(create_selection(s, n_pool, err));
-    TRY(create_criteria(s, n_members, err));
+    directions_choose(p->n_obj, population, &outer, &inner);
+    TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
+    TRY(selection_create(&s->selection, n_pool, &s->directions, p->aspire, err));
+    q->credit = (Credit){0.5, 0.5};
+    TRY(directions_spread(&q->vectors, p->n_obj, n_vectors, err));
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        TRY(infill_create(&q->select[kind], (InfillKind)kind, n_members, &q->vectors, p->aspire, err));
     TRY(pareto_archive_init(&s->common.archive, p->is_noisy ? 2 * initial : MAX_OF(known, 2 * initial), p->n_var,
                             p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_members, err));
@@ -117,17 +99,6 @@ int search_state_is_current(const void *state, size_t n_state)
     return version == STATE_VERSION;
 }
 
-/* Where it stands; why it stops is decided anew behind a step. */
-static void pack_moment(Search *s, Pack *p)
-{
-    size_t behind_step = s->is_behind_step, reason = behind_step ? STOP_NONE : s->reason;
-    pack_size(p, &behind_step, 1);
-    pack_size(p, &reason, STOP_FAILURES);
-    pack_size(p, &s->allowed, UINT32_MAX);
-    s->is_behind_step = behind_step != 0;
-    s->reason = p->reading ? (StopReason)reason : s->reason;
-}
-
 /* All that the next generation takes from the earlier ones, beside the archive. */
 void state_pack(Search *s, Pack *p)
 {
@@ -147,39 +118,32 @@ void state_pack(Search *s, Pack *p)
     pack_size(p, &s->n_vain, UINT32_MAX);
     credit_pack(&s->criteria.credit, p);
     pending_pack(&s->common.pending, p);
-    pack_moment(s, p);
+
+    /* Where it stands; why it stops is decided anew behind a step. */
+    size_t behind_step = s->is_behind_step, reason = behind_step ? STOP_NONE : s->reason;
+    pack_size(p, &behind_step, 1);
+    pack_size(p, &reason, STOP_FAILURES);
+    pack_size(p, &s->allowed, UINT32_MAX);
+    s->is_behind_step = behind_step != 0;
+    s->reason = p->reading ? (StopReason)reason : s->reason;
 }
 
-typedef struct {
-    Search *s;
-    const SearchStart *start;
-    size_t n;
-} Restoring;
-
-static Status restore_row(const Evaluation *e, void *restoring, Err *err)
+static Status restore_row(const Evaluation *e, void *search, Err *err)
 {
-    Restoring *r = restoring;
-    Search *s = r->s;
-    const Problem *p = s->common.problem;
-    const size_t i = r->n++;
-    const unsigned char ok = e->outcome == OUTCOME_OK, kind = e->kind;
-    double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
-    problem_judge(p, e, f, s->scratch.g);
+    Search *s = search;
+    double *f = s->scratch.f, *g = s->scratch.g;
+    problem_judge(s->common.problem, e, f, g);
     TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, NULL}, err));
-    if (r->start->on_front && !p->is_noisy)
-        return pareto_archive_restore(&s->common.archive, e->x, f, g, ok, kind, e->generation, r->start->on_front[i],
-                                      err);
-    return pareto_archive_insert(&s->common.archive, 1, e->x, f, g, &ok, kind, e->generation, err);
+    return pareto_archive_insert(&s->common.archive, e->x, f, g, e->outcome == OUTCOME_OK, e->kind, e->generation, err);
 }
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
     TRY(pareto_archive_reserve(&s->common.archive, start->n + start->n / 8, err));
-    Restoring restoring = {s, start, 0};
     if (start->each)
-        TRY(start->each(restore_row, &restoring, start->user, err));
-    while (restoring.n < start->n)
-        TRY(restore_row(&start->row[restoring.n], &restoring, err));
+        TRY(start->each(restore_row, s, start->user, err));
+    for (size_t i = 0; i < start->n && !start->each; i++)
+        TRY(restore_row(&start->row[i], s, err));
     pareto_archive_update_noise(&s->common.archive);
     s->common.pending.n_entered = s->common.archive.n;
     if (!start->state)

@@ -160,8 +160,7 @@ static Status join_repeats(Run *run, Err *err)
         for (size_t k = 0; k < m; k++)
             f[k] = schema_objective(&run->schema, k)->sense * r->f[k];
         if (is_known_to_search(r))
-            THEN(status, pareto_archive_insert(&a, 1, r->x, f, NULL, &(unsigned char){run->place[i].ok != 0},
-                                               (unsigned char)r->kind, r->generation, err));
+            THEN(status, pareto_archive_insert(&a, r->x, f, NULL, run->place[i].ok, r->kind, r->generation, err));
     }
     if (status == STATUS_OK)
         pareto_archive_update_noise(&a);

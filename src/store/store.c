@@ -64,11 +64,6 @@ const EvaluationTable *store_unfinished(const RunStore *store)
     return &store->unfinished;
 }
 
-const unsigned char *store_on_front(const RunStore *store)
-{
-    return store->was_on_front;
-}
-
 double store_hypervolume(const RunStore *store)
 {
     return store->hypervolume ? hypervolume_share(store->hypervolume) : NAN;

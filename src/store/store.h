@@ -43,9 +43,8 @@ const char *store_folder(const RunStore *store);
 const Run *store_run(const RunStore *store);
 
 /* What a session goes on from: the evaluations of the generation that was cut short, whose id is their number in the
- * search; and which designs of the finished generations are on the search's front (run->n_finished). */
+ * search. */
 const EvaluationTable *store_unfinished(const RunStore *store);
-const unsigned char *store_on_front(const RunStore *store);
 
 /* The finished evaluations of the search in their order; for SearchStart, of whose `each` the store is the user. */
 Status store_each_finished(EvaluationFn take, void *search, void *store, Err *err);

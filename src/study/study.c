@@ -392,7 +392,7 @@ static Status note_stop(Study *study, Status status, const Err *err)
 }
 
 /* The search takes up what the run has of it: the finished generations, then the evaluations of the one that was cut
- * short; with the search's own front, as the run's digest has proved it. */
+ * short. */
 static Status run_search(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
@@ -404,7 +404,6 @@ static Status run_search(Study *study, Err *err)
         start.n = run->n_finished;
         start.state = run->state;
         start.n_state = run->n_state;
-        start.on_front = run->schema.is_noisy ? NULL : store_on_front(study->store);
         start.each = run->n_finished > 0 ? store_each_finished : NULL;
         start.user = study->store;
         config.planned_evals = run->planned_evals;
