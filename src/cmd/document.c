@@ -181,7 +181,8 @@ static void add_lines(json_t *lines, int indent, json_t *o)
     size_t i;
     json_object_foreach(o, key, value)
     {
-        char text[CELL_MAX] = "", one[CELL_MAX], hours[32];
+        char text[2 * CELL_MAX] = "", one[CELL_MAX], hours[32];
+        size_t used;
         const size_t n = json_array_size(value);
         const double seconds = strncmp(key, "seconds", 7) == 0 ? number_of(value) : 0;
         if (json_is_null(value) || n > LISTED_MAX || json_is_object(json_array_get(value, 0)))
@@ -191,13 +192,13 @@ static void add_lines(json_t *lines, int indent, json_t *o)
         json_array_foreach(value, i, item)
         {
             cell_words(key, item, 1, one);
-            strncat(text, i ? " " : "", CELL_MAX - strlen(text) - 1);
-            strncat(text, one, CELL_MAX - strlen(text) - 1);
+            used = strlen(text);
+            snprintf(text + used, sizeof text - used, "%s%s", i ? " " : "", one);
         }
         if (seconds >= 100) {
             duration_words(seconds, hours);
-            snprintf(one, sizeof one, " (%s)", hours);
-            strncat(text, one, CELL_MAX - strlen(text) - 1);
+            used = strlen(text);
+            snprintf(text + used, sizeof text - used, " (%s)", hours);
         }
         snprintf(one, sizeof one, "%*s%s", indent, "", key);
         if (text[0] || json_object_size(value) > 0)
