@@ -47,8 +47,9 @@ IMTET_API imtet_status imtet_scene_open(const char *path, const char *const sett
                                         imtet_error *error);
 IMTET_API void imtet_scene_free(imtet_scene **scene); /* sets it to NULL; no simulation may be under way */
 
-/* Describes the scene: floors (1, 1); lower, upper (variables, 1): the box of a search; building_hz (floors, 1): natural
- * frequencies of the building; texts: variables, objectives: comma lists of names; senses: min or max of each objective; record. */
+/* Describes the scene: floors (1, 1); lower, upper (variables, 1): the box of a search; building_hz (floors, 1): its
+ * natural frequencies without core; texts: variables, objectives: comma lists of names; senses: min or max of each
+ * objective; record. */
 IMTET_API imtet_status imtet_scene_describe(imtet_scene *scene, imtet_result **out, imtet_error *error);
 
 /* Simulates a design x (n) under the record; n are the scene's variables in their order. kind is with_core or a

@@ -18,7 +18,7 @@ Catch = Union[type[BaseException], tuple[type[BaseException], ...]]
 
 
 class ImtetError(Exception):
-    """What the library says.
+    """An error of the library, a sentence that says what to do.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def _load() -> ctypes.CDLL:
                 return ctypes.CDLL(name)
             except OSError as fault:
                 faults.append(str(fault))
-    raise ImportError("libimtet.so is not to be found (make && sudo make install, or its path in IMTET_LIBRARY): "
+    raise ImportError("libimtet.so was not found (make && sudo make install, or set IMTET_LIBRARY to its path): "
                       + "; ".join(faults))
 
 
@@ -85,7 +85,7 @@ ARGUMENTS = {"max_evals": "evaluations", "variables": "lower and upper"}
 
 
 def call(name: str, *arguments: Any) -> None:
-    """One function of the library; of a search it speaks of arguments, not of settings. What it notes is a warning."""
+    """Call a function of the library. Errors of a search name arguments, not settings; notes become warnings."""
     error = Error()
     failed = getattr(lib, name)(*arguments, ctypes.byref(error))
     text = error.text.decode(errors="replace")
@@ -137,7 +137,7 @@ def matrix(what: str, values: object, columns: int) -> Array:
 
 
 def row(what: str, values: object, n: int) -> Array:
-    """(n,); where n is 1 a number will do."""
+    """(n,); a number will do if n is 1."""
     array = numbers(what, values, f"({n},)")
     if array.shape != (n,) and not (n == 1 and array.ndim == 0):
         raise ValueError(f"{what} has shape {array.shape}, wanted ({n},)")
@@ -156,7 +156,7 @@ def rows(what: str, values: Any, n: int, columns: int) -> list[Any]:
 
 
 class Handle:
-    """What the library owns has one owner here: a copy would free it once more."""
+    """An object of the library has one owner here: a copy would free it twice."""
 
     _instead = ""
 

@@ -61,14 +61,14 @@ class Run(Copied, Tabular):
     Attributes
     ----------
     designs : numpy.recarray
-        Every evaluated design: id, generation, kind, outcome, variables, objectives, what else was measured. Designs that
-        the study has named have the values at finer steps, as everywhere in the program.
+        Every evaluated design: id, generation, kind, outcome, variables, objectives, other results. Designs that the study
+        has named have their values at finer steps, as everywhere in the program.
     front : numpy.recarray
-        Those on the front, as in front.csv.
+        The designs on the front, as in front.csv.
     knee : numpy.record
         The design nearest to the ideal point, each objective scaled to 0..1 over the front.
     settings : dict
-        "section.key" to its text.
+        Text of every "section.key".
     variables, objectives : list of str
     """
 
@@ -170,7 +170,7 @@ class Run(Copied, Tabular):
         """Record array of the designs on the front, by ascending ids."""
         d = self.designs
         if self.settings["problem.noisy"] == "yes":
-            raise NotImplementedError("of a noisy problem the front has means of evaluations: read front.csv")
+            raise NotImplementedError("the front of a noisy problem has means of evaluations: read front.csv")
         with np.errstate(invalid="ignore"):
             wanted = (d.outcome == "ok") & ~(d.violation > 0)
         wanted &= np.array([i in self._marks for i in d.id], dtype=bool) | (d.kind == "polished")
@@ -185,7 +185,7 @@ class Run(Copied, Tabular):
     def best(self, objective: str) -> Any:
         """The design of the front that is best in an objective: run.best("j1_m")."""
         if objective not in self.objectives:
-            raise KeyError(f"{objective!r} is no objective of this run; it has {', '.join(self.objectives)}")
+            raise KeyError(f"{objective!r} is not an objective of this run; it has {', '.join(self.objectives)}")
         front = self._front()
         return front[self._minimised(front)[:, self.objectives.index(objective)].argmin()]
 
@@ -204,21 +204,21 @@ class Run(Copied, Tabular):
         return front
 
     def design(self, number: int) -> Any:
-        """Row of the design of that id."""
+        """The row of the design with this id."""
         if not isinstance(number, (int, np.integer)):
-            raise KeyError(f"{number!r} is no id, a whole number of run.designs.id or run.front.id")
+            raise KeyError(f"{number!r} is not an id, a whole number of run.designs.id or run.front.id")
         rows = self.designs[self.designs.id == number]
         if len(rows) == 0:
             raise KeyError(f"no design has the id {number}")
         return rows[0]
 
     def simulate(self, number: int) -> Result:
-        """The response of a design of a tower by its id, simulated again as the run simulates it.
+        """Simulate a design of a tower again, by its id, as the run simulates it.
 
         A design that the run's end named is simulated with more steps, so that the numbers are those of `designs`.
         """
         if self.settings["problem.kind"] != "tower":
-            raise ValueError("the problem of this run is no tower: `imtet simulate` asks its worker")
+            raise ValueError("the problem of this run is not a tower: `imtet simulate` asks its worker")
         row, level = self.design(number), self._levels.get(number, 0)
         if level not in self._scenes:
             accuracy: Any = self.settings["sim.accuracy"]
@@ -240,7 +240,7 @@ def open_run(path: Path) -> Run:
 
 
 def merge_fronts(*paths: Path) -> tuple[Records, npt.NDArray[np.int64]]:
-    """The front of several runs of one problem; a design that several runs have stands there once.
+    """Merge the fronts of several runs of one problem; a design of several runs appears once.
 
     Returns
     -------
@@ -251,7 +251,7 @@ def merge_fronts(*paths: Path) -> tuple[Records, npt.NDArray[np.int64]]:
     Raises
     ------
     ValueError
-        Where the problems differ, with what differs.
+        If the problems differ; the message says where.
     """
     runs = [Run(p) for p in paths]
     if not runs:

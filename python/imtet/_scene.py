@@ -15,7 +15,7 @@ from ._library import Array, Path, assignments, call, lib, pointer, word_list
 
 
 class Copied:
-    """Values; the scene behind them stays with the original."""
+    """Values that are copied without the scene behind them."""
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_scene": None}
@@ -29,7 +29,7 @@ class Result(Copied):
     Attributes
     ----------
     names : list of str
-        All there are.
+        All names.
     """
 
     def __init__(self, handle: Any, scene: Scene | None = None, question: Any = None) -> None:
@@ -65,12 +65,12 @@ class Result(Copied):
                                      if isinstance(getattr(self, n), float) and not np.isnan(getattr(self, n))) + ")"
 
     def history(self, every: float | None = 0.0) -> Result:
-        """The same response over time, simulated once more.
+        """Simulate the design again and give its response over time.
 
         Parameters
         ----------
         every : float, optional
-            Seconds between rows at most; None or 0: the step of the motion.
+            Largest step between rows [s]; None or 0: the step of the motion.
 
         Returns
         -------
@@ -78,7 +78,7 @@ class Result(Copied):
             t_s (n,), floor_m, accel_g, core_m, contact_n (n, floors), and energies.
         """
         if self._scene is None:
-            raise ValueError("this result is no response, or a copy, which has no scene")
+            raise ValueError("this result is not a response, or it is a copy, which has no scene")
         if every and not (isinstance(every, (int, float, np.number)) and 1e-5 <= every <= 1e6):
             raise ValueError(f"every is {every!r}, wanted seconds from 1e-5 to 1e6, or 0 for the step of the motion")
         kind, x = self._question
@@ -100,8 +100,8 @@ class Scene(library.Handle):
     settings : iterable of str
         "section.key=value" each.
     **changes
-        Settings by name. Those without a section are of [motion]: record, unit, pga_g, stretch ... `imtet settings` has
-        all.
+        Settings by name. Names without a section belong to [motion]: record, unit, pga_g, stretch ... `imtet settings`
+        lists all.
 
     Attributes
     ----------
@@ -144,14 +144,14 @@ class Scene(library.Handle):
         return Result(handle, self if question else None, question)
 
     def design(self, gaps: npt.ArrayLike | None = None, thickness: npt.ArrayLike | None = None, **others: float) -> Array:
-        """A design x by names.
+        """Make a design x from names.
 
         Parameters
         ----------
         gaps : float or array_like
-            [m] One for all floors, or one of each.
+            [m] One for all floors, or one per floor.
         thickness : float or array_like
-            [m] One, or that at the foot and at the top.
+            [m] One, or one at the foot and one at the top.
         **others
             Further variables: side_m=9.
 
@@ -180,21 +180,21 @@ class Scene(library.Handle):
 
     def simulate(self, x: npt.ArrayLike | None = None, *, gaps: npt.ArrayLike | None = None,
                  thickness: npt.ArrayLike | None = None, kind: str = "with_core", **others: float) -> Result:
-        """The response to a design.
+        """Simulate a design.
 
         Parameters
         ----------
         x : array_like
-            (variables,). In its place `gaps`, `thickness` and others as `design` has them.
+            (variables,). Instead `gaps`, `thickness` and others, as for `design`.
         kind : {"with_core", "no_core", "rigid", "tmd", "links"}
-            The design, or what it is compared with: the building alone, rigidly connected, with a tuned mass damper,
-            with viscous links; of the last two the device that does best.
+            The design, or a baseline: the building alone; floors and core rigidly connected; with a tuned mass damper; with
+            viscous links. The devices of the last two are the best ones.
 
         Returns
         -------
         Result
-            j1_m, j2_m, j3_g, ...; per floor peak_displacement_m, peak_drift_m, peak_acceleration_g. Where `outcome` is
-            not "ok" the numbers are not to be used.
+            j1_m, j2_m, j3_g, ...; per floor peak_displacement_m, peak_drift_m, peak_acceleration_g. Do not use the numbers
+            if `outcome` is not "ok".
         """
         named = {k: v for k, v in {"gaps": gaps, "thickness": thickness, **others}.items() if v is not None}
         if x is not None and named:
@@ -207,7 +207,7 @@ class Scene(library.Handle):
         return self._ask("imtet_scene_simulate", word, pointer(row), 0 if row is None else row.size, question=(word, row))
 
     def evaluate(self, x: npt.ArrayLike) -> list[float]:
-        """The objectives of the scene, for `Search.evaluate`; raises ArithmeticError where the simulation fails."""
+        """The objectives of the scene, for `Search.evaluate`; ArithmeticError if the simulation fails."""
         r = self.simulate(x)
         if r.outcome != "ok":
             raise ArithmeticError(r.reason)
@@ -215,14 +215,14 @@ class Scene(library.Handle):
 
 
 def read_motion(path: Path, **settings: object) -> tuple[float, Array, dict[str, str]]:
-    """A ground motion in any format that the program reads.
+    """Read a ground motion in any format that the program knows.
 
     Parameters
     ----------
     path : path
         A record, or builtin:NAME.
     **settings
-        Of [motion]: unit="g", channel=2, pga_g=0.3. Without them the motion is as recorded.
+        Settings of [motion]: unit="g", channel=2, pga_g=0.3. Without them the motion is as recorded.
 
     Returns
     -------

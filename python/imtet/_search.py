@@ -1,4 +1,4 @@
-"""The search: ask for designs, tell what they are worth."""
+"""The search: ask for designs, tell their objectives."""
 from __future__ import annotations
 
 import concurrent.futures
@@ -16,7 +16,7 @@ from . import _library as library
 from ._library import Array, Catch, ImtetError, Path, State, call, pointer
 from ._tables import Tabular, frame
 
-_CLOSE = 1e-6  # of the box: rows that differ by less are one design
+_CLOSE = 1e-6  # share of the box: rows that differ by less are one design
 _SENSES = {"minimize": "min", "minimise": "min", "maximize": "max", "maximise": "max"}
 # Words of pymoo, Optuna and scikit-optimize.
 _ELSEWHERE = {"n_obj": "objectives", "n_ieq_constr": "constraints", "n_var": "lower and upper", "xl": "lower",
@@ -29,12 +29,12 @@ _FAULTS_OF_THE_CODE = (NameError, ImportError, SyntaxError)
 class Designs(np.ndarray[Any, np.dtype[np.float64]]):
     """Designs that `Search.ask` gives: an array (n, variables) whose rows have ids.
 
-    Rows that are chosen, reordered, rounded or converted to another type keep theirs. np.asarray(X) has none.
+    Rows that are selected, reordered, rounded or converted to another type keep their ids. np.asarray(X) has none.
 
     Attributes
     ----------
     ids : numpy.ndarray of int or None
-        (n,) by which `Search.tell` knows the rows.
+        (n,) ids by which `Search.tell` knows the rows.
     """
 
     ids: npt.NDArray[np.int64] | None
@@ -58,11 +58,11 @@ class Designs(np.ndarray[Any, np.dtype[np.float64]]):
         return array.view(Designs)._named(self.ids, self._of) if array.ndim == 2 else array[()]
 
     def round(self, *arguments: Any, **more: Any) -> Any:
-        """As numpy.ndarray.round; rows keep their ids, as they do in arithmetic."""
+        """Like numpy.ndarray.round; rows keep their ids, as they do in arithmetic."""
         return self.__array_wrap__(super().round(*arguments, **more))
 
     def astype(self, *arguments: Any, **more: Any) -> Any:
-        """As numpy.ndarray.astype; rows keep their ids."""
+        """Like numpy.ndarray.astype; rows keep their ids."""
         return self.__array_wrap__(super().astype(*arguments, **more))
 
     def to_frame(self) -> Any:
@@ -71,27 +71,27 @@ class Designs(np.ndarray[Any, np.dtype[np.float64]]):
 
 
 class Search(library.Handle, Tabular):
-    """The Pareto front of a function of yours by few evaluations.
+    """A search for the Pareto front of your function by few evaluations.
 
     Parameters
     ----------
     lower, upper : array_like
         (variables,) bounds.
     objectives : int
-        How many numbers the function returns.
+        Number of values that the function returns.
     kinds : str or list of str, optional
         "real", "log", "int" or "choice:steel|oak", one for all variables or one of each. A choice is 0, 1, ... in X.
     seed : int or None
-        None draws one, which `seed` then has. The same arguments, answers and seed give the same designs to the last
-        bit, however many are asked for at a time, in whatever order they are told, saved and loaded in between or not.
+        None draws one and keeps it in `seed`. The same arguments, answers and seed give the same designs to the last
+        bit; portions of asking, the order of telling, saving and loading change nothing.
     evaluations : int
-        Designs to be evaluated at most.
+        Largest number of designs to evaluate.
     constraints : int
-        How many further numbers g the function returns; a design is feasible where all g <= 0.
+        Number of further values g that the function returns; a design is feasible where all g <= 0.
     senses : str or list of str, optional
         "min" or "max", also "minimize" or "maximize", one for all objectives or one of each.
     start : array_like, optional
-        (n, variables) designs to begin with.
+        (n, variables) initial designs.
     **settings
         Settings of [search] as `imtet settings search` lists them: population=40, stop_after=300, ahead=24 (designs
         that may be under way at once, the largest batch), aspire="f1 0.5,f2 3" (objectives are f1, f2, ...).
@@ -100,7 +100,7 @@ class Search(library.Handle, Tabular):
     ----------
     variables, objectives, constraints : int
     seed : int or None
-        None where the search was loaded from a file.
+        None if the search was loaded from a file.
     """
 
     _instead = "save it, and imtet.Search.load the file wherever it is wanted again"
@@ -139,19 +139,19 @@ class Search(library.Handle, Tabular):
         self._width = np.where(high > low, high - low, 1.0)
         senses = state.senses.decode().split(",")
         self._signs = [-1.0 if word.strip() == "max" else 1.0 for word in senses * (self.objectives // len(senses))]
-        self._under_way: dict[int, Array] = {}  # id to design: asked of the library, and not told
-        self._to_give: list[int] = []  # of these what nobody has: `ask` gives it first
-        self._fetched: tuple[Any, Array, Any] | None = None  # answer of the library that is not in these yet
-        self._finished: dict[int, tuple[object, Any]] = {}  # what `evaluate` knows of designs under way
+        self._under_way: dict[int, Array] = {}  # id to design: asked of the library and not told
+        self._to_give: list[int] = []  # those of them that `ask` gives first
+        self._fetched: tuple[Any, Array, Any] | None = None  # answer of the library that is not entered yet
+        self._finished: dict[int, tuple[object, Any]] = {}  # results of `evaluate` for designs under way
         self._is_telling = False
         self._changed = threading.Condition()
 
     @classmethod
     def load(cls, path: Path) -> Search:
-        """A search from the file that `save` wrote, as it was then.
+        """Load a search from the file that `save` wrote.
 
-        Designs that were asked for and not told are asked for again. On a processor whose linear algebra differs in
-        the last bits it goes on with other designs, and a RuntimeWarning says so.
+        `ask` gives the designs under way again. On a processor whose linear algebra differs in the last bits the search
+        continues with other designs, and a RuntimeWarning says so.
         """
         self = cls.__new__(cls)
         self._search, self.seed = library.handle(), None
@@ -160,9 +160,9 @@ class Search(library.Handle, Tabular):
         return self
 
     def save(self, path: Path) -> None:
-        """Write everything into a file.
+        """Save the search to a file.
 
-        The file is replaced when the new one is whole on the disk, so that a kill loses nothing; the one before is kept
+        The file is replaced when the new one is whole on the disk, so that a kill loses nothing; the save before is kept
         as PATH.prev.
         """
         call("imtet_search_save", self._search, os.fsencode(path))
@@ -184,19 +184,19 @@ class Search(library.Handle, Tabular):
 
     @property
     def done(self) -> bool:
-        """True: nothing more will be asked for."""
+        """True when the search asks for nothing more."""
         return bool(self._look().done)
 
     @property
     def ask_ready(self) -> bool:
-        """True: `ask` has a design to give now, without an answer to those under way."""
+        """True when `ask` can give a design now, without another answer."""
         with self._changed:
             self._recover()
             return bool(self._to_give or self._look().ready)
 
     @property
     def state(self) -> dict[str, Any]:
-        """Counts: told, failed, under_way (asked for and not told), left (of evaluations), done, and why."""
+        """Counts of designs told, failed, under_way (asked for and not told) and left (of evaluations); done, and why."""
         s = self._look()
         return {"told": s.told, "failed": s.failed, "under_way": s.under_way, "left": s.left, "done": bool(s.done),
                 "why": s.why.decode()}
@@ -213,7 +213,7 @@ class Search(library.Handle, Tabular):
         return X.view(Designs)._named(np.array(ids, dtype=np.int64), self._under_way)
 
     def _recover(self) -> None:
-        """Enter what the library gave and what it was told; where Ctrl-C came between, the next call does it."""
+        """Enter what the library gave and what it was told; after Ctrl-C the next call does it."""
         if self._is_telling:
             self._forget(self._designs(1)[0])
         if self._fetched is not None:
@@ -232,24 +232,24 @@ class Search(library.Handle, Tabular):
         self._is_telling = False
 
     def ask(self, n: int = 1, wait: bool = False) -> Designs:
-        """Designs to be evaluated.
+        """Give designs to evaluate.
 
         Parameters
         ----------
         n : int
-            How many at most.
+            Largest number of designs, a batch; `ahead` limits how many may be under way.
         wait : bool
-            Where no design can be chosen before others are told: wait until another thread tells one.
+            If no design can be chosen before others are told, wait until another thread tells one.
 
         Returns
         -------
         Designs
-            X (m, variables) with `ids`, m <= n; m is 0 only where the search is done.
+            X (m, variables) with `ids`, m <= n; m is 0 only when the search is done.
 
         Raises
         ------
         ImtetError
-            Where no design can be chosen before others are told, and `wait` is False. `ask_ready` says so beforehand.
+            If no design can be chosen before others are told and `wait` is False. `ask_ready` says so beforehand.
         """
         if not isinstance(n, (int, np.integer)) or n < 0:
             raise ValueError(f"n is {n!r}, wanted an int: how many designs")
@@ -279,7 +279,7 @@ class Search(library.Handle, Tabular):
         return [f"{letter}{k + 1}" for k in range(n)]
 
     def _ids(self, X: Array, carried: Sequence[int] | None) -> list[int]:
-        """Ids of the rows of X: what they carry; else of the nearest design under way within 1e-6 of the box."""
+        """Ids of the rows of X: those they carry, else that of the nearest design under way within 1e-6 of the box."""
         under_way = self._under_way
         found: list[int] = []
         known = np.array(list(under_way))
@@ -296,29 +296,28 @@ class Search(library.Handle, Tabular):
                 own = int(known[near])
             if own is None:
                 raise ValueError(f"row {i} of X was not asked for, or is told already: " + (
-                    f"the nearest design under way, {known[near]}, is {apart[near]:.2g} of the box away, and 1e-6 is let "
-                    "pass; tell what ask gave, whose rows have ids" if near >= 0 and apart[near] < np.inf
+                    f"the nearest design under way, {known[near]}, is {apart[near]:.2g} of the box away (1e-6 is "
+                    "allowed); tell the array that ask gave, whose rows have ids" if near >= 0 and apart[near] < np.inf
                     else "no other design is under way"))
             free[known == own] = False
             found.append(own)
         return found
 
     def tell(self, X: Any, Y: Any, G: Any = None, ids: Sequence[int] | None = None) -> None:
-        """What designs are worth. Refused as a whole where a shape is wrong or a number is not finite.
+        """Tell the results of designs. The whole call is refused if a shape is wrong or a number is not finite.
 
         Parameters
         ----------
         X : Designs, pandas.DataFrame or array_like
-            (n, variables) in any order. Rows of `ask` are known by their ids, also rounded or as float32, as are those
-            of `Designs.to_frame`; others by the nearest design under way within 1e-6 of the box. Of equal designs the
-            oldest one is told.
+            (n, variables) in any order. Rows of `ask` and of `Designs.to_frame` are known by their ids, also rounded or as
+            float32; other rows by the nearest design under way within 1e-6 of the box, of equal designs the oldest.
         Y : sequence
-            n rows of `objectives` numbers. A row that is None or an exception: the design failed. With constraints a row
-            may be a pair (f, g).
+            n rows of `objectives` numbers. None or an exception in place of a row says that the design failed. With
+            constraints a row may be a pair (f, g).
         G : array_like, optional
-            (n, constraints), where rows of Y are no pairs.
+            (n, constraints), if rows of Y are no pairs.
         ids : sequence of int, optional
-            (n,) of the rows, where X has lost them.
+            (n,) ids of the rows, if X has lost them.
         """
         names = self._names("x", self.variables)
         carried: Any = ids
@@ -361,26 +360,26 @@ class Search(library.Handle, Tabular):
                  catch: Catch = Exception) -> list[Any]:
         """[f(x) for x in X], for `tell`.
 
-        A design fails where f raises what is to be caught, returns None, or numbers that are not finite. Where anything
-        else ends it, Ctrl-C say, no finished evaluation is lost: `ask` gives these designs again, and `evaluate` with the
-        same f calls it for the others alone.
+        A design fails if f raises an exception of `catch`, or returns None or a number that is not finite. If anything
+        else ends the call, such as Ctrl-C, no finished evaluation is lost: `ask` gives these designs again, and
+        `evaluate` with the same f calls it only for the unfinished ones.
 
         Parameters
         ----------
         f : callable
-            Of one design x (variables,): `objectives` numbers, with constraints a pair (f, g).
+            f(x) of one design x (variables,) returns `objectives` numbers, with constraints a pair (f, g).
         X : Designs or array_like
             (n, variables).
         threads : int
-            Calls at a time: faster where f releases the GIL, as one does that waits for a program.
+            Calls at a time. More are faster if f releases the GIL, for instance while it waits for a program.
         catch : exception or tuple of exceptions
-            Others are raised. Exception alone leaves out NameError, ImportError and SyntaxError, which are faults of
-            the code and say nothing of a design.
+            Exceptions that fail a design; all others are raised. The default also raises NameError, ImportError and
+            SyntaxError: they are faults of the code, not of a design.
 
         Returns
         -------
         list
-            What f returned, None, or the exception, of each row.
+            For each row what f returned, or the exception.
         """
         rows = np.array(X, dtype=np.float64, ndmin=2)
         ids: Any = X.ids if isinstance(X, Designs) and X._of is self._under_way and X.ids is not None else [0] * len(rows)
@@ -426,9 +425,9 @@ class Search(library.Handle, Tabular):
         f, threads, catch
             As for `evaluate`.
         batch : int
-            Designs asked for at a time, at most.
+            Largest number of designs asked for at a time.
         callback : callable, optional
-            Called with the search whenever a batch was told; where it returns True the loop ends.
+            Called with the search after every batch; the loop ends if it returns True.
 
         Returns
         -------
@@ -453,7 +452,7 @@ class Search(library.Handle, Tabular):
         return ids, X, F, G
 
     def front(self, order: str = "FX") -> tuple[Array, Array]:
-        """The designs that keep all constraints and are dominated by no other.
+        """The feasible designs that no other one dominates.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What a search and a run have in common as tables: frames of pandas, pictures of matplotlib."""
+"""Tables and pictures that a search and a run have in common: frames of pandas, plots of matplotlib."""
 from __future__ import annotations
 
 import importlib
@@ -11,7 +11,7 @@ from ._library import Array
 
 
 def module(name: str, package: str, what: str) -> Any:
-    """A module that imtet does without, or ImportError with the package that has it."""
+    """Import an optional module, or raise ImportError with the package that has it."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -48,12 +48,12 @@ class Tabular:
         Parameters
         ----------
         front : bool
-            Only those on the front.
+            Only the designs on the front.
 
         Returns
         -------
         pandas.DataFrame
-            One row per design, indexed by id: variables, objectives, and what else was measured.
+            One row per design, indexed by id: variables, objectives, other results.
         """
         columns, ids, _, _, on_front, _ = self._table()
         chosen = on_front if front else np.ones(len(ids), dtype=bool)

@@ -547,7 +547,7 @@ class Simulating(unittest.TestCase):
         self.assertGreater(len(named), 0)
         with self.assertRaisesRegex(KeyError, "no design has the id 100000"):
             run.design(100000)
-        with self.assertRaisesRegex(KeyError, "'knee' is no id"):
+        with self.assertRaisesRegex(KeyError, "'knee' is not an id"):
             run.simulate("knee")
         with self.assertRaisesRegex(FileNotFoundError, "no run is there"):
             imtet.open_run(PLACE)
@@ -562,7 +562,7 @@ class Simulating(unittest.TestCase):
         self.assertEqual(json.loads(program("optimize", whole, "--json"))["knee"]["design"], run.knee.id)
         self.assertEqual(run.best("j3_g").j3_g, run.front.j3_g.min())
         self.assertEqual(run.best("ed5_10_pct").ed5_10_pct, run.front.ed5_10_pct.max())
-        with self.assertRaisesRegex(KeyError, "'j4' is no objective of this run; it has j1_m"):
+        with self.assertRaisesRegex(KeyError, "'j4' is not an objective of this run; it has j1_m"):
             run.best("j4")
         self.assertIn("28 designs" if len(run.designs) == 28 else "designs", repr(run))
         damages = (("UPDATE evaluation SET j1_m = j1_m * 1.0000000001 WHERE id = 3", "evaluation 3 is not what was written"),
