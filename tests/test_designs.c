@@ -47,8 +47,8 @@ TEST(a_front_of_a_taller_building_is_refused)
     free(folder);
     write_in_place("two/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.5,300,4e5\n3.5,300,4e5\n");
     expect(65,
-           "/run/front.csv: column gap_03_m is of another building or of other design.variables: a design of these 2 "
-           "floors has none",
+           "/run/front.csv: column gap_03_m belongs to another building or other design.variables: a design of these 2 "
+           "floors has no such column",
            "simulate configs/quick.ini --set building.model=@/two --set core.width_m=2 --design @/run/front.csv");
 }
 
@@ -225,7 +225,7 @@ TEST(choose_limits_any_result_of_a_run)
     json_decref(o);
     run_free(&h);
     expect(2, "did you mean drift_ratio?", "choose @/run --max drift_rato=1");
-    expect(69, "this run has no base_shear_n of its designs", "choose @/run --max base_shear_n=1");
+    expect(69, "this run did not store base_shear_n", "choose @/run --max base_shear_n=1");
 }
 
 /* By a result that the knee is not the best in. */

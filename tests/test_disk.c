@@ -236,7 +236,7 @@ TEST(damage_is_found_on_opening_whatever_was_hit)
     expect(74, "is no database of a run; --new --set search.start=", "status @/hurt");
     write_in_place("hurt/letter.txt", "this is a letter");
     expect(66, "holds no run", "choose @/hurt/letter.txt");
-    expect(65, "letter.txt: is a file, no run and no folder of runs", "status @/hurt/letter.txt");
+    expect(65, "letter.txt: is a file, not a run or a folder of runs", "status @/hurt/letter.txt");
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
     expect(74, "is empty, no database of a run; --new --set search.start=", "optimize @/hurt");
     assert_int_equal(unlink(path_of("hurt/run.sqlite", path)), 0);

@@ -363,7 +363,7 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
             assert_non_null(strstr(svg, WORDS[i]));
         free(svg);
     }
-    expect(2, "--history is of one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
+    expect(2, "--history takes one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
 }
 
 TEST(a_study_keeps_in_its_provenance_what_was_done_to_the_record)

@@ -558,7 +558,7 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
 {
     static const char *const PARTS[] = {"Building, core and ground motion",
                                         "The design</h2>",
-                                        "The response, by four calculations",
+                                        "The response by four calculations",
                                         "Forces and stresses",
                                         "kept</td>",
                                         "Which effects the model needs",
@@ -566,7 +566,7 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
                                         ">builtin:kobe-like,",
                                         ">builtin:elcentro-like,",
                                         "Against intensity",
-                                        "What the figures hang on",
+                                        "What the figures depend on",
                                         "no stiffeners",
                                         "matrices_fnv1a",
                                         "</html>"};
@@ -619,12 +619,12 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     assert_close(first_cell(page, "Forces and stresses", "core stress [MPa]"), 1e-6 * stress, 5e-3);
     assert_close(first_cell(page, "Forces and stresses", "p(drift_ratio&#62;0.2)"), 0, 0);
     assert_non_null(strstr(page, "&#60;= 0.5</td><td class=\"words\">kept"));
-    assert_non_null(strstr(page, "By what the study judges: worst of 3 records."));
+    assert_non_null(strstr(page, "Values as the study judges them: worst of 3 records."));
     assert_non_null(strstr(page, "Forces and strokes under builtin:kobe-like, the first of 3 records."));
     assert_int_equal(sscanf(strstr(page, "<code>imtet "), "<code>imtet %799[^<]", command), 1);
     json_t *again = json_of("%s", command);
-    assert_close(cell(page, "The response, by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
-    assert_int_equal(cell(page, "The response, by", "accuracy fine", 8), number(again, "impacts"));
+    assert_close(cell(page, "The response by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
+    assert_int_equal(cell(page, "The response by", "accuracy fine", 8), number(again, "impacts"));
     json_decref(again);
     char *said = output_of("simulate @/several/settings.ini --design @/several:knee");
     assert_non_null(strstr(said, "of replacement; under builtin:kobe-like\n"));
@@ -643,7 +643,7 @@ TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
            "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
     expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
     char *page = read_in_place("screened.html");
-    assert_non_null(strstr(page, "of 3 records, of which this design, screened only, has had a part.</p>"));
+    assert_non_null(strstr(page, "of 3 records, of which this design, only screened, has seen a part.</p>"));
     free(page);
 }
 
@@ -686,7 +686,7 @@ static void expect_said(const char *wanted, const char *command)
 
 TEST(a_dossier_that_cannot_be_made_is_refused_before_anything_is_simulated)
 {
-    expect(65, "is of a design of the tower", "report @/dtlz --dossier @/d.html");
+    expect(65, "--dossier needs a tower", "report @/dtlz --dossier @/d.html");
     expect(2, "do not go together", "report @/tower --dossier @/d.html --out @/page.html");
     snprintf(place.under, sizeof place.under, "env PATH=/nowhere");
     expect(66, "Chromium, which draws it, cannot be started", "report @/tower --dossier @/d.pdf");

@@ -473,7 +473,7 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     json_decref(o);
     json_decref(b);
     expect(2, "--sa and --pga do not go together", SUITE_LIST "--sa 0.2 --pga 0.3");
-    expect(2, "--fragility wants intensities", SUITE_LIST "--sa 0.2 --fragility j3_g=1");
+    expect(2, "--fragility needs intensities", SUITE_LIST "--sa 0.2 --fragility j3_g=1");
     expect(2, "is no list of NAME=NUMBER", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility j3_g");
     expect(2, "drift is no result", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility drift=1");
     expect(2, "neither a probability nor annual_loss is a limit of one simulation",
@@ -481,7 +481,7 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     expect(65, "no storey yields", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility ductility=2");
     write_in_place("pga.csv", "pga_g,rate_per_year\n0.01,0.1\n0.1,0.01\n");
     write_in_place("up.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.2\n");
-    expect(65, "pga.csv: has no columns sa_g and rate_per_year of two rows", CURVES "--hazard @/pga.csv");
+    expect(65, "pga.csv: needs columns sa_g and rate_per_year with at least two rows", CURVES "--hazard @/pga.csv");
     expect(65, "up.csv:3: intensities must rise, and their rates fall", CURVES "--hazard @/up.csv");
 }
 
@@ -672,7 +672,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     assert_close(column_of(&t, "1-PRD-1-1")[last], roof / (4 + 5 * 3.5), 1e-9);
     table_free(&t);
     json_decref(o);
-    expect(2, "--pelicun is a file of one intensity", SUITE_LIST "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
+    expect(2, "--pelicun writes one intensity", SUITE_LIST "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
 }
 
 TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)

@@ -230,7 +230,7 @@ TEST(designs_of_other_variables_are_refused)
     forget(&s);
     run(&s, "simulate configs/quick.ini " SHORT "--design @/run/front.csv");
     assert_int_not_equal(s.code, 0);
-    assert_non_null(strstr(s.err, "of other design.variables: a design of these"));
+    assert_non_null(strstr(s.err, "other design.variables: a design of these"));
     forget(&s);
 }
 

@@ -24,7 +24,7 @@
     X(INTERNAL, 70, "the program failed")                                                                              \
     X(NO_MEMORY, 71, "out of memory")                                                                                  \
     X(IO, 74, "a file could not be written")                                                                           \
-    X(STOPPED, 75, "stopped before the end; it can go on")
+    X(STOPPED, 75, "stopped before the end; it can be resumed")
 
 typedef enum {
 #define X(name, exit_code, words) STATUS_##name,

@@ -53,7 +53,7 @@ Status args_moved(const Args *args, RecordPaths *moved, Err *err)
             k++;
         if (k == N_MOVED)
             return misused(err,
-                           "--set %.60s: of a run that is there only motion.record=PATH, motion.records=PATH,... and "
+                           "--set %.60s: for an existing run only motion.record=PATH, motion.records=PATH,... and "
                            "motion.forces=PATH can be set",
                            text);
         if (moved->path[k])

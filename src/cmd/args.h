@@ -62,12 +62,12 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_RECORD SETTING("--record", "FILE", "motion.record", "ground motion file or builtin:NAME")
 #define OPTION_PGA SETTING("--pga", "G", "motion.pga_g", "scale the motion to this peak [g]; 0: as recorded")
 #define OPTION_UNIT \
-    SETTING("--unit", "UNIT", "motion.unit", "m_s2 | cm_s2 | g | counts=VALUE, where the file does not say")
+    SETTING("--unit", "UNIT", "motion.unit", "m_s2 | cm_s2 | g | counts=VALUE, if the file does not say")
 #define OPTION_TEXT \
     SETTING("--text", "FORM", "motion.text", "plain text: skip=5,columns=time:1,value:3,per_line=8,pairs=yes,factor=2")
 #define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_UNIT, OPTION_TEXT
 #define OPTION_CHANNEL \
-    SETTING("--channel", "NAME", "motion.channel", "component by name or number, of a file with several")
+    SETTING("--channel", "NAME", "motion.channel", "component, by name or number, of a file with several")
 #define OPTION_JSON SWITCH("--json", "everything, as JSON, on standard output")
 #define OPTION_CSV VALUE("--csv", "FILE", "the table as CSV into FILE; -: standard output")
 #define OPTION_END {.name = NULL}

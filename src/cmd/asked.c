@@ -87,10 +87,10 @@ Status asked_simulate(const Args *args, const Settings *s, Err *err)
     any.problem.constraints = ASKED_CONSTRAINTS(s);
     for (int i = 0; i < args->n_given; i++)
         if (!strstr("--design --csv --json --set", args->given[i].option->name))
-            return misused(err, "%s needs problem.kind = tower, which alone has a building, a core and a motion",
+            return misused(err, "%s needs problem.kind = tower, the only one with a building, a core and a motion",
                            args->given[i].option->name);
     if (strcmp(args_value(args, "--design"), "none") == 0)
-        return bad_data(err, "problem.kind: what is simulated without a design needs problem.kind = tower");
+        return bad_data(err, "problem.kind: without a design only problem.kind = tower can be simulated");
     TRY(adapter_open(&a, &any, err));
     const Status status = simulate(args, a, err);
     adapter_close(a);

@@ -79,7 +79,7 @@ static Status open_model(const Args *args, Model *m, Err *err)
     if (m->s.problem.kind != PROBLEM_TOWER)
         return bad_data(err, "problem.kind: is no tower: %s has no building", name);
     if (args_has(args, "--design") && !m->has_core)
-        return misused(err, "--design is of a CONFIG, which has a core");
+        return misused(err, "--design needs a CONFIG, which has a core");
     TRY(building_load(&m->b, &m->s.building, err));
     if (frame_is(m->s.building.model))
         TRY(frame_read(&m->frame, &m->s.building, err));
@@ -100,7 +100,7 @@ static void say_building(Document *d, const Model *m)
     document_say(d, "p", "%s: %d floor%s, %.6g t, %.4g MN", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s",
                  1e-3 * mass, 1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
-        document_say(d, "p", "of it %.6g t are between the floors", 1e-3 * between);
+        document_say(d, "p", "%.6g t of it are between the floors", 1e-3 * between);
     if (m->frame.n[FRAME_NODES])
         document_say(d, "p", "plane frame of %d nodes, %d elements, %d sections, %d ties", m->frame.n[FRAME_NODES],
                      m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
@@ -218,7 +218,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    VALUE("--design", "FILE", "of a CONFIG: take the core's thickness from it: " DESIGN_WORDS),
+    VALUE("--design", "FILE", "with CONFIG: a design that has the core's thickness: " DESIGN_WORDS),
     VALUE("--svg", "FILE", "draw it: frame or storeys to scale, first ten mode shapes"),
     OPTION_JSON,
     OPTION_SET,
@@ -229,7 +229,7 @@ const Command CMD_BUILDING = {
     .name = "building",
     .group = GROUP_PREPARE,
     .operand = "CONFIG|MODEL",
-    .summary = "floors, masses and modes of a building, a drawing; of a CONFIG also of its core and both as one",
+    .summary = "floors, masses and modes of a building, a drawing; with CONFIG also of the core and both together",
     .example = "imtet building my-tower --svg my-tower.svg",
     .details =
 

@@ -449,8 +449,8 @@ static void climb(Check *c, const CheckedScene *p)
         has_links |= design_has_link(&d, j);
     if (p->impacts == 0 && !has_links)
         warn("--ladder",
-             "no gap closes in any of the designs that were tried: what the core and its contacts need cannot be said; "
-             "take narrower gaps (design.gap_m), or a --design that collides",
+             "no gap closes in any of the designs that were tried, so that the needs of core and contacts are "
+             "unknown; take narrower gaps (design.gap_m), or a --design that collides",
              c);
     free(ladder);
 }
@@ -560,11 +560,11 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
-    VALUE("--design", "FILE", "check these designs too, and simulate the first five"),
-    SWITCH("--ladder", "which effects the typical one of them needs: what leaving out each one changes"),
+    VALUE("--design", "FILE", "check these designs too and simulate the first five"),
+    SWITCH("--ladder", "which effects of the model a typical design needs: what leaving out each one changes"),
     OPTION_JSON,
     OPTION_SET,
-    SWITCH("--self", "does this build give the stored answers? Exit status 70 where one differs"),
+    SWITCH("--self", "compare this build with stored answers; exit status 70 if one differs"),
     OPTION_END,
 };
 
@@ -576,18 +576,18 @@ const Command CMD_CHECK = {
     .example = "imtet check configs/quick.ini",
     .details =
 
-        "Reads CONFIG, the building and the ground motion. Prints mass, height, periods, core, scaled motion,\n"
-        "base shear, search box and the expected time of the study; for the time it simulates five designs of\n"
-        "the box. Names every fault on standard error, not only the first (exit status 65). What is\n"
-        "implausible is a warning (exit status 0): a first period outside 0.03 to 0.3 s per storey, floors\n"
-        "outside 1e3 to 1e7 kg, floors from the top down, damping above 20 %, a peak above 3 g, gaps above a\n"
-        "metre, a core whose first mode is beyond the motion's samples. An external worker is started and\n"
-        "asked for one design, twice where it is quick; its answer, its time and that of the study are\n"
-        "printed. --json has the same as an object, faults and warnings as arrays.\n"
+        "Reads CONFIG, the building and the ground motion. Prints mass, height, periods, core, scaled\n"
+        "motion, base shear, search box and the expected time of the study, which it estimates by simulating\n"
+        "five designs of the box. Names every fault on standard error, not only the first (exit status 65).\n"
+        "An implausible value is a warning (exit status 0): a first period outside 0.03 to 0.3 s per storey,\n"
+        "floors outside 1e3 to 1e7 kg, floors listed from the top down, damping above 20 %, a peak above 3\n"
+        "g, gaps above a metre, a core whose first mode is faster than the motion's samples. An external\n"
+        "worker is started and evaluates one design, or two if it is quick; its answer, its time and that of\n"
+        "the study are printed. --json has the same as an object, with arrays of faults and warnings.\n\n"
         "--ladder simulates a model with P-delta, ground, yielding storeys, flexible contacts and more, then\n"
         "the same without each effect. It prints what that changes in J1, drift and J3, what the effect\n"
         "costs, and whether it is needed (more than 2 % or the scatter as built), then the fewest settings\n"
-        "that are enough (docs/ladder.md).\n"
+        "that are enough (docs/ladder.md).\n\n"
         "--self compares five simulations of the built-in buildings and a search on a textbook problem with\n"
         "stored answers. The tolerances hold for every instruction set.",
     .options = OPTIONS,

@@ -33,7 +33,7 @@ static Status apply_limits(const Args *args, Choice *c, size_t *n_left, Err *err
                     c->allowed[run->front[i]] = 0;
             }
             if (n_known == 0)
-                return fail(err, STATUS_UNMET, "%s: this run has no %s of its designs: make it an objective or a limit",
+                return fail(err, STATUS_UNMET, "%s: this run did not store %s: make it an objective or a limit",
                             LIMITS[is_max], schema_objective(&run->schema, k)->name);
         }
     *n_left = 0;
@@ -188,8 +188,8 @@ static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
     document_free(&d);
     if (p->n_left == 0)
         THEN(status, fail(err, STATUS_UNMET,
-                          "no design of the front is within the limits; `imtet optimize` with search.limits looks for "
-                          "some"));
+                          "no design of the front is within the limits; `imtet optimize` with search.limits searches "
+                          "for some"));
     return status;
 }
 
@@ -208,12 +208,14 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUES("--max", "NAME=VALUE",
-           "only designs whose NAME, an objective or another result, is no larger; may be repeated"),
-    VALUES("--min", "NAME=VALUE", "the same, no smaller"),
-    VALUE("--weights", "NAME=W,...", "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"),
-    VALUE("--reference", "NAME=VALUE,...", "reference point: the design nearest to these values"),
-    VALUE("--csv", "FILE", "the designs chosen, as rows of front.csv, into FILE; -: standard output"),
-    SWITCH("--json", "the designs chosen with their names, objectives and variables, on standard output"),
+           "only designs whose NAME (an objective or another result) is at most VALUE; may be repeated"),
+    VALUES("--min", "NAME=VALUE", "only designs whose NAME is at least VALUE; may be repeated"),
+    VALUE("--weights", "NAME=W,...",
+          "the design with the least weighted sum of objectives, each scaled to 0 (best) "
+          ".. 1 (worst)"),
+    VALUE("--reference", "NAME=VALUE,...", "the design nearest to these values (reference point)"),
+    VALUE("--csv", "FILE", "the chosen designs as rows of front.csv into FILE; -: standard output"),
+    SWITCH("--json", "the chosen designs with names, objectives and variables, as JSON on standard output"),
     OPTION_END,
 };
 
@@ -227,7 +229,7 @@ const Command CMD_CHOOSE = {
 
         "Picks designs from the front of the folder RUN, within the limits: the knee (nearest to the ideal\n"
         "point when every objective is scaled to 0..1 over the front), the best design of each objective, the\n"
-        "best weighted one, and the one nearest to a reference point.\n"
+        "best weighted one, and the one nearest to a reference point.\n\n"
         "Other commands accept a design by its id, RUN:417, and designs of the whole front by name: RUN:knee,\n"
         "RUN:best_j1_m.",
     .options = OPTIONS,

@@ -135,7 +135,7 @@ static void say_records(Document *d, const Evaluations *e, const MeasureOrder *o
             motion_free(&m);
         }
     if (e->replicates > 0)
-        document_say(d, "p", "replicates are of the design with impacts; the other lines are as designed");
+        document_say(d, "p", "replicates exist for the design with impacts only; the other lines are as designed");
     json_t *table = document_table(d);
     for (size_t i = 0; i < e->n_records; i++)
         for (SceneKind c = 0; c < N_SCENES && e->record[i].readable == STATUS_OK; c++) {
@@ -260,11 +260,11 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     e->intensity = sa ? "sa_g" : "pga_g";
     TRY(args_alone(args, "--sa", "--pga", err));
     if (args_has(args, "--svg") && !is_range)
-        return misused(err, "--svg draws an incremental dynamic analysis: --pga FROM:STEP:TO, or --sa");
+        return misused(err, "--svg draws an incremental dynamic analysis: give --pga FROM:STEP:TO, or --sa");
     if (args_has(args, "--pelicun") && is_range)
-        return misused(err, "--pelicun is a file of one intensity: %s G", option);
+        return misused(err, "--pelicun writes one intensity: give %s G", option);
     if (args_has(args, "--fragility") && !is_range)
-        return misused(err, "--fragility wants intensities: --sa FROM:STEP:TO, or --pga");
+        return misused(err, "--fragility needs intensities: --sa FROM:STEP:TO, or --pga");
     for (size_t i = 0; (sa || is_range) && i < N_OF(OTHERS); i++)
         if (args_gives(args, OTHERS[i]))
             return misused(err, "%s %.60s scales every record; %s does not go with it", option, text, OTHERS[i]);
@@ -306,13 +306,12 @@ static Status run_and_give(const Args *args, Settings *s, Chosen *c, Evaluations
     const char *limits = args_value(args, "--fragility"), *hazard = args_value(args, "--hazard");
     /* 1. Which limits, how many replicates. */
     if (hazard && !limits)
-        return misused(err, "--hazard is how often intensities come; --fragility says for which limits");
+        return misused(err, "--hazard needs --fragility, which names the limits");
     e->has_links = limits != NULL;
     TRY(limits ? fragilities_read(&c->fragilities, c->schema, limits, hazard, e->intensity, s, err) : STATUS_OK);
     TRY(settings_check(s, err));
     if (e->level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
-        return misused(err, "sim.replicates = %ld: every intensity is shown once, without replicates",
-                       s->sim.replicates);
+        return misused(err, "sim.replicates = %ld is ignored: every intensity is simulated once", s->sim.replicates);
     e->replicates = !e->level && s->sim.replicates > 1 ? s->sim.replicates : 0;
     if (has_verdict(args, e))
         s->sim.forces = FORCES_YES;
@@ -415,31 +414,30 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN "; with --full-model also none: the building alone"),
-    VALUES("--record", "FILE", "ground motion, or every one of a folder or list, sorted; may be repeated"),
+    VALUES("--record", "FILE", "a ground motion, or all of a folder or list, sorted; may be repeated"),
     OPTION_CHANNEL,
-    VALUE("--pga", "G",
-          "scaled to this peak; FROM:STEP:TO: incremental dynamic analysis, every record at each of these"),
+    VALUE("--pga", "G", "scale every record to this peak [g]; FROM:STEP:TO: incremental dynamic analysis"),
     VALUE("--sa", "G",
-          "scaled to this spectral acceleration (5 %) at the building's first period, or motion.sa_period_s; "
+          "scale to this spectral acceleration (5 %) at the building's first period or motion.sa_period_s [g]; "
           "FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
-          "of such a range: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity (limits: the run's)"),
+          "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of the run"),
     VALUE("--hazard", "FILE",
           "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
     OPTION_UNIT,
     OPTION_TEXT,
     OPTION_SET,
-    SETTING("--threads", "N", "search.threads", "0: one per processor"),
-    SETTING(
-        "--replicates", "N", "sim.replicates",
-        "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"),
+    SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
+    SETTING("--replicates", "N", "sim.replicates",
+            "replicates of the design under each record: mean and standard deviation; default: as the run's"),
     OPTION_JSON,
     VALUE("--csv", "FILE", "a row per record, intensity and scene as CSV into FILE; -: standard output"),
     VALUE("--pelicun", "FILE",
-          "peaks of every floor, a row per record: demand CSV of pelicun; named response.csv: of EE-UQ"),
+          "peaks of every floor, a row per record: demand CSV of pelicun, or of EE-UQ if named response.csv"),
     VALUE("--svg", "FILE",
-          "of FROM:STEP:TO, drawn by Chromium: response against intensity with 16 %, median and 84 %, or fragilities"),
-    SWITCH("--full-model", "on all degrees of freedom of the building's frame, beside the reduced model"),
+          "with FROM:STEP:TO, drawn by Chromium: response against intensity with 16 %, median and 84 %, or "
+          "fragilities"),
+    SWITCH("--full-model", "simulate all degrees of freedom of the building's frame too"),
     OPTION_END,
 };
 
@@ -451,13 +449,13 @@ const Command CMD_EVALUATE = {
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =
 
-        "Simulates one design, the knee if --design is not given, under each record (default: the run's own).\n"
-        "The rigidly connected core and the building without a core are simulated for comparison. Files of a\n"
-        "folder that cannot be read are listed with the reason. Peak, stretch, replicates and all else are\n"
-        "the run's unless an option says otherwise; each record stands alone.\n"
+        "Simulates one design (default: the knee) under each record (default: the run's own). For comparison\n"
+        "it simulates the rigidly connected core and the building without a core. Files of a folder that\n"
+        "cannot be read are listed with the reason. Peak, stretch, replicates and all else are the run's\n"
+        "unless an option says otherwise; each record is judged alone.\n\n"
         "--pga 0.05:0.05:0.6 or --sa makes an incremental dynamic analysis, without replicates. --fragility\n"
         "fits lognormal curves to it by maximum likelihood and adds viscous links (docs/risk.md). --hazard\n"
-        "adds the expected annual loss of every scene as a share of a new building.\n"
+        "adds the expected annual loss of every scene as a share of a new building.\n\n"
         "--full-model simulates designs twice: on the building as the settings reduce it (building.modes;\n"
         "default: the floors alone) and on all degrees of freedom of its frame, with contacts at the floors\n"
         "and all modes (106 for the built-in tower). Shares by mode are assigned by shape. --json then has\n"

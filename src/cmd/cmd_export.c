@@ -29,7 +29,7 @@ static Status write_table(const Args *args, const Run *run, Err *err)
 static Status check_options(const Args *args, Err *err)
 {
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
-        return misused(err, "--csv FILE is missing: where the table goes (or --json)");
+        return misused(err, "--csv FILE is missing, where the table goes (or --json)");
     return args_alone(args, "--all", "--select", err);
 }
 
@@ -40,9 +40,9 @@ static Status export_run(const Args *args, const Run *run, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    VALUE("--csv", "FILE", "where it goes; -: standard output"),
-    SWITCH("--all", "every design that was evaluated, with its outcome, instead of the front"),
-    VALUE("--select", "N", "N designs of the front that are spread over it, the knee first, instead of all of it"),
+    VALUE("--csv", "FILE", "write the table to FILE; -: standard output"),
+    SWITCH("--all", "every evaluated design with its outcome, instead of the front"),
+    VALUE("--select", "N", "only N designs spread over the front, the knee first"),
     SWITCH("--json", "settings, columns, every design and every generation, as JSON on standard output"),
     OPTION_END,
 };
@@ -51,14 +51,14 @@ const Command CMD_EXPORT = {
     .name = "export",
     .group = GROUP_DECIDE,
     .operand = "RUN...",
-    .summary = "the front of a run or of several, or all of it, as CSV or JSON",
+    .summary = "the front of one or several runs, or all designs, as CSV or JSON",
     .example = "imtet export results/quick --csv front.csv",
     .details =
 
         "Writes the front of the folder RUN: one row per design with id, variables [m] and objectives in\n"
         "natural signs. --all writes every evaluated design, including failed ones: id, generation, kind,\n"
         "outcome and reason precede the variables, and kind is `unfinished` for designs of a generation that\n"
-        "is not complete.\n"
+        "is not complete.\n\n"
         "Several runs of one problem give one front, on which each design appears once. results/README.md\n"
         "explains every column. The run may still be working.",
     .options = OPTIONS,

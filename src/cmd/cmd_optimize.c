@@ -49,8 +49,8 @@ static void tell_start(const char *folder, size_t n_simulated, size_t n_workers,
 {
     (void)user;
     if (n_workers > n_busy)
-        fprintf(stderr, "%zu workers, of which %zu at most have something to simulate at once: search.ahead\n",
-                n_workers, n_busy);
+        fprintf(stderr, "%zu workers, but at most %zu designs are under way at once: raise search.ahead\n", n_workers,
+                n_busy);
     if (n_simulated > 0)
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }
@@ -98,7 +98,7 @@ static void say_front(Document *d, const Run *run, const StudySummary *summary)
     if (summary->has_baselines) {
         figures_baselines(table, schema, summary->baseline);
         if (run->settings->sim.replicates > 1)
-            document_say(d, "p", "replicates are of designs with impacts; the others are as designed");
+            document_say(d, "p", "replicates exist for designs with impacts only; the other lines are as designed");
     }
     document_list(d, meaning);
     if (summary->has_baselines && missing)
@@ -112,14 +112,14 @@ static void say_screening(Document *d, const StudySummary *sum)
     if (sum->n_screened == 0)
         return;
     document_say(d, "p",
-                 "%zu designs were screened by a part of their simulations (search.fidelity), and %zu finished or "
-                 "simulated at once, as much as %zu of %ld evaluations",
+                 "%zu designs were screened by a part of their simulations (search.fidelity), %zu were finished or "
+                 "simulated whole; together this is %zu of %ld evaluations",
                  sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
     if (isnan(sum->level_agreement))
-        document_say(d, "p", "too few were finished to know how well that part ranks designs");
+        document_say(d, "p", "too few designs were finished to know how well their first part ranks them");
     else
         document_say(d, "p", "rank correlation of screened with full results (Kendall's tau): %.2f%s",
-                     sum->level_agreement, sum->has_left_screening ? ": too little, so that screening ended" : "");
+                     sum->level_agreement, sum->has_left_screening ? ": too low, so that screening ended" : "");
 }
 
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
@@ -141,8 +141,7 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
         snprintf(label, sizeof label, "misses by %.3g", e->violation);
         figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
     }
-    document_say(&d, "p",
-                 "misses by: sum over search.limits of what exceeds them, as a share of the limit, and over g > 0.");
+    document_say(&d, "p", "misses by: sum of the relative violations of search.limits and of g > 0.");
     document_print(&d, stdout);
     return run_why_empty(run, err);
 }
@@ -167,7 +166,7 @@ static void say_run(Document *d, const Run *run, const StudySummary *summary)
         document_say(d, "p", "refined with smaller steps: %zu designs, %zu of them unpredictable", named.n,
                      named.n_unpredictable);
     snprintf(polished, sizeof polished,
-             "polished: %zu of %zu designs became better by more than their spread (search.polish); ",
+             "polished: %zu of %zu designs improved by more than their spread (search.polish); ",
              summary->polish.n_better, summary->polish.n_tried);
     if (summary->polish.n_tried > 0)
         improve_cost(d, polished, &summary->polish.cost);
@@ -302,13 +301,13 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
-    SETTING("--out", "DIR", "run.out", "the run's folder; a run that it holds is resumed"),
-    SWITCH("--new", "a new run in any case: a number is added to a folder that holds one"),
-    SWITCH("--force-settings", "resume with lower limits (simulations, hours); raising them needs no option"),
-    SETTING("--threads", "N", "search.threads", "0: one per processor"),
-    SETTING("--max-evals", "N", "search.max_evals", "stop after so many simulations"),
+    SETTING("--out", "DIR", "run.out", "folder of the run; a run that it holds is resumed"),
+    SWITCH("--new", "begin a new run in any case: if the folder holds one, add a number to its name"),
+    SWITCH("--force-settings", "allow lower limits (simulations, hours) on resuming; raising them needs no option"),
+    SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
+    SETTING("--max-evals", "N", "search.max_evals", "stop after N simulations"),
     SETTING("--max-hours", "H", "search.max_hours",
-            "stop after so long; it can be resumed later; auto: before the Slurm job ends"),
+            "stop after H hours, to be resumed later; auto: before the Slurm job ends"),
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,
@@ -325,7 +324,7 @@ const Command CMD_OPTIMIZE = {
         "Searches gaps and core thicknesses for the nondominated designs in search.objectives and writes them\n"
         "to DIR/front.csv (results/README.md explains every file and column). If DIR already holds a run with\n"
         "the same settings, that run is resumed; the result is the same as if it had never stopped. `imtet\n"
-        "optimize RUN` resumes a run with its own settings.\n"
+        "optimize RUN` resumes a run with its own settings.\n\n"
         "Ctrl-C, SIGTERM and --max-hours store everything and end with status 75. A second signal, at least\n"
         "0.2 s later, ends at once; it discards running simulations and at most 0.2 s of finished ones.\n"
         "With problem.kind = external your own program is the simulator (docs/external.md).",

@@ -60,15 +60,16 @@ static json_t *table_of(const Improve *m)
 
 static const char *verdict_of(const Improved *r)
 {
-    return !r->has_changed        ? "No improvement was found that keeps the others."
-           : !r->keeps            ? "Simulated again, what was to be kept is not."
-           : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
-           : polish_counts(r)     ? "Simulated again on both designs this is more than the standard deviation."
+    return !r->has_changed        ? "No improvement was found that keeps the other objectives."
+           : !r->keeps            ? "The improvement does not keep the other objectives when it is simulated again."
+           : isnan(r->gain_error) ? "The spread is unknown, because each design was simulated once."
+           : polish_counts(r)     ? "Confirmed: the gain is more than the standard deviation when both designs are "
+                                    "simulated again."
            : r->gain > fmax(POLISH_GAIN_MIN, 2.0 * r->gain_error)
                ? "Simulated at twice the steps on both designs it is not."
            : r->gain <= POLISH_GAIN_MIN
-               ? "Simulated again on both designs this is less than 0.1 % of the range of the front."
-               : "Simulated again on both designs this is not more than the standard deviation.";
+               ? "The gain is less than 0.1 % of the range of the front when both designs are simulated again."
+               : "The gain is not more than the standard deviation when both designs are simulated again.";
 }
 
 /* Both designs, the gain of every objective that was to be improved, what is to be thought of it, and the cost. */
@@ -116,14 +117,14 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN),
     VALUE("--improve", "NAME[=W],...",
-          "objectives to improve, weighted in ranges of the front, or all; default: the first objective"),
+          "objectives to improve, with weights in ranges of the front, or all; default: the first objective"),
     VALUE("--keep", "NAME[=S],...",
-          "these may lose at most their deviation, or the share S of their value; default: all"),
-    VALUE("--max-evals", "N", "simulations at most; default: 300"),
-    VALUE("--replicates", "N", "simulations of a noisy design, as the tower's are, whose mean counts; default: 4"),
+          "objectives that lose at most their standard deviation, or the share S of their value; default: all"),
+    VALUE("--max-evals", "N", "largest number of simulations; default: 300"),
+    VALUE("--replicates", "N", "simulations of a noisy design, such as a tower's, that are averaged; default: 4"),
     VALUE("--csv", "FILE",
-          "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard "
-          "output"),
+          "the polished design, its objectives before and after, with standard deviations and errors, into FILE; -: "
+          "standard output"),
     OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,
@@ -133,13 +134,13 @@ const Command CMD_POLISH = {
     .name = "polish",
     .group = GROUP_STUDY,
     .operand = "RUN",
-    .summary = "improve objectives of a design, the others kept",
+    .summary = "improve objectives of a design and keep the others",
     .example = "imtet polish results/quick --design knee --improve j2_m",
     .details =
 
-        "Improves objectives of a design of RUN (default: the knee) while the others get no worse than their\n"
-        "spread, by NLopt on the simulator. At the end both designs are simulated again. If the gain exceeds\n"
-        "the standard deviation, the new design is stored in the run; its kind is polished.",
+        "Improves objectives of a design of RUN (default: the knee) by NLopt on the simulator. The other\n"
+        "objectives get no worse than their spread. At the end both designs are simulated again. If the gain\n"
+        "exceeds the standard deviation, the new design is stored in the run; its kind is polished.",
     .options = OPTIONS,
     .run = run,
 };

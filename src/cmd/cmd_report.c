@@ -53,7 +53,7 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
     TRY(args_alone(args, "--out", "--pictures --dossier", err));
     TRY(args_alone(args, "--pictures", "--dossier", err));
     if (!given && args->n_operands > 1)
-        return misused(err, "--out FILE is missing: where the page of several runs goes");
+        return misused(err, "--out FILE is missing, where the page of several runs goes");
     if (snprintf(path, PATH_MAX, "%s%s", given ? given : args->operand, given ? "" : "/report.html") >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (!given)
@@ -64,7 +64,7 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
 static Status check_dossier(const Run *run, const char *path, Err *err)
 {
     if (run->settings->problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "%s: --dossier is of a design of the tower (problem.kind)", run->folder);
+        return bad_data(err, "%s: --dossier needs a tower (problem.kind)", run->folder);
     return dossier_check(path, err);
 }
 
@@ -119,14 +119,14 @@ static Status report(const Args *args, const Run *run, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
-    VALUE("--pictures", "DIR", "instead of the page pictures for a paper into DIR, SVG and PNG, by Chromium"),
-    VALUE("--dossier", "FILE", "instead of the page all that a checker of the design needs, .html to print or .pdf"),
+    VALUE("--pictures", "DIR", "write pictures for a paper into DIR instead of the page, SVG and PNG, by Chromium"),
+    VALUE("--dossier", "FILE", "write a document for the checker of the design instead of the page, .html or .pdf"),
     VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
     VALUES("--record", "FILE",
-           "another earthquake for it, or every one of a folder or list, behind those of the study; may be repeated "
-           "(default: the built-in ones)"),
-    SWITCH("--json", "where it was written, as an object"),
-    SWITCH("--no-engine", "leave out simulator and records, with which the page shows what another design would do"),
+           "further earthquakes for the design: a file, or all of a folder or list; may be repeated (default: the "
+           "built-in ones)"),
+    SWITCH("--json", "print where the page was written, as an object"),
+    SWITCH("--no-engine", "leave out the simulator and the records, so that the page cannot simulate"),
     OPTION_MOVED,
     OPTION_CHANNEL,
     OPTION_PGA,
@@ -139,21 +139,21 @@ const Command CMD_REPORT = {
     .name = "report",
     .group = GROUP_DECIDE,
     .operand = "RUN...",
-    .summary = "one HTML page to look at a run: its front, and one design in detail",
+    .summary = "one HTML page of a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",
     .details =
 
         "Writes one HTML file that needs no network. It begins with what was studied and found, and with\n"
-        "warnings. The front follows: parallel coordinates whose axes can be moved, turned over and hidden;\n"
-        "any two columns; gaps as a heat map; all pairs with their correlations; typical designs; which\n"
+        "warnings. The front follows: parallel coordinates whose axes can be moved, reversed and hidden; any\n"
+        "two columns; gaps as a heat map; all pairs with their correlations; typical designs; which\n"
         "variables matter (Sobol indices); a table and a CSV of designs within chosen ranges; the growth of\n"
         "the hypervolume. One design is simulated again: its gaps, peaks, forces, energies, the displacement\n"
         "of a floor, and other earthquakes. --pga, --unit and --channel apply to those; by default they are\n"
-        "scaled as the run's own. `imtet serve` shows the same page live.\n"
-        "--dossier writes one document of some ten pages on the design: building, core, devices and drawings;\n"
-        "simulation at accuracy fine, by CVODE and on the full model; forces with limits, the ladder, every\n"
-        "record, intensities, the design as built, sensitivities, what is not covered, and provenance. CVODE\n"
-        "takes minutes under a long record. A PDF needs Chromium.",
+        "scaled as the run's own. `imtet serve` shows the same page live.\n\n"
+        "--dossier writes one document of some ten pages on the design: building, core, devices and\n"
+        "drawings; simulation at accuracy fine, by CVODE and on the full model; forces with limits, the\n"
+        "ladder, every record, intensities, the design as built, sensitivities, what is not covered, and\n"
+        "provenance. CVODE takes minutes under a long record. A PDF needs Chromium.",
     .options = OPTIONS,
     .is_alone = 1,
     .run_of = report,

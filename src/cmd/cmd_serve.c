@@ -34,7 +34,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    VALUE("--port", "N", "on this port (default: one that is free)"),
+    VALUE("--port", "N", "port of the server (default: a free one)"),
     OPTION_MOVED,
     OPTION_END,
 };
@@ -43,15 +43,15 @@ const Command CMD_SERVE = {
     .name = "serve",
     .group = GROUP_STUDY,
     .operand = "RUN",
-    .summary = "a run as a page in the browser, live: progress, any design, what-if",
+    .summary = "a run as a live page in the browser: progress, any design, what-if",
     .example = "imtet serve results/quick",
     .details =
 
         "Serves the page of `imtet report` on this machine alone (127.0.0.1), at an address that cannot be\n"
-        "guessed. The page also shows the progress of a working run, simulates any design at a click, and has\n"
-        "sliders that change gaps, thickness, motion and restitution of a design and show its response at\n"
-        "once. RUN may be a folder of runs: the page then lists them and compares two. Only notes on designs\n"
-        "are written. Ctrl-C ends it.",
+        "guessed. The page also shows the progress of a running study, simulates any design at a click, and\n"
+        "has sliders that change gaps, thickness, motion and restitution of a design and show its response\n"
+        "at once. RUN may be a folder of runs: the page then lists them and compares up to four. The server\n"
+        "writes nothing but notes on designs. Ctrl-C ends it.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -45,8 +45,9 @@ const Command CMD_SETTINGS = {
     .operand = "[KEY|WORD]",
     .summary = "every setting with default, range, unit and meaning",
     .example = "imtet settings motion.pga_g",
-    .details = "Prints every setting with its default, preceded by its meaning, unit and range: a valid configuration\n"
-               "(imtet settings > mine.ini). KEY or WORD: only those whose name or meaning has it.",
+    .details = "Prints every setting with its default below its meaning, unit and range. The output is a valid\n"
+               "configuration (imtet settings > mine.ini). With KEY or WORD it prints only the settings whose name\n"
+               "or meaning has it.",
     .options = OPTIONS,
     .run = run,
     .only_reads = 1,
@@ -174,7 +175,7 @@ static Status begin(const Args *args, Err *err)
     if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
     if (access(path, F_OK) == 0)
-        return misused(err, "%s: is there already; name another folder", path);
+        return misused(err, "%s: exists already; name another folder", path);
     char *folder = realpath(args->operand, NULL), out[PATH_MAX];
     if (!folder)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
@@ -184,7 +185,7 @@ static Status begin(const Args *args, Err *err)
     if (!args_gives(args, "run.out"))
         TRY(settings_put(&s, "run.out", out, err));
     TRY(output_open(&o, path, err));
-    fputs("; What is not written here keeps its default: `imtet settings` lists all.\n\n", o.stream);
+    fputs("; Settings that are not written here keep their defaults: `imtet settings` lists all.\n\n", o.stream);
     settings_write(&s, o.stream, SETTINGS_BASIC, NULL);
     TRY(output_close(&o, err));
     text_shell(path, quoted);
@@ -194,19 +195,19 @@ static Status begin(const Args *args, Err *err)
 
 static const ArgOption NEW_OPTIONS[] = {
     VALUE("--preset", "NAME",
-          "a short study that decides: stops, devices (stops, links or nothing), engineer (with limits), risk, paper"),
+          "a short study: stops, devices (stops, links or nothing), engineer (with limits), risk or paper"),
     OPTION_RECORD, OPTION_PGA, OPTION_SET, OPTION_END};
 
 const Command CMD_NEW = {
     .name = "new",
     .group = GROUP_PREPARE,
     .operand = "FOLDER",
-    .summary = "begin a study: a folder with the settings that a first one touches",
-    .example = "imtet new tower --preset devices --set building.model=tower/storeys --record tower/kobe.at2",
-    .details =
-        "Writes FOLDER/study.ini, each setting after its meaning, unit and range; files, which must be there, by\n"
-        "their path from FOLDER. Its run goes to results/FOLDER. A preset has few objectives and a box by the\n"
-        "building: gaps of up to 0.6 % of its height, a core of a seventh of it; options and --set come before it.",
+    .summary = "begin a study: a folder with the settings that a first study needs",
+    .example = "imtet new tower --preset devices --record builtin:kobe-like",
+    .details = "Writes FOLDER/study.ini with the settings that a first study needs, each below its meaning, unit\n"
+               "and range. Files must exist; the study names them by their path from FOLDER. Its run goes to\n"
+               "results/FOLDER. A preset has few objectives and a search box that fits the building: gaps of up to\n"
+               "0.6 % of its height, a core of a seventh of it. Options and --set override the preset.",
     .options = NEW_OPTIONS,
     .run = begin,
     .only_reads = 1,

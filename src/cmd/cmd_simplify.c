@@ -14,7 +14,7 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
     char *end;
     const double mm = strtod(text, &end);
     if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm >= 0.1 && mm <= 1e4))
-        return misused(err, "%s: '%.40s' is no length in mm, as 5 or 5mm, from 0.1 to 10000", option, text);
+        return misused(err, "%s: '%.40s' is no length in mm such as 5 or 5mm, from 0.1 to 10000", option, text);
     *value = 1e-3 * mm;
     return STATUS_OK;
 }
@@ -84,7 +84,7 @@ static json_t *say_path(Document *d, const Improve *m)
     }
     document_list(d, variables);
     if (path->row[0].violation > 0.0)
-        document_say(d, "p", "The design violates the limits of its run, and so may what is made of it.");
+        document_say(d, "p", "The design violates the limits of its run; the simplified one may too.");
     return table;
 }
 
@@ -160,7 +160,7 @@ static Status work(const Args *args, Improve *m, Err *err)
 {
     TRY(take_options(args, m, err));
     if (m->run.settings->problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "%s: simplify is for designs of a tower, with gaps and plates", m->run.folder);
+        return bad_data(err, "%s: simplify needs a tower, with gaps and plates", m->run.folder);
     TRY(improve_design(&m->run, m->row, &m->config, simplify_design, &m->result, err));
     Document d = {0};
     json_t *path = say_path(&d, m);
@@ -181,11 +181,11 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "ID", DESIGN_OF_RUN),
-    VALUE("--zones", "N", "floors of each of so many zones become alike; each stays as it is if not given"),
-    VALUE("--gap-step", "MM", "gaps become multiples of it; they stay if not given"),
-    VALUE("--plates", "MM,MM,...", "walls become one of these; they stay if not given"),
+    VALUE("--zones", "N", "make the floors of each of N zones alike; default: they stay as they are"),
+    VALUE("--gap-step", "MM", "round gaps to multiples of it; default: they stay"),
+    VALUE("--plates", "MM,MM,...", "choose walls from these; default: they stay"),
     VALUE("--keep", "NAME[=S],...",
-          "these may lose the share S of their value (2% without =S); default: the first objective 2%, others 10%"),
+          "objectives that may lose the share S of their value (2% without =S); default: the first 2%, others 10%"),
     OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,
@@ -197,12 +197,11 @@ const Command CMD_SIMPLIFY = {
     .operand = "RUN",
     .summary = "a design that can be built: fewer stops, standard gaps, stock plates",
     .example = "imtet simplify results/kobe --design knee --gap-step 5 --plates 8,10,12,15,20 --keep j1_m=0.02",
-    .details =
-        "Makes a design (default: the knee) easier to build, step by step: it removes stops that never close,\n"
-        "makes the floors of a zone alike, rounds gaps and walls to steps, moves them on these steps, and\n"
-        "removes devices that gain less than --keep. Each step is simulated under all records of RUN. Prints\n"
-        "the path and stores its end in the run; its kind is polished. An end that loses more than --keep allows is\n"
-        "marked (exit status 69), and the --keep that would do is named.",
+    .details = "Makes a design (default: the knee) easier to build, step by step: it removes stops that never\n"
+               "close, makes the floors of a zone alike, rounds gaps and walls to steps, moves them on these steps,\n"
+               "and removes devices while --keep holds. Each step is simulated under all records of RUN. Prints the\n"
+               "path and stores its end in the run; its kind is polished. An end that loses more than --keep allows\n"
+               "is marked (exit status 69), and the --keep that would do is named.",
     .options = OPTIONS,
     .run = run,
 };

@@ -139,7 +139,7 @@ static Status check_times(const Args *args, const Job *job, Err *err)
         if (args_has(args, WITH_GAPS[i]) || args_gives(args, WITH_GAPS[i]))
             return misused(err, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
     if (args_has(args, "--every") && !args_has(args, "--history"))
-        return misused(err, "--every is the spacing of --history FILE, which is not asked for");
+        return misused(err, "--every needs --history FILE, whose spacing it is");
     TRY(args_alone(args, "--horizon", "--csv --sensitivity --history --contacts --floor-spectra", err));
     return args_alone(args, "--sensitivity", "--history --contacts --floor-spectra", err);
 }
@@ -163,7 +163,9 @@ static Status give_horizon(const Args *args, const Problem *p, const Horizon *h,
             document_say(&d, "p", "  %-8g never (the run ends at %.4g s)", HORIZON_LEVEL[i], h->end_s);
         else
             document_say(&d, "p", "  %-8g after %.4g s", HORIZON_LEVEL[i], h->reached_s[i]);
-    document_say(&d, "p", "distance: root of energy of the difference over largest energy so far; at the end %.2g",
+    document_say(&d, "p",
+                 "distance: square root of the energy of the difference over the largest energy so far; at "
+                 "the end %.2g",
                  h->distance_at_end);
     figures_replicates(document_table(&d), tower_measures(tower_of(p)), r, NULL);
     return document_give(&d, args, err);
@@ -186,7 +188,7 @@ static Status show_horizon(const Args *args, Settings *s, const double x[], Err 
 {
     Problem p;
     if (s->sim.engine != ENGINE_FAST)
-        return misused(err, "--horizon: only the engine fast shows its states; leave sim.engine as it is");
+        return misused(err, "--horizon needs sim.engine = fast");
     s->sim.replicates = HORIZON_REPLICATES;
     s->sim.gap_tolerance_m = ESTIMATE_GAP_M;
     s->sim.uncertain = (UncertainOptions){0};
@@ -302,22 +304,21 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     VALUE("--design", "FILE", DESIGN_WORDS "; none: the building alone"),
     SWITCH("--rigid", "floors and core rigidly connected (zero gap): a linear building"),
-    SETTING(
-        "--replicates", "N", "sim.replicates",
-        "N replicates as a study simulates them, under motion.record and motion.records: mean and standard deviation"),
+    SETTING("--replicates", "N", "sim.replicates",
+            "replicates as in a study, under motion.record and motion.records: mean and standard deviation"),
     SWITCH("--sensitivity",
-           "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
-           "smaller"),
+           "how each result changes with gaps, thickness, contact and damping, with an error that --replicates "
+           "reduces"),
     SWITCH("--horizon",
-           "predictability horizon: the time until two runs that hardly differ diverge; standard deviation of every "
-           "result with gaps 1 um off"),
+           "predictability horizon: the time until two nearly equal runs diverge; standard deviation of every result "
+           "with gaps 1 um off"),
     OPTIONS_MOTION,
     OPTION_JSON,
     OPTION_CSV,
     VALUE("--contacts", "FILE", "one row per contact: time, floor, side, speeds, force, duration, energy lost"),
     VALUE("--history", "FILE",
-          "time histories: floors, nodes of the core, contact forces, energies; - is standard output"),
-    VALUE("--every", "DT", "of --history: a row every DT s at most, by halving the record's step"),
+          "time histories: floors, nodes of the core, contact forces, energies; -: standard output"),
+    VALUE("--every", "DT", "largest step of --history [s], reached by halving the record's step"),
     VALUE("--floor-spectra", "FILE", "response spectra of every floor's acceleration, 5 % damped"),
     OPTION_SET,
     OPTION_END,
@@ -334,14 +335,14 @@ const Command CMD_SIMULATE = {
         "Simulates every row of a design file: a CSV with the header gap_01_m..gap_NN_m,t_base_m,t_top_m\n"
         "holds one gap per floor from the bottom, then the core's wall in the first and in the last storey\n"
         "[m]. A front.csv or a design of a run works too: --design results/quick:knee, results/quick:417,\n"
-        "results/quick:best_j1_m.\n"
+        "results/quick:best_j1_m.\n\n"
         "For other problems the design goes to the simulator, such as an external worker, as in a study.\n"
         "With sim.replicates above 1, or with motion.records, the first row is the design as designed under\n"
         "motion.record; the next rows are the aggregate that the study optimizes (sim.robust) and its\n"
-        "standard deviation.\n"
+        "standard deviation.\n\n"
         "--json gives one object for one design and a list for several. The number after +- is the error of\n"
         "the integration, which 95 % of all figures keep; a second run with twice the steps estimates it\n"
-        "(docs/promise.md). Digits beyond it are not shown.\n"
+        "(docs/promise.md). Digits beyond it are not shown.\n\n"
         "--horizon: impacts amplify differences, so two runs that differ in the last digit diverge after some\n"
         "hundreds of impacts. Before the predictability horizon results can be compared digit by digit. After\n"
         "it only mean and standard deviation can be compared; they come from 16 runs, gaps perturbed by 1 um.",

@@ -215,7 +215,7 @@ static Status give(const Args *args, size_t n, const Spectrum s[], Err *err)
         document_list(&d, describe(s, 0));
     if (n == 1 && !is_corrected(s))
         document_say(&d, "p",
-                     "pgd_m: uncorrected: the drift of the record is in it (motion.baseline, motion.highpass_hz)");
+                     "pgd_m: uncorrected: it contains the drift of the record (motion.baseline, motion.highpass_hz)");
     document_say(&d, "p", "response at 5 %% damping");
     json_t *table = rows_of(n, s, PRINTED_EACH);
     json_array_extend(document_table(&d), table);
@@ -240,7 +240,7 @@ static Status open_next(const char *source, void *user, Err *err)
         return STATUS_OK;
     }
     if (all->n == all->n_max)
-        return bad_data(err, "%s: came while the others were read", source);
+        return bad_data(err, "%s: was added while the others were read", source);
     TRY(option_put_path(o.record, source, err));
     return spectrum_open(&all->s[all->n++], &o, err);
 }
@@ -263,7 +263,7 @@ static Status run(const Args *args, Err *err)
     TRY(each_operand(args, &all, err));
     const size_t n = all.n_max = all.n;
     if (n > 1 && args_has(args, "--history"))
-        return misused(err, "--history is of one motion, not of %zu", n);
+        return misused(err, "--history takes one motion, not %zu", n);
     all.s = calloc(n, sizeof *all.s);
     Status status = all.s ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
     THEN(status, give(args, n, all.s, err));
@@ -284,7 +284,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--history", "FILE",
           "acceleration, velocity, displacement and Husid's curve as CSV (NAME.json: a SimCenter event); -: standard "
           "output"),
-    VALUE("--svg", "FILE", "a picture of all of it, drawn by Chromium"),
+    VALUE("--svg", "FILE", "a picture of spectrum and histories, drawn by Chromium"),
     OPTION_END,
 };
 

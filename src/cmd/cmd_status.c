@@ -46,7 +46,9 @@ static void say_generations(Document *d, const Run *run)
     }
     json_decref(all);
     if (n > 0 && settings_screens(run->settings))
-        document_say(d, "p", "simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
+        document_say(d, "p",
+                     "simulated: designs screened or finished; each counts as a part of an evaluation "
+                     "(search.fidelity)");
 }
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
@@ -160,7 +162,7 @@ static Status show_folder(const Args *args, const char *folder, Err *err)
 {
     json_t *list = json_array();
     if (runs_each(folder, add_run, list) < 0) {
-        const Status why = errno == ENOTDIR ? bad_data(err, "%s: is a file, no run and no folder of runs", folder)
+        const Status why = errno == ENOTDIR ? bad_data(err, "%s: is a file, not a run or a folder of runs", folder)
                                             : fail_missing(err, folder);
         json_decref(list);
         return why;
@@ -192,7 +194,8 @@ static void say_run(Document *d, const char *folder, const Run *run, const Stand
     document_list(d, described);
     if (s->n_lost > 0)
         document_say(d, "p",
-                     "%zu evaluations more were stored, as its file `lock` says: the journal run.sqlite-wal is missing",
+                     "its file `lock` says that %zu more evaluations were stored: the journal run.sqlite-wal is "
+                     "missing",
                      s->n_lost);
     snprintf(more, sizeof more, isfinite(e.busy) ? "; threads %.1f %% busy" : "", 100.0 * e.busy);
     if (isfinite(e.waiting))
@@ -232,12 +235,12 @@ const Command CMD_STATUS = {
     .name = "status",
     .group = GROUP_STUDY,
     .operand = "[RUN]",
-    .summary = "progress of a run, also while it is worked on; the runs of a folder",
+    .summary = "progress of a run, also of a running one; all runs of a folder",
     .example = "imtet status results/quick",
     .details =
 
         "Shows progress, pace, time left, the hypervolume by generation, and failed simulations by reason.\n"
-        "The run is only read, so it may be working in another terminal.\n"
+        "The run is only read, so it may be running in another terminal.\n\n"
         "For a folder of runs (default: `results`) it prints one line per run: running, finished, stopped\n"
         "(can be resumed) or interrupted (was killed, can be resumed too).",
     .options = OPTIONS,

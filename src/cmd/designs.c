@@ -28,15 +28,15 @@ static Status drop_results(Table *t, const char *path, const DesignSpace *space,
         if (strncmp(t->names[c], "gap", 3) == 0 && !is_variable(space, t->names[c]))
             return bad_data(
                 err,
-                "%s: column %s is of another building or of other design.variables: a design of these %d floors "
-                "has none",
+                "%s: column %s belongs to another building or other design.variables: a design of these %d floors "
+                "has no such column",
                 path, t->names[c], space->n_floors);
     for (int v = 0; v < space->n_var; v++) {
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
         if (from < (int)kept)
-            return bad_data(err, "%s: no column %s, which a design of %d floors has (design.variables)", path, name,
-                            space->n_floors);
+            return bad_data(err, "%s: column %s is missing, which a design of %d floors has (design.variables)", path,
+                            name, space->n_floors);
         for (size_t i = 0; i < t->n_rows; i++)
             t->values[i * t->n_cols + kept] = t->values[i * t->n_cols + from];
         snprintf(t->names[kept++], TABLE_NAME_MAX, "%s", name);
@@ -68,7 +68,7 @@ static Status choose_row(Designs *d, const char *path, const char *choice, Err *
     char *end;
     const long wanted = strtol(choice, &end, 10);
     if (end == choice || *end)
-        return bad_data(err, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
+        return bad_data(err, "%s:%.40s: a design of a file is chosen by its %s", path, choice,
                         d->id ? "id" : "row, from 1");
     for (size_t i = 0; i < d->n; i++)
         if (design_number(d, i) == wanted) {
@@ -139,10 +139,10 @@ static Status check_space(const Run *run, const char *folder, const DesignSpace 
     }
     return n_var == (size_t)space->n_var
                ? STATUS_OK
-               : bad_data(
-                     err,
-                     "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
-                     folder, n_var, space->n_floors, space->n_var);
+               : bad_data(err,
+                          "%s: its designs have %zu variables; designs of this building of %d floors have %d "
+                          "(design.variables)",
+                          folder, n_var, space->n_floors, space->n_var);
 }
 
 void known_of_run(const Run *run, size_t row, Known known[])
@@ -167,7 +167,7 @@ static void take_known(const Run *run, size_t row, SimOptions *sim, Known known[
     const double before = sim->steps_per_contact;
     run_steps(run, row, sim);
     if (sim->steps_per_contact != before)
-        fprintf(stderr, "design %ld: with %g times the steps of sim.accuracy, as the run knows it\n", e->id,
+        fprintf(stderr, "design %ld: simulated with %g times the steps of sim.accuracy, as in the run\n", e->id,
                 ldexp(1.0, (int)e->level));
     if (known)
         known_of_run(run, row, known);
@@ -229,7 +229,7 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Sett
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", word);
     find_place(word, &p);
     if (!p.is_run && stat(p.path, &there) == 0 && S_ISDIR(there.st_mode))
-        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", p.path);
+        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is missing", p.path);
     const Status status = p.is_run ? take_from_run(d, p.path, p.choice, space, s, as_known, known, err)
                                    : take_file(d, p.path, p.choice, space, err);
     if (status != STATUS_OK)
@@ -274,7 +274,7 @@ Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, 
     if (n == 1)
         return STATUS_OK;
     design_free(d);
-    return misused(err, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n, word, first);
+    return misused(err, "--design %s: holds %zu designs; choose one of them: %s:%ld", word, n, word, first);
 }
 
 void known_raise(const Known known[], const SimResult *r, double sd[])
@@ -383,7 +383,7 @@ Status weights_check(const Schema *schema, const char *option, const double weig
     double sum = 0;
     for (size_t k = 0; k < schema->n_obj; k++) {
         if (weights[k] < 0)
-            return misused(err, "%s: %s=%g is negative; every weight asks for more of what is good", option,
+            return misused(err, "%s: %s=%g is negative; a positive weight already asks for a better value", option,
                            schema_objective(schema, k)->name, weights[k]);
         sum += weights[k];
     }

@@ -72,9 +72,9 @@ static void say_summary(Dossier *o)
     if (o->n_records > 1)
         figures_design(table, "its standard error over the records", 0, schema, error, NULL, NULL, NULL);
     figures_baselines(table, schema, o->d->baseline);
-    document_say(doc, "p", "By what the study judges: %s%s.", *rule ? rule : o->record,
+    document_say(doc, "p", "Values as the study judges them: %s%s.", *rule ? rule : o->record,
                  run->table.row[o->r->chosen].kind == KIND_SCREENED
-                     ? ", of which this design, screened only, has had a part"
+                     ? ", of which this design, only screened, has seen a part"
                      : "");
     document_say(
         doc, "p",
@@ -181,7 +181,7 @@ static void say_response(Dossier *o)
     FullModel m = {0};
     Err e = {0};
     char label[64];
-    document_say(&o->doc, "h2", "The response, by four calculations");
+    document_say(&o->doc, "h2", "The response by four calculations");
     json_t *table = document_table(&o->doc);
     add_response(o, table, "as the study knows it", &o->d->result[SCENE_IMPACT]);
     add_with(o, table, "accuracy fine", "sim.accuracy", "fine");
@@ -269,7 +269,9 @@ static void say_records(Dossier *o)
         add_response(o, table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT]);
         add_response(o, table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE]);
     }
-    document_say(&o->doc, "p", "Those of the study first. builtin: motions are synthetic: judge by records.");
+    document_say(&o->doc, "p",
+                 "The records of the study come first. builtin: motions are synthetic: judge by "
+                 "records.");
 }
 
 /* All records at every level, with the fragility of a drift ratio of 2 %. */
@@ -308,7 +310,7 @@ static void say_sensitivities(Dossier *o)
     Sensitivity *list = NULL;
     size_t n = 0;
     Err e = {0};
-    document_say(&o->doc, "h2", "What the figures hang on");
+    document_say(&o->doc, "h2", "What the figures depend on");
     if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) == STATUS_OK)
         document_slopes(&o->doc, n, list);
     document_say(&o->doc, "p", "%s", e.text);
@@ -324,31 +326,30 @@ static void say_not_covered(Dossier *o)
     char text[UPLIFT_WORDS_MAX];
     document_say(doc, "h2", "What is not covered");
     document_say(doc, "li",
-                 "Torsion but of contacts off the centre, ground motion in two directions, the vertical motion. One "
-                 "contact per floor and side, without friction.");
-    document_say(
-        doc, "li",
-        "The mass of the core, %.0f t, is that of its %s. It has no %sdiaphragms or connections; where the wall "
-        "buckles, the mass of stiffeners against that is missing here and in every objective.",
-        1e-3 * o->d->result[SCENE_IMPACT].mcore_kg, s->core.stiffeners > 0 ? "walls and core.stiffeners" : "bare walls",
-        s->core.stiffeners > 0 ? "" : "stiffeners, ");
+                 "Torsion other than by contacts off the centre, ground motion in two directions, vertical motion. "
+                 "One contact per floor and side, without friction.");
     document_say(doc, "li",
-                 "Connections for these forces, of which those of contacts last milliseconds: stops, links, bearings, "
-                 "collectors that yield, floors as diaphragms, local stresses and fatigue are not designed.");
+                 "The mass of the core, %.0f t, is that of its %s, without %sdiaphragms or connections. Where the wall "
+                 "buckles, the mass of stiffeners against it is missing here and in every objective.",
+                 1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
+                 s->core.stiffeners > 0 ? "walls and core.stiffeners" : "bare walls",
+                 s->core.stiffeners > 0 ? "" : "stiffeners, ");
+    document_say(doc, "li",
+                 "Connections for these forces: stops, links, bearings, collectors that yield, floors as diaphragms, "
+                 "local stresses and fatigue are not designed. Contact forces last milliseconds.");
     if (foundation_lifts(&o->d->result[SCENE_IMPACT]))
         document_say(doc, "li", "Foundation: %s.", uplift_words(&o->d->result[SCENE_IMPACT], text));
     if (strcmp(s->core.foundation, "fixed") == 0)
         document_say(doc, "li",
-                     "The core is clamped: its foundation bears up to %.3g MN and %.4g MN m without giving way.",
+                     "The core is clamped: its foundation is taken to carry %.3g MN and %.4g MN m without moving.",
                      1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
-        document_say(doc, "li", "The tower is linear: nothing yields, whatever its drift.");
+        document_say(doc, "li", "The tower is linear: nothing yields at any drift.");
     else
-        document_say(doc, "li", "Damping of the tower stays that of its elastic modes while storeys yield.");
+        document_say(doc, "li", "The tower keeps the damping of its elastic modes while storeys yield.");
     if (!s->building.p_delta)
         document_say(doc, "li", "P-delta is left out.");
-    document_say(doc, "li",
-                 "Comfort, sound and damage of what stands on the floors under accelerations of milliseconds.");
+    document_say(doc, "li", "Comfort, sound, and damage to contents by accelerations of milliseconds.");
 }
 
 static void put_setting(const char *key, unsigned flags, const char *was, const char *is, void *user)
@@ -369,10 +370,12 @@ static void say_provenance(Dossier *o)
     document_list(&o->doc, from);
     settings_defaults(&none);
     settings_compare(&none, run->settings, put_setting, settings);
-    document_say(&o->doc, "p", "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that are no defaults:");
+    document_say(&o->doc, "p",
+                 "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that differ from "
+                 "their defaults:");
     document_list(&o->doc, settings);
     folder_path(run->folder, "settings.ini", path);
-    document_say(&o->doc, "p", "The row of accuracy fine again:");
+    document_say(&o->doc, "p", "To repeat the row of accuracy fine:");
     document_say(&o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
                  text_shell(path, used), text_shell(run->folder, folder), run->table.row[o->r->chosen].id);
 }
@@ -387,7 +390,7 @@ static int is_pdf(const char *path)
 Status dossier_check(const char *path, Err *err)
 {
     if (!is_pdf(path) && !text_ends(path, ".html"))
-        return misused(err, "--dossier %s: it is written as a page or a PDF; name the file .html or .pdf", path);
+        return misused(err, "--dossier %s: name the file .html or .pdf", path);
     return is_pdf(path) ? browser_check(path, err) : STATUS_OK;
 }
 

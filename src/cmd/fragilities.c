@@ -37,7 +37,7 @@ static Status take_hazard(Fragilities *f, const Table *t, const char *intensity,
 {
     const int column[2] = {table_column(t, intensity), table_column(t, "rate_per_year")};
     if (column[0] < 0 || column[1] < 0 || t->n_rows < 2)
-        return bad_data(err, "%s: has no columns %s and rate_per_year of two rows at least", t->path, intensity);
+        return bad_data(err, "%s: needs columns %s and rate_per_year with at least two rows", t->path, intensity);
     TRY_ROOM(f->hazard, 2 * t->n_rows, "points of a hazard curve", err);
     f->n_hazard = t->n_rows;
     for (size_t i = 0; i < t->n_rows; i++) {

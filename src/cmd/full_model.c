@@ -120,8 +120,8 @@ static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *e
     if (!frame_is(s->building.model))
         return bad_data(
             err,
-            "building.model: %s has no degrees of freedom besides its floors to compare with; only a plane frame "
-            "(nodes.csv) and guyan have",
+            "building.model: %s has no degrees of freedom besides its floors; only a plane frame (nodes.csv) and "
+            "guyan have",
             s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));

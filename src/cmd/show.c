@@ -150,7 +150,7 @@ void document_ida(Document *d, const Evaluations *e, const MeasureOrder *order)
 void document_slopes(Document *d, size_t n, const Sensitivity list[])
 {
     static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J2, MEASURE_CORE_STRESS};
-    document_say(d, "p", "change for one step, with the error of the replicates and of halving the step");
+    document_say(d, "p", "change for one step, with its error from the replicates and from halving the step");
     json_t *table = document_table(d);
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];
@@ -317,7 +317,7 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user)
         suite_of_study(&s->motion, count_source, counts, NULL);
     json_object_foreach(counts, source, n) twice = json_integer_value(n) > 1 && !twice ? source : twice;
     if (twice) {
-        snprintf(text, sizeof text, "%s is there twice (motion.record is one of them) and counts twice", twice);
+        snprintf(text, sizeof text, "%s appears twice (motion.record is one of them) and counts twice", twice);
         warn("motion.records", text, user);
     }
     json_decref(counts);

@@ -56,8 +56,7 @@ static void say_more(Document *d, const json_t *confirmed, const char *folder)
     }
     if (f)
         text_close(f);
-    document_say(
-        d, "p", "model: some of the knee and the best of each objective, or their baselines, need more. Search again:");
+    document_say(d, "p", "model: the knee, a best design or one of their baselines needs more effects. Search again:");
     document_say(d, "p", "  %s optimize %s --new%s", program_invocation_name, text_shell(folder, text), sets);
     free(sets);
     json_t *table = document_table(d);
@@ -79,7 +78,9 @@ void document_model_confirmed(Document *d, const json_t *model, const char *fold
     if (!confirmed)
         return;
     if (json_array_size(json_object_get(confirmed, "designs")) == 0)
-        document_say(d, "p", "model: not confirmed, for with all effects the knee and the best of each objective fail");
+        document_say(d, "p",
+                     "model: not confirmed: with all effects the simulations of the knee and the best "
+                     "designs fail");
     else if (json_object_size(json_object_get(confirmed, "more")) > 0)
         say_more(d, confirmed, folder);
     else

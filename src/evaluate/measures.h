@@ -2,9 +2,9 @@
  * table. Any of them may be an objective (search.objectives) or be limited (search.limits).
  *
  * Internally every objective is minimised, f = sense * value, while every file and every table shows the natural value.
- * Of a building without storeys that yield theirs are not known.
- * What needs forces or the filter is computed where it is asked for (sim.forces, or because it is searched for or
- * limited); elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas:
+ * Measures of yielding are NAN for an elastic building.
+ * Measures that need forces or the filter are computed only on request (sim.forces, or as an objective or a limit).
+ * Where a measure is not computed, or the scene does not have it, its value is NAN: an empty cell, never 0. Formulas:
  * docs/theory.md.
  *
  * A new one goes to the end: a row here, and its value in SimResult (sim/result.h). Each is a column of a run by its

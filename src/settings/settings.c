@@ -68,47 +68,47 @@ static const char UNCERTAIN_WORDS[] =
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
-         "a building of the program, an OpenSees model (FILE.tcl), or a folder with K.csv and M.csv, storeys.csv or a "
-         "frame "
+         "a built-in building, an OpenSees model (FILE.tcl), or a folder with K.csv and M.csv, storeys.csv or a frame "
          "(docs/building.md)",
          .flags = SETTING_BASIC | SETTING_FREE),
     CHOICE(building.units, BuildingUnits, BUILDING_UNITS_LIST, "auto",
-           "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
-           "such floors",
+           "units of K.csv and M.csv, or of an OpenSees model; auto: N/m and kg, refused if the period or the floors "
+           "are implausible",
            .flags = SETTING_BASIC),
     CHOICE(building.damping_model, DampingModel, DAMPING_MODEL_LIST, "modal",
            "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
     LIST(building.damping, "-", "0.03", 0, 10,
          "damping ratios of the building, mode by mode; the last for all further modes", .flags = SETTING_BASIC),
-    BOUNDS(building.rayleigh_modes, "-", "1, 3", 1, 128, "rayleigh: the two modes that have building.damping"),
+    BOUNDS(building.rayleigh_modes, "-", "1, 3", 1, 128,
+           "rayleigh: the two modes that have the damping ratio building.damping"),
     LIST(building.heights_m, "m", "5.4864, 3.9624", 0.1, 100,
-         "heights of the storeys from the bottom where the files have none; the last for all further storeys"),
+         "heights of the storeys from the bottom, if the files have none; the last for all further storeys"),
     CHOICE(building.rigid_floors, Switch, SWITCH_LIST, "on",
-           "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
+           "frames: on: the nodes of a floor move sideways together; off: beams stretch"),
     CHOICE(building.elastic, Elastic, ELASTIC_LIST, "only",
-           "of an OpenSees model: only: what yields is refused; initial: it is taken by its initial stiffness"),
-    WHOLE(
-        building.modes, "0", 0, 100000,
-        "of a frame: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
-        "condensed to the floors (Guyan)"),
+           "OpenSees models: only: materials that yield are refused; initial: they are taken by their initial "
+           "stiffness"),
+    WHOLE(building.modes, "0", 0, 100000,
+          "frames: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
+          "condensed to the floors (Guyan)"),
     CHOICE(building.p_delta, Switch, SWITCH_LIST, "off",
            "on: the weights of the storeys soften the building (P-delta)"),
     REAL(building.yield_drift, "-", "0", 0, 1,
-         "interstorey drift over height at which a storey yields, where storeys.csv has none; 0: none yields"),
+         "interstorey drift over height at which a storey yields, unless storeys.csv says; 0: no storey yields"),
     REAL(building.hardening, "-", "0.05", 0, 0.999,
-         "share of a storey's stiffness that is left where it has yielded; raised, with a warning, where the building "
-         "would not stand"),
+         "share of a storey's stiffness that is left after yielding; raised, with a warning, if the building would "
+         "not stand"),
     CHOICE(building.hysteresis, Hysteresis, HYSTERESIS_LIST, "bilinear",
-           "of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
-    REAL(building.bouc_wen_exponent, "-", "10", 0.1, 100, "bouc_wen: how sharply a storey yields; large: bilinear"),
+           "law of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
+    REAL(building.bouc_wen_exponent, "-", "10", 0.1, 100,
+         "bouc_wen: sharpness of yielding; a large number is nearly bilinear"),
     REAL(building.strength_degradation, "-", "0", 0, 10,
-         "bouc_wen: loss of strength for every 2 elastic energies at yield that went in (docs/theory.md)"),
-    REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, the same way"),
+         "bouc_wen: loss of strength for an input of twice the elastic energy at yield (docs/theory.md)"),
+    REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, in the same way"),
 
-    PATH(
-        core.model, "none", "none|guyan|appendix",
-        "another building in the place of the core, a neighbour that pounds: as building.model, with as many floors or "
-        "fewer (docs/building.md); none: the cantilever of the settings below"),
+    PATH(core.model, "none", "none|guyan|appendix",
+         "another building in place of the core, a neighbour that pounds: values of building.model, with no more "
+         "floors (docs/building.md); none: the cantilever of the settings below"),
     CHOICE(core.section, CoreSection, CORE_SECTION_LIST, "box",
            "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
            "area given",
@@ -116,11 +116,11 @@ static const Option OPTIONS[] = {
     CHOICE(core.theory, CoreTheory, CORE_THEORY_LIST, "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
     CHOICE(core.wall, CoreWall, CORE_WALL_LIST, "full",
-           "stiffness of the box: full; effective: what the largest stress leaves of walls that buckle (EN 1993-1-5, "
-           "several simulations for one); or the share that is left",
+           "stiffness of the box: full; effective: reduced where walls buckle under their largest stress (EN "
+           "1993-1-5, several simulations for one); or the share that is left",
            .number = AT_TYPED(core.wall_factor, double), .min = 0.01, .max = 1),
     REAL(core.stiffeners, "-", "0", 0, 2,
-         "mass of the stiffeners of the box over that of its walls: they raise its buckling stress (docs/theory.md)"),
+         "mass of the box's stiffeners over that of its walls; they raise its buckling stress (docs/theory.md)"),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "outer side of the box, width of the plate", .flags = SETTING_BASIC),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),
@@ -129,15 +129,15 @@ static const Option OPTIONS[] = {
     TEXT(core.foundation, "fixed",
          "ground under the core: fixed, or a rigid disc on soil=A..D (site class of ASCE 7) or g=PA with radius=M "
          "[nu=0.3 density=2000 weight=N], or springs rotation=N_m_rad translation=N_m with rotation_dashpot= "
-         "translation_dashpot=; with radius= the disc lifts from anchors=FACTOR times the moment on that the weight "
-         "holds: 1, weight alone, where nothing is said; anchors=inf: it never lifts (docs/theory.md)"),
-    REAL(core.foundation_factor, "-", "1", 1e-6, 1e6, "the stiffness of that ground times this, to bound it"),
+         "translation_dashpot=. With radius= the disc lifts above anchors=FACTOR times the moment that the weight "
+         "holds; default: 1, weight alone; anchors=inf: it never lifts (docs/theory.md)"),
+    REAL(core.foundation_factor, "-", "1", 1e-6, 1e6, "factor on the stiffness of that ground, to bound it"),
     LIST(core.areas_m2, "m2", "1.567, 0.811", 1e-9, 1e4,
-         "effective: areas, in the first and the last storey, or storey by storey from the bottom"),
-    LIST(core.inertias_m4, "m4", "25.6201, 24.0503", 1e-9, 1e6, "effective: second moments of area, the same way"),
-    LIST(core.shear_areas_m2, "m2", "0", 0, 1e4, "effective: shear areas, the same way; 0: no shear deformation"),
+         "effective: areas of the first and the last storey, or of every storey from the bottom"),
+    LIST(core.inertias_m4, "m4", "25.6201, 24.0503", 1e-9, 1e6, "effective: second moments of area, in the same way"),
+    LIST(core.shear_areas_m2, "m2", "0", 0, 1e4, "effective: shear areas, in the same way; 0: no shear deformation"),
     LIST(core.masses_kg, "kg", "none", 1e-9, 1e9,
-         "effective: masses of the storeys, the same way; none: density times area"),
+         "effective: masses of the storeys, in the same way; none: density times area"),
 
     CHOICE(contact.law, ContactLaw, CONTACT_LAW_LIST, "paper",
            "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
@@ -153,48 +153,45 @@ static const Option OPTIONS[] = {
     REAL(contact.bumper_thickness_m, "m", "0.2", 1e-4, 10,
          "thickness of the bumper; the gap is the clearance in front of it"),
     REAL(contact.bumper_strain_max, "-", "0.5", 1e-3, 1,
-         "a bumper compressed by more of its thickness bottoms out: the result says so"),
-    LIST(
-        contact.eccentricity, "-", "0", 0, 10,
-        "contacts off the centre of the floors, across the motion, over the plan's side along it; then the side across "
-        "over the side along (1.2): floors turn, and peaks are those of their edges (docs/theory.md)"),
+         "a bumper that is compressed by more than this share of its thickness bottoms out; results say so"),
+    LIST(contact.eccentricity, "-", "0", 0, 10,
+         "distance of contacts from the centre of the floors, across the motion, over the plan's side along it; then "
+         "the ratio of the sides across and along (1.2). Floors turn, and peaks are those of their edges "
+         "(docs/theory.md)"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
-         "ground motion: one of the program, a file, or none: at rest under motion.forces (docs/motions.md)",
+         "ground motion: a built-in one, a file, or none: the ground rests, with motion.forces (docs/motions.md)",
          .flags = SETTING_BASIC | SETTING_FREE),
     PATH_LIST(motion.records, "none",
               "further records of the same study, a comma list of files, folders, *list.txt or builtin:suite: every "
-              "design is "
-              "simulated under each (sim.robust, docs/motions.md)",
+              "design is simulated under each (sim.robust, docs/motions.md)",
               .flags = SETTING_FREE),
-    REAL(motion.pga_g, "g", "0", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded",
+    REAL(motion.pga_g, "g", "0", 0, 1e6, "scale the motion to this peak ground acceleration; 0: as recorded",
          .flags = SETTING_BASIC),
-    REAL(motion.factor, "-", "1", 1e-6, 1e6, "scaled by this factor; 1: as recorded"),
+    REAL(motion.factor, "-", "1", 1e-6, 1e6, "multiply the motion by this; 1: as recorded"),
     REAL(motion.sa_g, "g", "0", 0, 1e6,
-         "scaled to this pseudo-acceleration (5 % damping) at motion.sa_period_s; 0: as recorded"),
-    REAL(motion.sa_period_s, "s", "1", 1e-3, 1e3, "the period of motion.sa_g, after motion.stretch"),
+         "scale the motion to this pseudo-acceleration (5 % damping) at motion.sa_period_s; 0: as recorded"),
+    REAL(motion.sa_period_s, "s", "1", 1e-3, 1e3, "period of motion.sa_g, after motion.stretch"),
     TEXT(motion.target, "none",
-         "scaled to a code spectrum: none | eurocode8 ag=0.3 soil=A..E [s= tb= tc= td=] | asce7 sds=1 sd1=0.6 [tl=8], "
-         "each "
-         "with [from=0.2 to=2], the periods between which it is fitted; [g, s], type 1"),
-    REAL(motion.stretch, "-", "1", 1e-3, 1e3, "time is multiplied by this"),
+         "scale the motion to a code spectrum: none | eurocode8 ag=0.3 soil=A..E [s= tb= tc= td=] | asce7 sds=1 "
+         "sd1=0.6 [tl=8], each with [from=0.2 to=2], the periods between which it is fitted; [g, s], type 1"),
+    REAL(motion.stretch, "-", "1", 1e-3, 1e3, "multiply the times of the record by this"),
     CHOICE(motion.baseline, MotionBaseline, MOTION_BASELINE_LIST, "none",
-           "subtracted from the acceleration of the record: its mean, or the straight line or parabola nearest to it"),
+           "subtract from the recorded acceleration its mean, or the straight line or parabola nearest to it"),
     REAL(motion.highpass_hz, "Hz", "0", 0, 1e3,
-         "cutoff of a zero-phase Butterworth filter of 4th order on the record, before motion.stretch; 0: none"),
-    REAL(motion.lowpass_hz, "Hz", "0", 0, 1e4, "the same, low-pass; 0: none"),
+         "cutoff of a zero-phase Butterworth high-pass of 4th order on the record, before motion.stretch; 0: none"),
+    REAL(motion.lowpass_hz, "Hz", "0", 0, 1e4, "cutoff of the same as a low-pass; 0: none"),
     TEXT(motion.unit, "from_file",
-         "of the acceleration where the file does not say it: from_file | m_s2 | cm_s2 | g | counts=VALUE, the counts "
-         "per "
-         "m/s2 of the instrument"),
-    TEXT(motion.channel, "auto", "component by name or number (from 1) where the file has several; auto: the only one"),
+         "unit of the acceleration, if the file does not say it: from_file | m_s2 | cm_s2 | g | counts=VALUE, the "
+         "counts per m/s2 of the instrument"),
+    TEXT(motion.channel, "auto", "component by name or number (from 1) of a file with several; auto: the only one"),
     REAL(motion.dt_s, "s", "0", 0, 100,
-         "time step of a file that has neither step nor times; unequal times are resampled to it by straight lines; 0: "
-         "as in the file"),
+         "time step of a file that has neither step nor times; unequal steps are resampled to it by straight lines; "
+         "0: as in the file"),
 
     TEXT(motion.text, "auto",
-         "where the numbers of a plain text stand that is not understood: skip=LINES, columns=time:1,value:3, "
-         "per_line=8 (one motion row by row), pairs=yes (t a t a ...), factor=9.81 (docs/motions.md)"),
+         "how to read a plain text that is not understood: skip=LINES, columns=time:1,value:3, per_line=8 (one motion "
+         "row by row), pairs=yes (t a t a ...), factor=9.81 (docs/motions.md)"),
 
     PATH(motion.forces, "none", NULL,
          "forces on floors over time, beside the ground motion or with motion.record = none: a CSV with time_s and a "
@@ -202,72 +199,72 @@ static const Option OPTIONS[] = {
          .flags = SETTING_FREE),
 
     CHOICE(sim.model, ModelUse, MODEL_USE_LIST, "given",
-           "auto: a study simulates three designs with every effect of docs/ladder.md that is not set here, and takes "
-           "those that the scene needs; given: the effects of the settings",
+           "auto: a study simulates three designs with every effect of docs/ladder.md that the settings leave open, "
+           "and keeps those that the scene needs; given: the effects of the settings",
            .flags = SETTING_BASIC),
     CHOICE(sim.engine, Engine, ENGINE_LIST, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, ACCURACY_LIST, "standard",
-           "preset of step and tolerances, or the relative error of J3 and the shares that is allowed: time of a "
-           "simulation against its error (docs/trust.md)",
+           "preset of step and tolerances, or the relative error allowed in J3 and the energy shares: less error "
+           "takes more time (docs/trust.md)",
            .number = AT_TYPED(sim.tolerance, double), .min = 1e-6, .max = 0.2, .flags = SETTING_BASIC),
     REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
     WHOLE(sim.replicates, "1", 1, 1000,
-          "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
+          "simulations of a design under each record, with perturbed gaps; objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
     CHOICE(sim.forces, Forces, FORCES_LIST, "auto",
-           "yes: forces, stresses, base shears and filtered accelerations of every design as columns; auto: only where "
-           "an objective or a limit needs them"),
-    REAL(sim.filter_hz, "Hz", "25", 0.01, 1000, "low-pass of j3_filtered_g, the acceleration that equipment feels"),
+           "yes: store forces, stresses, base shears and filtered accelerations of every design; auto: only those "
+           "that an objective or a limit needs"),
+    REAL(sim.filter_hz, "Hz", "25", 0.01, 1000,
+         "low-pass cutoff of j3_filtered_g, the acceleration that equipment feels"),
     CHOICE(sim.robust, Robust, ROBUST_LIST, "worst",
-           "several records: worst or mean of their means over the replicates; of all replicates of all records "
-           "mean_plus_sd, cvar (mean of the worst, sim.tail), or a number: the quantile on the bad side, 0.9: nine in "
-           "ten are better. Chances p(NAME>NUMBER) of search.objectives are shares of all, whatever stands here",
+           "how several simulations become one number: worst or mean over the records, of means over the replicates; "
+           "over all replicates of all records mean_plus_sd, cvar (mean of the worst, sim.tail) or a quantile, 0.9: "
+           "nine in ten are better. p(NAME>NUMBER) of search.objectives is the share of all in every case",
            .number = AT_TYPED(sim.quantile, double), .min = 1e-6, .max = 1),
-    REAL(sim.tail, "-", "0.2", 1e-3, 1, "cvar: share of all simulations, the worst, whose mean counts"),
+    REAL(sim.tail, "-", "0.2", 1e-3, 1, "cvar: share of all simulations, the worst ones, whose mean counts"),
     SHARES(sim.repair, RepairOptions, REPAIR_WORDS, 1,
            "structure=0.192 drift_sensitive=0.329 acceleration_sensitive=0.479",
-           "of loss: what parts cost that are destroyed, as shares of the building; the default is offices by Hazus, a "
-           "hospital has more that acceleration breaks"),
+           "loss: repair cost of destroyed parts, as shares of the building's; the default is offices by Hazus; in a "
+           "hospital more breaks by acceleration"),
 
     SHARES(
         sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, 1, "none",
-        "standard deviations of what is built, as restitution=0.05 damping=0.3: of contact.restitution, and as shares "
-        "of the contact's (bumper included), core's, building's and ground's (core.foundation) stiffness, of the "
+        "standard deviations of the structure as built, such as restitution=0.05 damping=0.3: of contact.restitution; "
+        "relative ones of the stiffness of contact (with bumper), core, building and ground (core.foundation), of the "
         "damping ratios and of the strength (building.yield_drift); needs sim.replicates >= 2"),
 
     TEXT(design.variables, "gaps, thickness",
-         "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box), "
-         "anchors "
-         "(of its mat, from 1 to the anchors= of core.foundation), links "
-         "(dashpots between floors and core), friction (links of a constant force), tuned_mass (at the roof: mass, "
-         "frequency, damping ratio)"),
-    CHOICE(
-        design.gap_sides, GapSides, GAP_SIDES_LIST, "both",
-        "both: a gap is the same on both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; "
-        "left, right: nothing to meet on the other side. A floor closes its right gap where it moves right (u > v)"),
-    WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
-    WHOLE(design.bumper_zones, "1", 0, 128, "bumpers of so many zones of floors differ; 1: all are alike; 0: by floor"),
+         "what is designed: gaps, thickness, and further bumper (stiffness, on a logarithmic scale), side (of the "
+         "box), anchors (of its mat, from 1 to the anchors= of core.foundation), links (dashpots between floors and "
+         "core), friction (links of a constant force), tuned_mass (at the roof: mass, frequency, damping ratio)"),
+    CHOICE(design.gap_sides, GapSides, GAP_SIDES_LIST, "both",
+           "both: one gap for both sides of a floor; each: two variables, gap_left_01_m.. and gap_right_01_m..; left, "
+           "right: contacts on this side alone. A floor closes its right gap when it moves right (u > v)"),
+    WHOLE(design.gap_zones, "0", 0, 128, "number of zones of floors with one gap each; 0: a gap for every floor"),
+    WHOLE(design.bumper_zones, "1", 0, 128,
+          "number of zones of floors whose bumpers differ; 1: all are alike; 0: by floor"),
     BOUNDS(design.gap_m, "m", "0.001, 0.5", 0, 10, "bounds of the search: smallest and largest gap",
            .flags = SETTING_BASIC),
     BOUNDS(design.thickness_m, "m", "0.004, 0.04", 1e-6, 10, "bounds of the search: core thickness",
            .flags = SETTING_BASIC),
-    REAL(design.step_gap_m, "m", "0", 0, 1, "gaps as set on site: multiples of this, 0.005 say; 0: any"),
+    REAL(design.step_gap_m, "m", "0", 0, 1,
+         "round gaps to multiples of this, such as 0.005, as they are set on site; 0: any gap"),
     LIST(design.step_thickness_m, "m", "none", 1e-6, 10,
-         "core thicknesses as sold, ascending, in the place of design.thickness_m; none: any"),
+         "stock thicknesses of the core, ascending, in place of design.thickness_m; none: any"),
     BOUNDS(design.bumper_n_m, "N/m", "1e7, 1e10", 1e3, 1e14, "bounds of the search: stiffness of a bumper"),
     BOUNDS(design.width_m, "m", "6, 15", 0.1, 200,
-           "bounds of the search: side of the box (core.width_m), by the footprint it may take"),
+           "bounds of the search: side of the box (core.width_m), by the footprint that is available"),
     TEXT(design.devices, "all",
-         "what a floor may have, as a choice of the search: gap (a stop), bumper, link, friction, none; the roof's "
-         "tuned mass is one then too, and the search begins with links and a tuned mass that are tuned alone; all: no "
-         "choice, every floor has what design.variables name"),
+         "devices among which the search chooses for a floor: gap (a stop), bumper, link, friction, none. The roof's "
+         "tuned mass is a choice then too, and the search begins with tuned links and a tuned mass. all: no choice, "
+         "every floor has what design.variables names"),
     WHOLE(design.device_zones, "0", 0, 128,
-          "0: a choice for every floor; else one for each of so many zones of floors"),
+          "number of zones of floors with one choice each; 0: a choice for every floor"),
     WHOLE(design.link_zones, "0", 0, 128,
-          "0: a link for every floor; else links (friction links) of so many zones of floors differ"),
+          "number of zones of floors whose links (friction links) differ; 0: a link for every floor"),
     REAL(design.link_exponent, "", "1", 0.1, 2,
-         "a in the force c v^a of a link; 1: linear, 0.3: of what is sold; c is then in N (s/m)^a"),
+         "a in the force c v^a of a link; 1: linear, 0.3: typical of products; c is then in N (s/m)^a"),
     BOUNDS(design.link_n_s_m, "N s/m", "1e4, 1e7", 1e-3, 1e12,
            "bounds of the search: c of a link; force of a friction link, in N"),
     BOUNDS(design.mass_kg, "kg", "1e4, 5e5", 1e-3, 1e9, "bounds of the search: tuned mass"),
@@ -275,32 +272,33 @@ static const Option OPTIONS[] = {
     BOUNDS(design.mass_damping, "", "0.01, 0.5", 1e-4, 2, "bounds of the search: damping ratio of the tuned mass"),
     SHARES(
         design.prices, PriceOptions, PRICE_WORDS, 1e9, "gap=3 bumper=4 link=25 tuned_mass_t=10 core_t=4 anchor_mn=2",
-        "of cost: of a stop, of its bumper, of a link (friction link), of a tonne of tuned mass and of the core, of a "
-        "MN by which anchors hold it down; the default is an example, in thousands of euros, no quotation"),
+        "prices for cost: of a stop, its bumper, a link (friction link), a tonne of tuned mass and of the core, a MN "
+        "of anchor force; the default is an example, in thousands of euros"),
 
     CHOICE(problem.kind, ProblemKind, PROBLEM_KIND_LIST, "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator"),
     TEXT(problem.command, "none",
          "external: command of the simulator, started without a shell once per thread (docs/external.md)"),
     REAL(problem.timeout_s, "s", "600", 1e-3, 1e7,
-         "external: a simulator without an answer for so long has failed and is restarted", .flags = SETTING_LIMIT),
-    WHOLE(problem.variables, "22", 1, 10000, "number of design variables; not of a tower"),
-    WHOLE(problem.objectives, "7", 1, 100, "number of objectives; not of a tower"),
+         "external: a simulator that does not answer for so long has failed and is restarted", .flags = SETTING_LIMIT),
+    WHOLE(problem.variables, "22", 1, 10000, "external: number of design variables"),
+    WHOLE(problem.objectives, "7", 1, 100, "external: number of objectives"),
     TEXT(problem.lower, "0", "external: lower bounds, one number for all or a comma list"),
     TEXT(problem.upper, "1", "external: upper bounds, one number for all or a comma list"),
-    TEXT(problem.kinds, "real", "not of a tower: real, log, int or choice:WORD|WORD, one for all or a comma list"),
+    TEXT(problem.kinds, "real", "external: real, log, int or choice:WORD|WORD, one for all or a comma list"),
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
-    TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
-    TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
-    CHOICE(problem.noisy, Noisy, NOISY_LIST, "auto", "whether evaluations of one design differ; auto: no"),
+    TEXT(problem.variable_names, "auto", "external: a comma list of names; auto: x1, x2, ..."),
+    TEXT(problem.objective_names, "auto", "external: a comma list of names; auto: f1, f2, ..."),
+    CHOICE(problem.noisy, Noisy, NOISY_LIST, "auto", "whether repeated evaluations of a design differ; auto: no"),
 
     WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
-    WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
-    WHOLE(search.population, "92", 4, 100000, "designs of a population; search.ahead is what a batch of workers needs"),
+    WHOLE(search.threads, "0", 0, 1024, "number of threads; 0: one per processor", .flags = SETTING_FREE),
+    WHOLE(search.population, "92", 4, 100000, "designs of a population; this is no batch size, search.ahead is"),
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
     PATH_LIST(search.start, "none",
-              "initial designs: CSVs with a column per variable, folders of runs, whose fronts are taken, or a list",
+              "initial designs: CSVs with a column per variable, folders of runs, whose fronts are taken, or a list "
+              "of these",
               .flags = SETTING_FREE),
     WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_BASIC | SETTING_LIMIT),
     REAL(search.max_hours, "h", "0", 0, 1e4,
@@ -310,36 +308,36 @@ static const Option OPTIONS[] = {
           "stop after so many simulations without a gain in hypervolume above its standard error; 0: never",
           .flags = SETTING_LIMIT),
     WHOLE(search.failures_max, "50", 0, 1e9,
-          "stop when so many simulations in a row have failed: something is wrong with all of them; 0: never",
+          "stop when so many simulations in a row have failed, because something is wrong with all of them; 0: never",
           .flags = SETTING_FREE),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
     WHOLE(search.ahead, "auto", 0, 1e4,
-          "batch size: designs that may be under way when the next ones are chosen, so that no worker waits; auto: a "
-          "24th of all, "
-          "24 at least (an eighth of max_evals, where that is less) and 240 at most; 0: one by one",
+          "batch size: designs that may be under way when the next ones are chosen, so that no worker waits; raise it "
+          "above the number of workers. auto: a 24th of the designs so far, at least 24 (or an eighth of max_evals, "
+          "if less), at most 240; 0: one by one",
           .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
-           "replicates (tower, sim.replicates >= 2), records (of motion.records): of most designs only the first "
-           "replicate, or a fifth of the records, four at most, is simulated, and the rest where it promises most"),
+           "which part of most designs is simulated at first: replicates: the first replicate (tower, sim.replicates "
+           ">= 2); records: a fifth of motion.records, four at most. The rest follows where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
-         "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
+         "noisy evaluations: share of the simulations that repeat designs of the front (docs/noise.md)"),
     WHOLE(search.replicates_max, "4", 1, 1000,
           "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
-          "designs polished at the end, with a tenth more simulations; none where these are too few or the problem is "
+          "designs polished at the end, with a tenth more simulations; none if these are too few or the problem is "
           "noisy"),
     TEXT(search.objectives, "auto",
-         "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
-         "those of them that the building has; also p(NAME>NUMBER), the probability that one is exceeded",
+         "tower: results to optimize, a comma list of columns (results/README.md); paper: its seven; auto: those of "
+         "them that the building has; also p(NAME>NUMBER), the probability that one is exceeded",
          .flags = SETTING_BASIC),
-    TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none",
+    TEXT(search.limits, "none", "constraints on objectives and other results, such as j3_g<=5,drift_ratio<=0.02; none",
          .flags = SETTING_BASIC),
     TEXT(search.aspire, "none",
-         "aspiration levels, as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest "
-         "to them, or is beyond them (docs/search.md); none"),
+         "aspiration levels, such as j1_m 0.5,j3_g 3: the search turns to the part of the front that comes nearest to "
+         "them, or is beyond them (docs/search.md); none"),
 
     CHOICE(run.isolate, Switch, SWITCH_LIST, "off",
-           "on: the tower is simulated in processes of their own: one that crashes ends its design alone",
+           "on: the tower is simulated in separate processes; one that crashes ends its design alone",
            .flags = SETTING_FREE),
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_BASIC | SETTING_FREE | SETTING_OUTPUT),
 };
