@@ -211,8 +211,7 @@ static const ArgOption OPTIONS[] = {
            "only designs whose NAME (an objective or another result) is at most VALUE; may be repeated"),
     VALUES("--min", "NAME=VALUE", "only designs whose NAME is at least VALUE; may be repeated"),
     VALUE("--weights", "NAME=W,...",
-          "the design with the least weighted sum of objectives, each scaled to 0 (best) "
-          ".. 1 (worst)"),
+          "the design with the least weighted sum of objectives, each scaled to 0 (best) .. 1 (worst)"),
     VALUE("--reference", "NAME=VALUE,...", "the design nearest to these values (reference point)"),
     VALUE("--csv", "FILE", "the chosen designs as rows of front.csv into FILE; -: standard output"),
     SWITCH("--json", "the chosen designs with names, objectives and variables, as JSON on standard output"),

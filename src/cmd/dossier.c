@@ -270,8 +270,7 @@ static void say_records(Dossier *o)
         add_response(o, table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE]);
     }
     document_say(&o->doc, "p",
-                 "The records of the study come first. builtin: motions are synthetic: judge by "
-                 "records.");
+                 "The records of the study come first. builtin: motions are synthetic: judge by records.");
 }
 
 /* All records at every level, with the fragility of a drift ratio of 2 %. */
@@ -371,8 +370,7 @@ static void say_provenance(Dossier *o)
     settings_defaults(&none);
     settings_compare(&none, run->settings, put_setting, settings);
     document_say(&o->doc, "p",
-                 "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that differ from "
-                 "their defaults:");
+                 "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that differ from their defaults:");
     document_list(&o->doc, settings);
     folder_path(run->folder, "settings.ini", path);
     document_say(&o->doc, "p", "To repeat the row of accuracy fine:");

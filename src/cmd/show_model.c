@@ -79,8 +79,7 @@ void document_model_confirmed(Document *d, const json_t *model, const char *fold
         return;
     if (json_array_size(json_object_get(confirmed, "designs")) == 0)
         document_say(d, "p",
-                     "model: not confirmed: with all effects the simulations of the knee and the best "
-                     "designs fail");
+                     "model: not confirmed: with all effects the simulations of the knee and the best designs fail");
     else if (json_object_size(json_object_get(confirmed, "more")) > 0)
         say_more(d, confirmed, folder);
     else
